@@ -1,0 +1,14 @@
+#pragma once
+// Small vectors and control nets. All lengths in the deck's unit of length, unless stated.
+
+#include <Eigen/Core>
+
+namespace tanktread {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// A control net, or any field on it: one row (x1, x2, x3) a control point, contiguous. Shape (N, 3).
+using Net = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+}  // namespace tanktread

@@ -1,0 +1,79 @@
+#pragma once
+// The one statement of each parameter: key, default, rule, unit, meaning, beside the struct that uses it.
+// From it come reading, checking, the effective deck and the manual (`--reference`).
+
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace Teuchos {
+class ParameterList;
+}
+
+namespace tanktread::deck {
+
+/// What values a number may take: the test and its wording ("positive", "between 0 and 1").
+struct Rule {
+  std::string text;
+  std::function<bool(double)> holds;
+};
+Rule any();
+Rule positive();
+Rule not_negative();
+Rule at_least(double low);
+Rule between(double low, double high);  ///< both ends included
+
+/// What values a word may take. An empty list: any text.
+using Choice = std::vector<std::string>;
+
+/// One list of the deck, being read, checked or documented. An options struct states its keys once:
+///
+///   void Options::declare(deck::Section& s) {
+///     s.key("tolerance", tolerance, deck::positive(), "1", "relative accuracy of every layer integral");
+///     s.key("rule", rule, deck::Choice{"adaptive", "fixed"}, "how element integrals are taken");
+///   }
+///
+/// The field's value before the call is the default. Throws UserError (path, rule, unit, given value) on a wrong value;
+/// unknown keys are reported by the reader after all statements were made, with a guess of what was meant.
+class Section {
+ public:
+  void key(std::string_view name, double& field, const Rule& rule, std::string_view unit, std::string_view meaning);
+  void key(std::string_view name, std::optional<double>& field, const Rule& rule, std::string_view unit, std::string_view meaning);
+  void key(std::string_view name, int& field, const Rule& rule, std::string_view unit, std::string_view meaning);
+  void key(std::string_view name, bool& field, std::string_view meaning);
+  void key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning);
+  void key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning);
+  void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit, std::string_view meaning);  ///< nine numbers, row by row
+
+  /// A list inside this one, stated by `options.declare(Section&)`.
+  template <class Options>
+  void section(std::string_view name, Options& options, std::string_view meaning) {
+    Section inner = enter(name, meaning);
+    options.declare(inner);
+  }
+
+  /// A list handed to another library as it is (Belos, Amesos2, NOX); `field` keeps what the deck gives over its defaults.
+  void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
+
+  /// Lists whose names the user chooses (Expect/<name>): `make(name)` returns nothing; it is called with each name and its section.
+  void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
+
+  /// Whether the user gave this key (for contradictory alternatives), and its path for messages.
+  bool given(std::string_view name) const;
+  std::string path(std::string_view name = {}) const;
+
+  struct State;
+  explicit Section(std::shared_ptr<State> state);
+
+ private:
+  Section enter(std::string_view name, std::string_view meaning);
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace tanktread::deck

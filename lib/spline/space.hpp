@@ -1,0 +1,40 @@
+#pragma once
+// The one thing that everything downstream of the spline room sees: a list of Bezier elements and the collocation points.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace tanktread::spline {
+
+/// One Bezier element: the unit square (s, t), a tensor-product Bernstein basis, and the functions of the spline space on it.
+///
+///   N_A(s, t) = sum_b extraction(A, b) B_b(s, t),   b = (p + 1) j + i,  B_b = B_i(s) B_j(t)
+///
+/// Right-handed: x_,s x x_,t points out of the closed surface.
+struct Element {
+  int degree = 3;              ///< p, the same in s and t: 3, or 4 around an extraordinary point under `g1`
+  std::vector<int> points;     ///< control-point ids, m of them (16 on a regular element)
+  Eigen::MatrixXd extraction;  ///< shape (m, (p + 1)^2); every column sums to 1
+  int face = 0;                ///< placement in the T-mesh: macro face, lower left corner and size
+  std::array<double, 2> origin{0, 0}, size{1, 1};
+};
+
+/// A place on the surface: an element and its local coordinates in [0, 1]^2.
+struct Site {
+  int element = 0;
+  double s = 0, t = 0;
+};
+
+/// A spline space on a closed surface: control points 0 .. n_points-1, one generalised Greville site for each.
+struct Space {
+  int n_points = 0;
+  std::vector<Element> elements;
+  /// For collocation point i, every element whose closure holds it, with its coordinates there; the first is the one to evaluate on.
+  std::vector<std::vector<Site>> collocation;
+  std::string description;  ///< one line for the plan: mesh, degree, extraordinary points or poles
+};
+
+}  // namespace tanktread::spline
