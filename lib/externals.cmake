@@ -1,0 +1,25 @@
+# The libraries of others, each as one target external_<NAME>; their headers are SYSTEM, so that their warnings stay theirs.
+
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(MPI REQUIRED COMPONENTS CXX)
+find_package(Trilinos REQUIRED)
+find_package(HDF5 REQUIRED COMPONENTS C)
+find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
+find_library(METIS_LIBRARY metis REQUIRED)
+
+function(external name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
+  add_library(external_${name} INTERFACE)
+  target_include_directories(external_${name} SYSTEM INTERFACE ${arg_HEADERS})
+  target_link_libraries(external_${name} INTERFACE ${arg_LIBRARIES})
+endfunction()
+
+set(teuchos teuchosparameterlist teuchosparser teuchoscomm teuchoscore)
+list(TRANSFORM teuchos PREPEND trilinos_)
+
+external(METIS HEADERS ${METIS_INCLUDE_DIR} LIBRARIES ${METIS_LIBRARY})
+external(HDF5 HEADERS ${HDF5_INCLUDE_DIRS} LIBRARIES ${HDF5_LIBRARIES} MPI::MPI_CXX)
+external(TEUCHOS HEADERS ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS} LIBRARIES ${teuchos} MPI::MPI_CXX)
+external(TRILINOS
+  HEADERS ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS}
+  LIBRARIES ${Trilinos_LIBRARIES} ${Trilinos_TPL_LIBRARIES} MPI::MPI_CXX)
