@@ -1,0 +1,31 @@
+#pragma once
+// Gauss-Legendre rules on the unit interval and their tensor products on the unit square.
+
+#include <Eigen/Core>
+
+namespace tanktread::quadrature {
+
+/// Nodes (ascending) and weights on [0, 1]; the weights sum to 1. Exact for polynomials of degree 2n - 1.
+struct GaussRule {
+  Eigen::VectorXd nodes, weights;
+  int size() const { return static_cast<int>(nodes.size()); }
+};
+
+/// The n-point rule, n >= 1, by Newton's method on the Legendre polynomial; good to a few units of round-off.
+/// Made once and kept: the reference stays valid for the whole run.
+const GaussRule& gauss(int n);
+
+/// The number of points that integrates polynomials of this degree exactly.
+constexpr int gauss_points_for_degree(int degree) { return degree / 2 + 1; }
+
+/// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i.
+struct TensorRule {
+  Eigen::VectorXd s, t, weights;
+  int size() const { return static_cast<int>(weights.size()); }
+};
+TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t);
+
+/// The n x n Gauss rule. Made once and kept.
+const TensorRule& tensor_gauss(int n);
+
+}  // namespace tanktread::quadrature
