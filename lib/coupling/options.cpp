@@ -1,0 +1,18 @@
+#include "coupling/options.hpp"
+
+#include "deck/section.hpp"
+
+namespace tanktread::coupling {
+
+void VolumeOptions::declare(deck::Section& section) {
+  section.key("constraint", constraint, deck::Choice{"exact", "flux", "none"},
+              "`flux`: no net flux through the surface in every evaluation (2.8); `exact`: that, and the volume restored after every step; `none`");
+}
+
+void SolverOptions::declare(deck::Section& section) {
+  section.key("iterative solver", krylov, deck::Choice{}, "Belos' name of the solver of the implicit step");
+  section.foreign("Belos", belos, "list handed to the iterative solver as it is");
+  direct.declare(section);
+}
+
+}  // namespace tanktread::coupling

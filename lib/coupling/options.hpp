@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "membrane/options.hpp"
+
+namespace tanktread::coupling {
+
+/// How the volume of the particle is kept: `Volume/*` of the deck.
+struct VolumeOptions {
+  /// exact: no net flux in every evaluation and the volume restored after every step; flux: the former (2.8); none: neither.
+  std::string constraint = "exact";
+
+  void declare(deck::Section& section);
+};
+
+/// The solvers of the linear systems: `Solvers/*` of the deck.
+struct SolverOptions {
+  std::string krylov = "GMRES";                  ///< Belos' name of the iterative solver of the implicit step
+  std::shared_ptr<Teuchos::ParameterList> belos; ///< its list, as it is
+  membrane::DirectSolverOptions direct;
+
+  void declare(deck::Section& section);
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,58 @@
+#include "membrane/options.hpp"
+
+#include "base/errors.hpp"
+#include "deck/section.hpp"
+
+namespace tanktread::membrane {
+
+void Options::declare(deck::Section& section) {
+  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "surface tension"}, "constitutive law: (P-7), (P-8), or a fluid interface (3.4)");
+  if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
+  section.key("capillary number", capillary_number, deck::positive(), "1",
+              "Ca = viscosity x rate x R_C / G_s (over the surface tension for a drop); R_C: radius of the sphere of equal volume, rate: "
+              "Flow/shear rate, or the largest singular value of Flow/gradient. 0.3 if no alternative is given");
+  section.key("shear modulus", shear_modulus, deck::positive(), "force/length", "G_s, instead of `capillary number`");
+  section.key("surface tension", surface_tension, deck::positive(), "force/length", "of a drop, instead of `capillary number`");
+  if (law == "Skalak") area_dilatation = 1.0;
+  section.key("area dilatation", area_dilatation, deck::not_negative(), "1", "C of the law `Skalak`; 1 if not given");
+  section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
+              "alpha: the resting shape is the unstressed one blown up by 1 + alpha about its centre");
+  section.key("load", load, deck::Choice{"weak", "strong"},
+              "`weak`: by virtual work (3.5); `strong`: the surface divergence (P-3), which the paper shows to fail");
+  if (law == "surface tension") load_measure = "current";
+  section.key("load measure", load_measure, deck::Choice{"reference", "current"},
+              "the weak load per area of the unstressed surface (3.7), or of the current one (3.6), the paper's and a drop's");
+}
+
+void Options::check() const {
+  if (capillary_number && shear_modulus)
+    throw UserError("Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
+  if (capillary_number && surface_tension)
+    throw UserError("Membrane/capillary number and Membrane/surface tension contradict each other: give one of them.");
+  if (shear_modulus && law == "surface tension")
+    throw UserError("Membrane/shear modulus and Membrane/law `surface tension` contradict each other: give Membrane/surface tension.");
+  if (surface_tension && law != "surface tension")
+    throw UserError("Membrane/surface tension and Membrane/law `" + law + "` contradict each other: give Membrane/shear modulus.");
+  if (area_dilatation && law != "Skalak")
+    throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `" + law + "`.");
+  if (law == "surface tension" && pre_inflation != 0.0)
+    throw UserError("Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
+  if (law == "surface tension" && load_measure == "reference" && load == "weak")
+    throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
+}
+
+double Options::modulus(double viscosity, double rate, double radius) const {
+  if (shear_modulus) return *shear_modulus;
+  if (surface_tension) return *surface_tension;
+  if (rate == 0.0)
+    throw UserError("Membrane/capillary number needs a flow with a gradient: give Membrane/" +
+                    std::string(law == "surface tension" ? "surface tension" : "shear modulus") + " instead.");
+  return viscosity * rate * radius / capillary_number.value();
+}
+
+void DirectSolverOptions::declare(deck::Section& section) {
+  section.key("direct solver", name, deck::Choice{}, "Amesos2's name of the solver of the sparse systems: `KLU2`, or another that it was built with");
+  section.foreign("Amesos2", amesos2, "list handed to the direct solver as it is");
+}
+
+}  // namespace tanktread::membrane

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace Teuchos {
+class ParameterList;
+}
+namespace tanktread::deck {
+class Section;
+}
+
+namespace tanktread::membrane {
+
+/// The membrane: `Membrane/*` of the deck.
+struct Options {
+  std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), surface tension (3.4)
+  std::optional<double> capillary_number;  ///< Ca = mu rate R_C / G_s, or over sigma; 0.3 if none of the three is given
+  std::optional<double> shear_modulus;     ///< G_s, force/length
+  std::optional<double> surface_tension;   ///< sigma, force/length
+  std::optional<double> area_dilatation;   ///< Skalak's C; set for this law, 1 if not given, empty otherwise
+  double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
+  std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
+  std::string load_measure = "reference";  ///< the weak load per area of the unstressed surface (3.7) or of the current one (3.6)
+
+  void declare(deck::Section& section);
+
+  /// One sentence (UserError) for keys that contradict each other.
+  void check() const;
+
+  /// G_s, or sigma of a surface tension, from whichever key was given; `viscosity` mu, `rate` of the flow, `radius` R_C.
+  double modulus(double viscosity, double rate, double radius) const;
+};
+
+/// The direct solver of the sparse systems (mass matrices, collocation matrix): keys of `Solvers/*`.
+struct DirectSolverOptions {
+  std::string name = "KLU2";                       ///< as Amesos2 names it
+  std::shared_ptr<Teuchos::ParameterList> amesos2; ///< its list, as it is
+
+  void declare(deck::Section& section);
+};
+
+}  // namespace tanktread::membrane

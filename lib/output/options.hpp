@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+namespace tanktread::deck {
+class Section;
+}
+
+namespace tanktread::output {
+
+/// What is written and when the run pauses: `Output/*` of the deck.
+struct Options {
+  std::optional<double> interval;          ///< simulated time between snapshots; empty: a twentieth of the final time
+  std::optional<double> wall_clock_limit;  ///< seconds after which the run stops with a checkpoint; empty: none
+
+  void declare(deck::Section& section);
+};
+
+}  // namespace tanktread::output

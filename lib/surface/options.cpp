@@ -1,0 +1,62 @@
+#include "surface/options.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "base/errors.hpp"
+#include "deck/section.hpp"
+
+namespace tanktread::surface {
+
+void MeshOptions::declare(deck::Section& section) {
+  section.key("mesh", mesh, deck::Choice{"cube"}, "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points");
+  section.key("elements per side", elements_per_side, deck::between(2, 200), "1", "n: 6n^2 elements on the cube mesh");
+  section.key("extraordinary points", extraordinary_points, deck::Choice{"g1"},
+              "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point");
+}
+
+void ParticleShape::declare(deck::Section& section) {
+  section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell"},
+              "resting shape; `red cell`: the biconcave disc of Evans and Fung");
+  const bool round = shape == "sphere" || shape == "red cell";
+  if (round) radius = 1.0;
+  section.key("radius", radius, deck::positive(), "length", "of the sphere (1 if not given), or of the red cell's disc");
+  section.key("semi-axes", semi_axes, deck::positive(), "length",
+              "three, along the particle's own x1, x2, x3, of a spheroid (two of them equal) or an ellipsoid");
+  section.key("center", center, deck::any(), "length", "centroid of the resting shape");
+  section.key("orientation", orientation, deck::any(), "degrees",
+              "rotation vector (axis times angle) that turns the particle's own axes into place");
+}
+
+void ParticleShape::check() const {
+  const bool round = shape == "sphere" || shape == "red cell";
+  if (round && semi_axes) throw UserError("Particle/semi-axes and Particle/shape `" + shape + "` contradict each other: give Particle/radius.");
+  if (!round && radius) throw UserError("Particle/radius and Particle/shape `" + shape + "` contradict each other: give Particle/semi-axes.");
+  if (!round && !semi_axes) throw UserError("Particle/shape `" + shape + "` needs Particle/semi-axes, three lengths.");
+  if (shape == "spheroid") {
+    const Vec3& a = *semi_axes;
+    if (a[0] != a[1] && a[1] != a[2] && a[0] != a[2])
+      throw UserError("Particle/semi-axes of a `spheroid` must hold two equal lengths; three different ones are an `ellipsoid`.");
+  }
+}
+
+Mat3 ParticleShape::rotation() const {
+  const Vec3 turn = orientation * (std::numbers::pi / 180.0);
+  const double angle = turn.norm();
+  if (angle == 0.0) return Mat3::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+double ParticleShape::equivalent_radius() const {
+  if (shape == "sphere") return radius.value();
+  if (shape == "red cell") {
+    // V = 2 pi R^3 int_0^1 r sqrt(1 - r^2) (0.21 + 2.0 r^2 - 1.12 r^4) dr
+    const double volume = 2.0 * std::numbers::pi * (0.21 / 3.0 + 2.0 * 2.0 / 15.0 - 1.12 * 8.0 / 105.0);
+    return radius.value() * std::cbrt(volume * 3.0 / (4.0 * std::numbers::pi));
+  }
+  return std::cbrt(semi_axes.value().prod());
+}
+
+}  // namespace tanktread::surface
