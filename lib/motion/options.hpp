@@ -20,6 +20,11 @@ struct TimeOptions {
   double minimum_step = 1e-9;               ///< a controlled step below this ends the run with a failure
   std::optional<double> steady_tolerance;   ///< stop when max |v.n| over (rate R_C) falls below it; empty: never
   double iteration_tolerance = 1e-7;        ///< end of the sub-iteration of crank-nicolson (4.1)
+  double newton_tolerance = 0.05;           ///< end of the quasi-Newton iteration, in parts of `tolerance`
+  int newton_iterations = 6;                ///< most iterations of a stage before the step is halved
+  double linear_tolerance = 0.03;           ///< relative residual of its linear solves
+  double contraction_limit = 0.25;          ///< contraction rate above which the frozen layer operator is assembled anew
+  int predictor_order = 2;                  ///< order of the polynomial through known slopes that a stage starts from
 
   void declare(deck::Section& section);
 

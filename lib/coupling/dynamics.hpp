@@ -1,0 +1,32 @@
+#pragma once
+// What a time integrator sees of the coupled system: dx/dt = v(x) and its quasi-Newton Jacobian.
+
+#include "base/types.hpp"
+
+namespace tanktread::coupling {
+
+/// The system of method.md, section 4. Nets are replicated; every call is collective.
+class Dynamics {
+ public:
+  virtual ~Dynamics() = default;
+
+  /// One velocity evaluation (4.2) at the control net x, volume constraint included. Not finite where the shape is beyond repair.
+  virtual Net velocity(const Net& x) = 0;
+
+  /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
+  virtual void freeze(const Net& x) = 0;
+
+  /// Takes the membrane's tangent H of the Jacobian (4.3) at x.
+  virtual void linearise(const Net& x) = 0;
+
+  /// delta = (I - shift J)^{-1} r with the Jacobian (4.3), to the relative residual `tolerance`. `shift` is gamma dt.
+  virtual Net solve(double shift, const Net& r, double tolerance) = 0;
+
+  /// Moves x onto the initial volume, if the constraint is `exact`; otherwise does nothing.
+  virtual void restore_volume(Net& x) = 0;
+
+  /// The norm of `Time/tolerance`: root mean square of the control points' displacement over R_C.
+  virtual double norm(const Net& displacement) const = 0;
+};
+
+}  // namespace tanktread::coupling

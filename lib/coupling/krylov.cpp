@@ -1,0 +1,95 @@
+#include "coupling/krylov.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <BelosSolverFactory_Tpetra.hpp>
+#include <BelosTpetraAdapter.hpp>
+#include <Teuchos_ParameterList.hpp>
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Operator.hpp>
+
+#include "base/errors.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+using Map = Tpetra::Map<>;
+using MultiVector = Tpetra::MultiVector<>;
+using Operator = Tpetra::Operator<>;
+using Problem = Belos::LinearProblem<double, MultiVector, Operator>;
+using Solver = Belos::SolverManager<double, MultiVector, Operator>;
+
+/// A Tpetra operator made of a function on flat arrays.
+class FunctionOperator : public Operator {
+ public:
+  FunctionOperator(Teuchos::RCP<const Map> map, const Krylov::Apply& apply) : map_(std::move(map)), apply_(apply) {}
+  Teuchos::RCP<const Map> getDomainMap() const override { return map_; }
+  Teuchos::RCP<const Map> getRangeMap() const override { return map_; }
+  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha, double beta) const override {
+    buffer_.resize(map_->getGlobalNumElements());
+    for (size_t c = 0; c < x.getNumVectors(); ++c) {
+      apply_(x.getData(c).getRawPtr(), buffer_.data());
+      const auto out = y.getDataNonConst(c);
+      for (size_t i = 0; i < buffer_.size(); ++i) out[i] = alpha * buffer_[i] + (beta == 0 ? 0.0 : beta * out[i]);
+    }
+  }
+
+ private:
+  Teuchos::RCP<const Map> map_;
+  const Krylov::Apply& apply_;
+  mutable std::vector<double> buffer_;
+};
+
+}  // namespace
+
+struct Krylov::Impl {
+  Teuchos::RCP<Teuchos::ParameterList> list = Teuchos::rcp(new Teuchos::ParameterList("Belos"));
+  Teuchos::RCP<Solver> solver;
+  std::string name;
+};
+
+Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list) : impl_(std::make_unique<Impl>()) {
+  impl_->name = std::move(solver);
+  impl_->list->set("Maximum Iterations", 200);
+  if (impl_->name == "GMRES" || impl_->name == "BLOCK GMRES" || impl_->name == "FLEXIBLE GMRES") impl_->list->set("Num Blocks", 200);
+  if (list) impl_->list->setParameters(*list);
+  try {
+    Belos::SolverFactory<double, MultiVector, Operator> factory;
+    impl_->solver = factory.create(impl_->name, impl_->list);
+  } catch (const std::exception& error) {
+    const std::string text = error.what();
+    throw UserError("Solvers/Belos: Belos does not accept the solver '" + impl_->name + "' with the list given: " +
+                    text.substr(text.rfind('\n', text.size() - 2) + 1));
+  }
+}
+
+Krylov::~Krylov() = default;
+
+SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
+  if (b.squaredNorm() == 0) {
+    x.setZero();
+    return {0, true, 0};
+  }
+  const auto comm = Tpetra::getDefaultComm();
+  const auto map = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(b.size()), 0, comm, Tpetra::LocallyReplicated));
+  const auto op = Teuchos::rcp(new FunctionOperator(map, apply));
+  const auto lhs = Teuchos::rcp(new MultiVector(map, 1)), rhs = Teuchos::rcp(new MultiVector(map, 1));
+  std::copy_n(x.data(), x.size(), lhs->getDataNonConst(0).getRawPtr());
+  std::copy_n(b.data(), b.size(), rhs->getDataNonConst(0).getRawPtr());
+
+  const auto problem = Teuchos::rcp(new Problem(op, lhs, rhs));
+  problem->setProblem();
+  const auto now = Teuchos::rcp(new Teuchos::ParameterList(*impl_->list));
+  now->set("Convergence Tolerance", tolerance);
+  impl_->solver->setParameters(now);
+  impl_->solver->setProblem(problem);
+  const bool converged = impl_->solver->solve() == Belos::Converged;
+  std::copy_n(lhs->getData(0).getRawPtr(), x.size(), x.data());
+  return {impl_->solver->getNumIters(), converged, impl_->solver->achievedTol()};
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,44 @@
+#pragma once
+// One Belos solve on short replicated vectors with an operator of ours.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace Teuchos {
+class ParameterList;
+}
+
+namespace tanktread::coupling {
+
+/// What a linear solve did.
+struct SolveReport {
+  int iterations = 0;
+  bool converged = false;
+  double achieved = 0;          ///< relative residual that Belos reports
+};
+
+/// Belos, called through its factory, on locally replicated Tpetra vectors: every rank does the same arithmetic on the whole short
+/// vector, so dot products need no message and an iteration count cannot differ between ranks or rank counts. The operator may be
+/// distributed inside; it must return the same vector on every rank.
+class Krylov {
+ public:
+  using Apply = std::function<void(const double* in, double* out)>;
+
+  /// `solver` is a name of Belos' factory ("GMRES", "BICGSTAB", …); `list` goes to Belos as it is, after our defaults.
+  /// Throws UserError for a name or a list that Belos does not know.
+  Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list);
+  ~Krylov();
+
+  /// Solves apply(x) = b to the relative residual `tolerance`, starting from x. Collective. Does not throw when it stops short; see the report.
+  SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,23 @@
+#include "motion/integrator.hpp"
+
+#include "base/errors.hpp"
+#include "motion/bs3.hpp"
+#include "motion/crank_nicolson.hpp"
+#include "motion/tr_bdf2.hpp"
+
+namespace tanktread::motion {
+
+std::unique_ptr<Integrator> integrator(const TimeOptions& options) {
+  if (options.scheme == "tr-bdf2") return std::make_unique<TrBdf2>(options);
+  if (options.scheme == "bs3") return std::make_unique<Bs3>(options);
+  if (options.scheme == "crank-nicolson") return std::make_unique<CrankNicolson>(options);
+  throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
+}
+
+double step_towards(double time, double limit, double step) {
+  const double rest = limit - time;
+  if (step >= rest * (1 - 1e-9)) return rest;
+  return step > 0.5 * rest ? 0.5 * rest : step;
+}
+
+}  // namespace tanktread::motion

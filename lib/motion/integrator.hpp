@@ -1,0 +1,48 @@
+#pragma once
+// One small interface for every time integrator.
+
+#include <memory>
+#include <vector>
+
+#include "base/types.hpp"
+#include "coupling/dynamics.hpp"
+#include "motion/options.hpp"
+
+namespace tanktread::motion {
+
+/// Everything that a run needs to go on from here to the last bit: it belongs to a checkpoint.
+struct State {
+  double time = 0;
+  double step = 0;              ///< the step that the controller proposes next
+  Net x;                        ///< control net
+  std::vector<Net> history;     ///< slopes that the scheme keeps; the first one is dx/dt at x
+  std::vector<double> memory;   ///< the controller's memory, its meaning is the scheme's own
+  Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if none were
+};
+
+/// What one call of `advance` did.
+struct StepReport {
+  double step = 0;        ///< size of the accepted step
+  int iterations = 0;     ///< nonlinear iterations or sub-iterations, rejected attempts included
+  int rejected = 0;       ///< attempts given up
+  double error = 0;       ///< estimated local error in the norm of `Time/tolerance` (0 where there is no estimate)
+  double displacement = 0;///< norm of x_{n+1} - x_n
+};
+
+/// A scheme for dx/dt = v(x) with step control.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// One accepted step, not beyond `limit`. Throws RunFailure when the step falls below the minimum; the state is then unchanged.
+  virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
+};
+
+/// The scheme named by `Time/scheme`.
+std::unique_ptr<Integrator> integrator(const TimeOptions& options);
+
+/// The step to take towards `limit` when the controller proposes `step`: the whole rest if it fits, half of it if two are needed,
+/// so that no sliver is left over.
+double step_towards(double time, double limit, double step);
+
+}  // namespace tanktread::motion
