@@ -16,13 +16,22 @@ function(gtest_program name)
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
   endif()
 
-  set(discovery DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
-  gtest_discover_tests(${name} TEST_PREFIX ${name}. TEST_FILTER "-*Long.*" ${discovery}
-    PROPERTIES LABELS ${arg_KIND} ENVIRONMENT "${run_environment}")
-  gtest_discover_tests(${name} TEST_PREFIX ${name}. TEST_FILTER "*Long.*" ${discovery}
-    PROPERTIES LABELS "${arg_KIND};long" ENVIRONMENT "${run_environment}")
+  discover(${name} short "-*Long.*" "${arg_KIND}")
+  discover(${name} long "*Long.*" "${arg_KIND};long")
   if(arg_MPI)
     add_test(NAME ${name}.on_two_ranks COMMAND ${MPIEXEC_EXECUTABLE} -n 2 $<TARGET_FILE:${name}> --gtest_filter=-*Long.*)
     set_tests_properties(${name}.on_two_ranks PROPERTIES LABELS "${arg_KIND};mpi" PROCESSORS 2 ENVIRONMENT "${run_environment}")
   endif()
+endfunction()
+
+# One ctest entry for each test of the program that passes the filter. gtest_discover_tests flattens properties that are lists,
+# so those are set by a file that ctest reads afterwards.
+function(discover name selection filter labels)
+  set(list ${name}_${selection}_TESTS)
+  gtest_discover_tests(${name} TEST_PREFIX ${name}. TEST_FILTER "${filter}" TEST_LIST ${list} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${name}_${selection}_properties.cmake)
+  file(WRITE ${file} "if(${list})
+  set_tests_properties(\${${list}} PROPERTIES LABELS \"${labels}\" ENVIRONMENT \"${run_environment}\")
+endif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
 endfunction()

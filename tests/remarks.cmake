@@ -1,0 +1,18 @@
+# remarks_of(FILE): what a deck or script says of itself as a test, in comment lines among its first twenty:
+#   # base: inputs/shear_neo_hookean.yaml     # ranks: 2     # label: long
+# sets remark_base, remark_ranks (default 1) and remark_label. A change of the file is seen by the next build.
+function(remarks_of file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(STRINGS ${file} lines LIMIT_COUNT 20 REGEX "^# *(base|ranks|label):")
+  set(base)
+  set(ranks 1)
+  set(label)
+  foreach(line ${lines})
+    if(line MATCHES "^# *(base|ranks|label): *([^ ]+) *$")
+      set(${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+    endif()
+  endforeach()
+  foreach(key base ranks label)
+    set(remark_${key} "${${key}}" PARENT_SCOPE)
+  endforeach()
+endfunction()
