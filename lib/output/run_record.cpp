@@ -1,0 +1,81 @@
+#include "output/run_record.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "output/file.hpp"
+#include "output/hdf.hpp"
+
+namespace tanktread::output {
+
+RunRecord::RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance)
+    : path_(std::move(path)), deck_(std::move(deck)), provenance_(std::move(provenance)) {}
+
+RunRecord RunRecord::load(const std::filesystem::path& path) {
+  const hdf::Id file = hdf::open(path);
+  RunRecord record(path, hdf::read_text(file, "deck"), {});
+  for (const auto& key : hdf::attribute_names(file, "provenance")) record.provenance_[key] = hdf::read_attribute(file, "provenance", key);
+  const hdf::Id series = hdf::group(file, "series");
+  for (const auto& name : hdf::names(series)) {
+    hdf::Shape shape;
+    record.series_.push_back({name, hdf::read_attribute(series, name, "unit"), hdf::read_attribute(series, name, "description"),
+                              hdf::read_doubles(series, name, shape)});
+    if (record.series_.back().values.size() != record.rows()) throw std::runtime_error(path.string() + ": series of unequal length");
+  }
+  return record;
+}
+
+void RunRecord::declare(std::string name, std::string unit, std::string description) {
+  const auto old = std::ranges::find(series_, name, &Series::name);
+  if (old == series_.end()) {
+    const std::vector<double> unknown(rows(), std::numeric_limits<double>::quiet_NaN());
+    series_.push_back({std::move(name), std::move(unit), std::move(description), unknown});
+    return;
+  }
+  // Rows are given in the order of declaration: a series that was loaded moves behind those declared so far.
+  Series known = std::move(*old);
+  series_.erase(old);
+  known.unit = std::move(unit);
+  known.description = std::move(description);
+  series_.push_back(std::move(known));
+}
+
+void RunRecord::append(std::span<const double> row) {
+  if (row.size() != series_.size()) throw std::logic_error("a row needs one value for every series");
+  for (std::size_t i = 0; i < row.size(); ++i) series_[i].values.push_back(row[i]);
+  write();
+}
+
+void RunRecord::truncate(std::size_t rows) {
+  for (Series& one : series_) one.values.resize(std::min(rows, one.values.size()));
+}
+
+void RunRecord::describe(std::string deck, std::map<std::string, std::string> provenance) {
+  deck_ = std::move(deck);
+  provenance_ = std::move(provenance);
+}
+
+const std::vector<double>& RunRecord::values(std::string_view name) const {
+  const auto it = std::ranges::find(series_, name, &Series::name);
+  if (it == series_.end()) throw std::out_of_range("no series " + std::string(name));
+  return it->values;
+}
+
+void RunRecord::write() const {
+  const hdf::Id file = hdf::new_file();
+  hdf::write(file, "deck", deck_);
+  {
+    const hdf::Id provenance = hdf::new_group(file, "provenance");
+    for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
+    const hdf::Id series = hdf::new_group(file, "series");
+    for (const Series& one : series_) {
+      hdf::write(series, one.name, one.values, {one.values.size()});
+      hdf::attribute(series, one.name, "unit", one.unit);
+      hdf::attribute(series, one.name, "description", one.description);
+    }
+  }
+  write_whole(path_, hdf::image(file));
+}
+
+}  // namespace tanktread::output

@@ -1,0 +1,40 @@
+#include "output/summary.hpp"
+
+#include <string_view>
+
+#include "output/file.hpp"
+#include "output/text.hpp"
+
+namespace tanktread::output {
+namespace {
+
+std::string scalar(double value) { return number(value); }
+std::string scalar(long value) { return std::to_string(value); }
+std::string scalar(bool value) { return value ? "true" : "false"; }
+std::string scalar(const std::string& value) { return in_quotes(value); }
+
+template <class Value>
+std::string map(std::string_view key, const Entries<Value>& entries) {
+  std::string text = std::string(key) + ":" + (entries.empty() ? " {}\n" : "\n");
+  for (const auto& [name, value] : entries) text += "  " + in_quotes(name) + ": " + scalar(value) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string yaml(const Summary& summary) {
+  std::string text = map("final", summary.final);
+  text += summary.expect.empty() ? "expect: []\n" : "expect:\n";
+  for (const Expected& one : summary.expect) {
+    text += "  - name: " + scalar(one.name) + "\n";
+    text += "    value: " + scalar(one.value) + "\n";
+    text += "    expected: " + scalar(one.expected) + "\n";
+    text += "    error: " + scalar(one.error) + "\n";
+    text += "    passed: " + scalar(one.passed) + "\n";
+  }
+  return text + map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan);
+}
+
+void write_summary(const std::filesystem::path& path, const Summary& summary) { write_whole(path, yaml(summary)); }
+
+}  // namespace tanktread::output

@@ -1,0 +1,37 @@
+#pragma once
+// `summary.yaml`: how a run ended, for people and scripts.
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tanktread::output {
+
+/// One expected result of the deck and what became of it.
+struct Expected {
+  std::string name;
+  double value = 0;     ///< computed
+  double expected = 0;  ///< the deck's
+  double error = 0;     ///< absolute, or relative where the deck says so
+  bool passed = false;
+};
+
+template <class Value>
+using Entries = std::vector<std::pair<std::string, Value>>;  ///< in the order in which they are written
+
+struct Summary {
+  Entries<double> final;      ///< last value of every series; steady problems add drag, drag_error, ...
+  std::vector<Expected> expect;
+  Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
+  Entries<double> seconds;    ///< by phase
+  Entries<std::string> plan;  ///< what the run chose to compute, one line each
+};
+
+/// The text of `summary.yaml`: YAML 1.1, every word in quotes, every double readable to its last bit.
+std::string yaml(const Summary& summary);
+
+/// Writes it whole. Throws RunFailure when the disk refuses.
+void write_summary(const std::filesystem::path& path, const Summary& summary);
+
+}  // namespace tanktread::output
