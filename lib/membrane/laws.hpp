@@ -1,0 +1,89 @@
+#pragma once
+// Constitutive laws of a thin membrane: the stored energy per unstressed area as a function of the two surface invariants.
+//
+//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5 (see errata)
+//
+// l1, l2: principal stretches. Psi is a force per length (energy per area), and so are all of its derivatives.
+
+#include <array>
+#include <variant>
+
+#include "membrane/pack.hpp"
+
+namespace tanktread::membrane {
+
+/// Psi and its derivatives by I1 and I2. `Number` is double, a pack of doubles (pack.hpp) or a dual number.
+template <class Number>
+struct Response {
+  Number psi1, psi2;           ///< dPsi/dI1, dPsi/dI2
+  Number psi11, psi12, psi22;  ///< second derivatives
+};
+
+/// Psi = G_s/2 (I1 - 1 + 1/(I2 + 1)); strain softening. (3.3)  P-7
+struct NeoHookean {
+  double shear_modulus = 1;
+
+  template <class Number>
+  Number energy(const Number& i1, const Number& i2) const {
+    return (0.5 * shear_modulus) * (i1 - 1.0 + 1.0 / (i2 + 1.0));
+  }
+  template <class Number>
+  Response<Number> response(const Number&, const Number& i2) const {
+    const Number inverse = 1.0 / (i2 + 1.0);
+    const Number zero = 0.0 * i2;
+    return {zero + 0.5 * shear_modulus, (-0.5 * shear_modulus) * inverse * inverse, zero, zero, shear_modulus * inverse * inverse * inverse};
+  }
+  double modulus() const { return shear_modulus; }
+};
+
+/// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening, C resists a change of area. (3.3)  P-8
+struct Skalak {
+  double shear_modulus = 1;
+  double area_dilatation = 1;  ///< C
+
+  template <class Number>
+  Number energy(const Number& i1, const Number& i2) const {
+    return (0.25 * shear_modulus) * (i1 * i1 + 2.0 * i1 - 2.0 * i2 + area_dilatation * i2 * i2);
+  }
+  template <class Number>
+  Response<Number> response(const Number& i1, const Number& i2) const {
+    const Number zero = 0.0 * i2;
+    return {(0.5 * shear_modulus) * (i1 + 1.0), (0.5 * shear_modulus) * (area_dilatation * i2 - 1.0), zero + 0.5 * shear_modulus, zero,
+            zero + 0.5 * shear_modulus * area_dilatation};
+  }
+  double modulus() const { return shear_modulus; }
+};
+
+/// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
+struct SurfaceTension {
+  double tension = 1;  ///< sigma
+
+  template <class Number>
+  Number energy(const Number&, const Number& i2) const {
+    return tension * sqrt(1.0 + i2);
+  }
+  template <class Number>
+  Response<Number> response(const Number&, const Number& i2) const {
+    const Number zero = 0.0 * i2;
+    const Number inverse = 1.0 / (1.0 + i2);
+    const Number first = (0.5 * tension) * sqrt(inverse);
+    return {zero, first, zero, zero, -0.5 * first * inverse};
+  }
+  double modulus() const { return tension; }
+};
+
+/// A law of the deck's choice; visited once outside the hot loops.
+using Law = std::variant<NeoHookean, Skalak, SurfaceTension>;
+
+/// The modulus that tensions are reported over: G_s, or sigma of an interface. Force per length.
+double modulus(const Law& law);
+
+/// Psi at principal stretches l1, l2.
+double energy(const Law& law, double stretch1, double stretch2);
+
+/// Principal tensions (force per current length) at principal stretches l1, l2:
+///
+///   T_i = (2/J_s) Psi_1 l_i^2 + 2 J_s Psi_2,   J_s = l1 l2                            from (3.2)
+std::array<double, 2> principal_tensions(const Law& law, double stretch1, double stretch2);
+
+}  // namespace tanktread::membrane

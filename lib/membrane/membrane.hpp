@@ -1,0 +1,94 @@
+#pragma once
+// The elastic membrane (or fluid interface) in the weak form: stored energy, load by virtual work, tangent of the load.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "membrane/laws.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::membrane {
+
+struct Part;
+
+/// Smallest principal tension over the modulus, and the share of the current area where it is negative (`smallest_tension`,
+/// `compressed_area` of the series); at the Gauss points. A tension counts as negative below -1e-9 of the modulus.
+struct TensionSummary {
+  double smallest = 0, compressed_area = 0;
+};
+
+/// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Serial; `elements` are those that the caller is to do,
+/// ascending. What a row of a load receives is summed in an order that does not depend on how elements are split over callers.
+///
+/// Not for concurrent calls: the elements of the latest calls are kept packed for the hot loops.
+class Membrane {
+ public:
+  /// `order` Gauss points per direction at degree 3, one more for each degree beyond; 2 to 10. `space` must outlive the membrane.
+  Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4);
+
+  /// E = int Psi dGamma_0 over all or the given elements. Units force x length.
+  double energy(const Net& x) const;
+  double energy(const Net& x, std::span<const int> elements) const;
+
+  /// d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, shape (N, 3), zeroed first. (3.6)  P-31, P-32
+  /// Complete in the rows whose whole support is in `elements`. Units force.
+  void load(const Net& x, std::span<const int> elements, Net& d) const;
+  Net load(const Net& x) const;
+
+  /// Smallest principal tension over all Gauss points, and where it is compressive.
+  TensionSummary tension_summary(const Net& x) const;
+
+  /// Principal tensions, smaller first, over the modulus, at the given sites. Shape (sites, 2).
+  Eigen::MatrixX2d tensions(const Net& x, std::span<const spline::Site> sites) const;
+
+  /// The strong form t = -div_s tau at collocation sites `targets` (rows of t; others are untouched), mean over the incident elements.
+  /// Force per current area. P-3; the paper and `tests/stability` show where it fails.
+  void strong_load(const Net& x, std::span<const int> targets, Net& t) const;
+
+  const spline::Space& space() const { return *space_; }
+  const Net& unstressed() const { return unstressed_; }
+  const Law& law() const { return law_; }
+  int order() const { return order_; }
+
+ private:
+  friend class Tangent;
+  std::shared_ptr<const Part> part(std::span<const int> elements) const;
+
+  const spline::Space* space_;
+  Net unstressed_;
+  Law law_;
+  int order_;
+  std::vector<int> all_;
+  mutable std::vector<std::shared_ptr<const Part>> parts_;  // the latest first
+};
+
+/// H = d^2E/dx^2 at a configuration, symmetric, applied without being assembled.
+class Tangent {
+ public:
+  explicit Tangent(const Membrane& membrane);
+  ~Tangent();
+  Tangent(Tangent&&) noexcept;
+
+  /// Linearises at x on the given elements.
+  void update(const Net& x, std::span<const int> elements);
+
+  /// Hu = H u, shape (N, 3), zeroed first, from the elements of the last update; rows complete as in Membrane::load.
+  void apply(const Net& u, Net& hu) const;
+
+ private:
+  struct Points;
+  const Membrane* membrane_;
+  std::unique_ptr<Points> points_;
+};
+
+/// H assembled on all elements: row and column 3 A + c. For tests and for counting unstable modes.
+Eigen::SparseMatrix<double> assembled_tangent(const Membrane& membrane, const Net& x);
+
+/// The unstressed net of a membrane that is inflated to `rest`: X = centre + (x - centre)/(1 + alpha).
+Net unstressed(const Net& rest, const Vec3& centre, double alpha);
+
+}  // namespace tanktread::membrane

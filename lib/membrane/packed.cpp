@@ -1,0 +1,60 @@
+#include "membrane/packed.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "quadrature/gauss.hpp"
+#include "spline/bernstein.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+Group group_with_rule(int degree, int order) {
+  Group g;
+  g.degree = degree;
+  g.order = order;
+  const auto& rule = quadrature::gauss(order);
+  const int width = degree + 1;
+  g.value.resize(order * width);
+  g.slope.resize(order * width);
+  for (int q = 0; q < order; ++q) spline::bernstein(degree, rule.nodes[q], &g.value[q * width], &g.slope[q * width], nullptr);
+  for (int qt = 0; qt < order; ++qt)
+    for (int qs = 0; qs < order; ++qs) g.weight.push_back(rule.weights[qt] * rule.weights[qs]);
+  return g;
+}
+
+void append(Group& g, const spline::Space& space, std::span<const int> elements) {
+  Batch batch;
+  batch.used = static_cast<int>(elements.size());
+  for (int l = 0; l < lanes; ++l) batch.elements[l] = elements[std::min(l, batch.used - 1)];
+  for (int e : elements) batch.functions = std::max(batch.functions, static_cast<int>(space.elements[e].points.size()));
+  batch.points = g.points.size();
+  batch.extraction = g.extraction.size();
+  g.points.resize(batch.points + batch.functions * lanes, 0);
+  g.extraction.resize(batch.extraction + batch.functions * g.n_bernstein(), Pack{});
+  for (int l = 0; l < lanes; ++l) {
+    const spline::Element& element = space.elements[batch.elements[l]];
+    for (int a = 0; a < static_cast<int>(element.points.size()); ++a) {
+      g.points[batch.points + a * lanes + l] = element.points[a];
+      for (int b = 0; b < g.n_bernstein(); ++b) g.extraction[batch.extraction + a * g.n_bernstein() + b][l] = element.extraction(a, b);
+    }
+  }
+  g.batches.push_back(batch);
+}
+
+}  // namespace
+
+std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order) {
+  std::map<int, std::vector<int>> by_degree;
+  for (int e : elements) by_degree[space.elements[e].degree].push_back(e);
+  std::vector<Group> groups;
+  for (auto& [degree, list] : by_degree) {
+    std::sort(list.begin(), list.end());
+    Group& g = groups.emplace_back(group_with_rule(degree, order + std::max(0, degree - 3)));
+    for (std::size_t first = 0; first < list.size(); first += lanes)
+      append(g, space, std::span(list).subspan(first, std::min<std::size_t>(lanes, list.size() - first)));
+  }
+  return groups;
+}
+
+}  // namespace tanktread::membrane

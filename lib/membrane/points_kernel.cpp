@@ -1,0 +1,95 @@
+#include "membrane/points_kernel.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+Pack dot(const Pack* a, const Pack* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+struct Metric {
+  Pack g11, g12, g22;
+  explicit Metric(const Pack* a) : g11(dot(a, a)), g12(dot(a, a + 3)), g22(dot(a + 3, a + 3)) {}
+  Pack det() const { return g11 * g22 - g12 * g12; }
+};
+
+Pack first_invariant(const ReferencePoint& r, const Metric& m) { return r.g11 * m.g11 + 2.0 * r.g12 * m.g12 + r.g22 * m.g22 - 2.0; }
+Pack second_invariant(const ReferencePoint& r, const Metric& m) { return m.det() * r.inverse_det - 1.0; }
+
+template <class Use>
+void visit_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, const Use& use) {
+  std::visit(
+      [&](const auto& l) {
+        for (int q = 0; q < n; ++q) use(l, q, reference[q], Metric(a + 6 * q));
+      },
+      law);
+}
+
+}  // namespace
+
+void reference_points(int n, const Pack* a, const double* weight, ReferencePoint* reference) {
+  for (int q = 0; q < n; ++q) {
+    const Metric m(a + 6 * q);
+    const Pack inverse = 1.0 / m.det();
+    reference[q] = {m.g22 * inverse, -m.g12 * inverse, m.g11 * inverse, inverse, weight[q] * sqrt(m.det())};
+  }
+}
+
+Pack energy(const Law& law, int n, const ReferencePoint* reference, const Pack* a) {
+  Pack sum{};
+  visit_points(law, n, reference, a, [&](const auto& l, int, const ReferencePoint& r, const Metric& m) {
+    sum += r.area * l.energy(first_invariant(r, m), second_invariant(r, m));
+  });
+  return sum;
+}
+
+void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* p) {
+  visit_points(law, n, reference, a, [&](const auto& l, int q, const ReferencePoint& r, const Metric& m) {
+    const auto psi = l.response(first_invariant(r, m), second_invariant(r, m));
+    const Pack scale = 2.0 * r.area, psi2 = psi.psi2 * r.inverse_det;
+    const Pack s11 = scale * (psi.psi1 * r.g11 + psi2 * m.g22);
+    const Pack s12 = scale * (psi.psi1 * r.g12 - psi2 * m.g12);
+    const Pack s22 = scale * (psi.psi1 * r.g22 + psi2 * m.g11);
+    const Pack *a1 = a + 6 * q, *a2 = a1 + 3;
+    for (int c = 0; c < 3; ++c) {
+      p[6 * q + c] = s11 * a1[c] + s12 * a2[c];
+      p[6 * q + 3 + c] = s12 * a1[c] + s22 * a2[c];
+    }
+  });
+}
+
+// dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22); S = 2 area (Psi_1 G + Psi_2 K).
+void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent) {
+  visit_points(law, n, reference, a, [&](const auto& l, int q, const ReferencePoint& r, const Metric& m) {
+    const auto psi = l.response(first_invariant(r, m), second_invariant(r, m));
+    const Pack scale = 2.0 * r.area;
+    const Pack g[3] = {r.g11, r.g12, r.g22};
+    const Pack k[3] = {r.inverse_det * m.g22, -r.inverse_det * m.g12, r.inverse_det * m.g11};
+    const auto c = [&](int i, int j) {
+      return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
+    };
+    const Pack turn = scale * psi.psi2 * r.inverse_det;  // of the change of K itself
+    TangentPoint& t = tangent[q];
+    for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
+    t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);
+    t.s12 = scale * (psi.psi1 * g[1] + psi.psi2 * k[1]);
+    t.s22 = scale * (psi.psi1 * g[2] + psi.psi2 * k[2]);
+    t.c11 = c(0, 0), t.c12 = c(0, 1), t.c13 = c(0, 2) + 2.0 * turn;
+    t.c22 = c(1, 1) - turn, t.c23 = c(1, 2), t.c33 = c(2, 2);
+  });
+}
+
+void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p) {
+  for (int q = 0; q < n; ++q) {
+    const TangentPoint& t = tangent[q];
+    const Pack *u1 = u + 6 * q, *u2 = u1 + 3;
+    const Pack e1 = dot(t.a1, u1), e2 = dot(t.a1, u2) + dot(t.a2, u1), e3 = dot(t.a2, u2);
+    const Pack d11 = t.c11 * e1 + t.c12 * e2 + t.c13 * e3;
+    const Pack d12 = t.c12 * e1 + t.c22 * e2 + t.c23 * e3;
+    const Pack d22 = t.c13 * e1 + t.c23 * e2 + t.c33 * e3;
+    for (int c = 0; c < 3; ++c) {
+      p[6 * q + c] = t.s11 * u1[c] + t.s12 * u2[c] + d11 * t.a1[c] + d12 * t.a2[c];
+      p[6 * q + 3 + c] = t.s12 * u1[c] + t.s22 * u2[c] + d12 * t.a1[c] + d22 * t.a2[c];
+    }
+  }
+}
+
+}  // namespace tanktread::membrane

@@ -1,0 +1,39 @@
+#pragma once
+// What happens at one Gauss point of the membrane: stored energy, its gradient and its Hessian by the tangents x_,s and x_,t.
+
+#include "membrane/laws.hpp"
+#include "membrane/pack.hpp"
+
+namespace tanktread::membrane {
+
+/// The unstressed surface at a Gauss point.
+struct ReferencePoint {
+  Pack g11, g12, g22;  ///< contravariant metric G^ab
+  Pack inverse_det;    ///< 1/|G|
+  Pack area;           ///< Gauss weight times sqrt|G|; zero on idle lanes
+};
+
+/// The tangent at a Gauss point. With e = (a1.u1, a1.u2 + a2.u1, a2.u2) the change of the stress is dS = C e.
+struct TangentPoint {
+  Pack a1[3], a2[3];                  ///< tangents of the linearisation
+  Pack s11, s12, s22;                 ///< stress S^ab, weights included: p_a = S^ab a_b
+  Pack c11, c12, c13, c22, c23, c33;  ///< moduli C, weights included
+};
+
+/// The reference from its tangents, a[6 q + c] as `packed.hpp` lays them out; `weight[q]` of the Gauss rule.
+void reference_points(int n, const Pack* a, const double* weight, ReferencePoint* reference);
+
+/// int Psi over the elements of a batch, lane by lane.
+Pack energy(const Law& law, int n, const ReferencePoint* reference, const Pack* a);
+
+/// p = dE/da at every Gauss point, in the layout of a:  p_a = S^ab a_b,
+///
+///   S^ab = 2 area (Psi_1 G^ab + Psi_2 J_s^2 g^ab) = area J_s tau^ab                    (3.2), (3.6)
+void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* p);
+
+void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
+
+/// p = d^2E/da^2 u, for displacement gradients u in the layout of a.
+void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p);
+
+}  // namespace tanktread::membrane
