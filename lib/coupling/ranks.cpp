@@ -1,0 +1,63 @@
+#include "coupling/ranks.hpp"
+
+#include <algorithm>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+
+namespace tanktread::coupling {
+
+using Map = Tpetra::Map<>;
+using MultiVector = Tpetra::MultiVector<>;
+
+struct Ranks::Impl {
+  Teuchos::RCP<const Teuchos::Comm<int>> comm = Tpetra::getDefaultComm();
+  std::vector<int> rows;
+  Teuchos::RCP<Tpetra::Import<>> import;
+  Teuchos::RCP<MultiVector> own, all;
+};
+
+Ranks::Ranks() : impl_(std::make_unique<Impl>()) {}
+Ranks::~Ranks() = default;
+int Ranks::rank() const { return impl_->comm->getRank(); }
+int Ranks::size() const { return impl_->comm->getSize(); }
+
+void Ranks::own(const std::vector<int>& rows, int n) {
+  impl_->rows = rows;
+  if (size() == 1) return;
+  const std::vector<Map::global_ordinal_type> ids(rows.begin(), rows.end());
+  const auto source = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(n), ids.data(), static_cast<int>(ids.size()), 0, impl_->comm));
+  const auto target = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(n), 0, impl_->comm, Tpetra::LocallyReplicated));
+  impl_->import = Teuchos::rcp(new Tpetra::Import<>(source, target));
+  impl_->own = Teuchos::rcp(new MultiVector(source, 3));
+  impl_->all = Teuchos::rcp(new MultiVector(target, 3));
+}
+
+void Ranks::replicate(Net& net) const {
+  if (size() == 1) return;
+  for (int c = 0; c < 3; ++c) {
+    const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
+    for (size_t i = 0; i < impl_->rows.size(); ++i) column[static_cast<Teuchos::Ordinal>(i)] = net(impl_->rows[i], c);
+  }
+  impl_->all->doImport(*impl_->own, *impl_->import, Tpetra::INSERT);
+  for (int c = 0; c < 3; ++c) {
+    const auto column = impl_->all->getData(static_cast<size_t>(c));
+    for (Eigen::Index i = 0; i < net.rows(); ++i) net(i, c) = column[i];
+  }
+}
+
+bool Ranks::any(bool mine) const {
+  int said = mine, together = 0;
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, said, Teuchos::outArg(together));
+  return together != 0;
+}
+
+double Ranks::first(double mine) const {
+  Teuchos::broadcast(*impl_->comm, 0, &mine);
+  return mine;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,37 @@
+#pragma once
+// Who computes which rows, and how every rank gets all of them.
+
+#include <memory>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace tanktread::coupling {
+
+/// The ranks of the run. Control nets are replicated; work is split by their rows. A rank fills the rows of its own control points, and
+/// `replicate` gives every rank all rows by a Tpetra import, so no sum ever crosses ranks and answers do not depend on their number.
+class Ranks {
+ public:
+  Ranks();
+  ~Ranks();
+  int rank() const;
+  int size() const;
+
+  /// States the rows that this rank fills, of nets with n rows; each row has one owner. Collective.
+  void own(const std::vector<int>& rows, int n);
+
+  /// Fills in the rows of other ranks. Collective.
+  void replicate(Net& net) const;
+
+  /// Whether any rank says so (a signal, a limit). Collective.
+  bool any(bool mine) const;
+
+  /// Rank 0's value, on every rank (a clock). Collective.
+  double first(double mine) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tanktread::coupling
