@@ -18,7 +18,7 @@ struct Element {
   int degree = 3;              ///< p, the same in s and t: 3, or 4 around an extraordinary point under `g1`
   std::vector<int> points;     ///< control-point ids, m of them (16 on a regular element)
   Eigen::MatrixXd extraction;  ///< shape (m, (p + 1)^2); every column sums to 1
-  int face = 0;                ///< placement in the T-mesh: macro face, lower left corner and size
+  int face = 0;                ///< placement in the T-mesh: macro face, lower left corner and size, in sides of the face
   std::array<double, 2> origin{0, 0}, size{1, 1};
 };
 

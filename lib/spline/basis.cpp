@@ -1,0 +1,37 @@
+#include "spline/basis.hpp"
+
+#include "spline/bernstein.hpp"
+
+namespace tanktread::spline {
+
+Basis basis(const Element& element, double s, double t, int derivatives) {
+  const int p = element.degree, n = p + 1;
+  double bs[3][max_degree + 1], bt[3][max_degree + 1];
+  if (derivatives == 0) {
+    bernstein(p, s, bs[0]);
+    bernstein(p, t, bt[0]);
+  } else {
+    bernstein(p, s, bs[0], bs[1], derivatives > 1 ? bs[2] : nullptr);
+    bernstein(p, t, bt[0], bt[1], derivatives > 1 ? bt[2] : nullptr);
+  }
+  Eigen::VectorXd product(n * n);
+  auto combine = [&](int ds, int dt) -> Eigen::VectorXd {
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) product[n * j + i] = bs[ds][i] * bt[dt][j];
+    return element.extraction * product;
+  };
+  Basis b;
+  b.value = combine(0, 0);
+  if (derivatives > 0) {
+    b.s = combine(1, 0);
+    b.t = combine(0, 1);
+  }
+  if (derivatives > 1) {
+    b.ss = combine(2, 0);
+    b.st = combine(1, 1);
+    b.tt = combine(0, 2);
+  }
+  return b;
+}
+
+}  // namespace tanktread::spline

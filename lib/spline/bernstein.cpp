@@ -1,0 +1,74 @@
+#include "spline/bernstein.hpp"
+
+#include <cassert>
+
+namespace tanktread::spline {
+
+void bernstein(int p, double x, double* value) {
+  const double y = 1 - x;
+  value[0] = 1;
+  for (int k = 1; k <= p; ++k) {
+    double carried = 0;
+    for (int i = 0; i < k; ++i) {
+      const double old = value[i];
+      value[i] = carried + y * old;
+      carried = x * old;
+    }
+    value[k] = carried;
+  }
+}
+
+namespace {
+/// d/dx B_i^p = p (B_{i-1}^{p-1} - B_i^{p-1}), from the values of degree p - 1.
+void difference(int p, const double* lower, double* out) {
+  out[0] = -p * lower[0];
+  for (int i = 1; i < p; ++i) out[i] = p * (lower[i - 1] - lower[i]);
+  out[p] = p * lower[p - 1];
+}
+}  // namespace
+
+void bernstein(int p, double x, double* value, double* first, double* second) {
+  assert(p >= 1 && p <= max_degree);
+  double lower[max_degree + 1], lower_slope[max_degree + 1];
+  bernstein(p, x, value);
+  bernstein(p - 1, x, lower);
+  difference(p, lower, first);
+  if (!second) return;
+  if (p == 1) {
+    second[0] = second[1] = 0;
+    return;
+  }
+  double lowest[max_degree + 1];
+  bernstein(p - 2, x, lowest);
+  difference(p - 1, lowest, lower_slope);
+  difference(p, lower_slope, second);
+}
+
+Eigen::MatrixXd elevation(int p, int q) {
+  Eigen::MatrixXd all = Eigen::MatrixXd::Identity(p + 1, p + 1);
+  for (int r = p + 1; r <= q; ++r) {
+    Eigen::MatrixXd one = Eigen::MatrixXd::Zero(r + 1, r);
+    for (int i = 0; i <= r; ++i) {
+      if (i < r) one(i, i) = double(r - i) / r;
+      if (i > 0) one(i, i - 1) = double(i) / r;
+    }
+    all = one * all;
+  }
+  return all;
+}
+
+Eigen::MatrixXd restriction(int p, double a, double b) {
+  // Row i is the blossom at (a, ..., a, b, ..., b) with i times b.
+  Eigen::MatrixXd out(p + 1, p + 1);
+  for (int i = 0; i <= p; ++i) {
+    Eigen::MatrixXd row = Eigen::MatrixXd::Identity(p + 1, p + 1);
+    for (int r = 0; r < p; ++r) {
+      const double x = r < p - i ? a : b;
+      for (int k = 0; k < p - r; ++k) row.row(k) = (1 - x) * row.row(k) + x * row.row(k + 1);
+    }
+    out.row(i) = row.row(0);
+  }
+  return out;
+}
+
+}  // namespace tanktread::spline

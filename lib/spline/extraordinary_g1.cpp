@@ -1,0 +1,150 @@
+#include "spline/extraordinary_g1.hpp"
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "spline/bernstein.hpp"
+
+namespace tanktread::spline {
+
+namespace {
+
+using Ring = OneRing;
+using Row = Eigen::Matrix<double, 1, Ring::size>;
+constexpr int N = 3;
+
+Row unit(int point) { return Row::Unit(point); }
+
+/// A row about face 0 seen from face j.
+Row turned(const Row& r, int j) {
+  Row out = r;
+  for (int group = 1; group < Ring::size; group += N)
+    for (int i = 0; i < N; ++i) out[group + (i + j) % N] = r[group + i];
+  return out;
+}
+
+/// Bezier point next to the first corner of a face, by averaging.
+Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last) { return (4 * near + 2 * next + opposite + 2 * last) / 9; }
+
+/// The 4 x 4 control points around face 0 as (u, v) = 0 .. 3 with the face between 1 and 2; none across the extraordinary point.
+Row net(int u, int v) {
+  using R = Ring;
+  static const int id[4][4] = {{-1, R::E + 2, R::F + 1, R::B + 1},
+                               {R::E + 2, R::P, R::E + 1, R::A + 1},
+                               {R::F + 2, R::E + 0, R::F + 0, R::D + 0},
+                               {R::D + 2, R::A + 0, R::B + 0, R::C + 0}};
+  return unit(id[u][v]);
+}
+
+}  // namespace
+
+Eigen::MatrixXd averaged_bicubic() {
+  // Inner point of the face [u, u+1] x [v, v+1] of the net, next to its corner (cu, cv).
+  auto near_corner = [](int u, int v, int cu, int cv) {
+    return inner(net(u + cu, v + cv), net(u + 1 - cu, v + cv), net(u + 1 - cu, v + 1 - cv), net(u + cu, v + 1 - cv));
+  };
+  Eigen::MatrixXd out(16, Ring::size);
+  for (int v = 0; v < 4; ++v)
+    for (int u = 0; u < 4; ++u) {
+      Row sum = Row::Zero();
+      if (u == 0 && v == 0) {
+        for (int j = 0; j < N; ++j) sum += turned(near_corner(1, 1, 0, 0), j) / N;
+      } else {
+        // A Bezier point on a side or at a corner is the mean of the inner points on both or all four sides of it.
+        struct Inner {
+          int face, corner;
+        };
+        auto sides = [](int i) -> std::vector<Inner> {
+          if (i == 0) return {{0, 1}, {1, 0}};
+          if (i == 3) return {{1, 1}, {2, 0}};
+          return {{1, i - 1}};
+        };
+        const auto us = sides(u), vs = sides(v);
+        for (const auto& a : us)
+          for (const auto& b : vs) sum += near_corner(a.face, b.face, a.corner, b.corner) / double(us.size() * vs.size());
+      }
+      out.row(4 * v + u) = sum;
+    }
+  return out;
+}
+
+Eigen::MatrixXd constrained_biquartic() {
+  const double w0 = -1;  // 2 cos(2 pi / 3)
+  const Eigen::MatrixXd bicubic = averaged_bicubic();
+  Eigen::MatrixXd biquartic(25, Ring::size);
+  {
+    const Eigen::MatrixXd up = elevation(3, 4);
+    for (int v = 0; v < 5; ++v)
+      for (int u = 0; u < 5; ++u) {
+        Row sum = Row::Zero();
+        for (int j = 0; j < 4; ++j)
+          for (int i = 0; i < 4; ++i) sum += up(v, j) * up(u, i) * bicubic.row(4 * j + i);
+        biquartic.row(5 * v + u) = sum;
+      }
+  }
+
+  // Unknowns: changes of c1 and of the inner points (v, u) = 11, 12, 21, 22, of each of the three faces and spokes.
+  enum { c1, b11, b12, b21, b22, kinds };
+  auto unknown = [](int kind, int j) { return kinds * ((j + N) % N) + kind; };
+  constexpr int unknowns = kinds * N;
+
+  std::array<Row, N> s0, s1, s2, s3;  // the spoke cubics
+  auto old = [&](int v, int u, int j) { return turned(biquartic.row(5 * v + u), j % N); };
+  for (int j = 0; j < N; ++j) {
+    s0[j] = turned(bicubic.row(0), j);
+    s1[j] = turned(bicubic.row(1), j);
+    s2[j] = turned(bicubic.row(2), j);
+    s3[j] = turned(bicubic.row(3), j);
+  }
+
+  // G1 conditions of the spokes, on the changed values.
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g(3 * N, Ring::size);
+  for (int j = 0; j < N; ++j) {
+    const int left = (j + N - 1) % N, right = (j + 1) % N;
+    G(3 * j, unknown(c1, left)) += 1;
+    G(3 * j, unknown(c1, right)) += 1;
+    G(3 * j, unknown(c1, j)) += -w0;
+    g.row(3 * j) = (2 - w0) * s0[j] - (s1[left] + s1[right] - w0 * s1[j]);
+
+    G(3 * j + 1, unknown(b11, j)) += 1;
+    G(3 * j + 1, unknown(b11, left)) += 1;
+    G(3 * j + 1, unknown(c1, j)) += -1.5 + 3 * w0 / 8;
+    g.row(3 * j + 1) = (s0[j] + 3 * s1[j]) / 2 + 3 * w0 / 8 * (s2[j] - s1[j]) - old(1, 1, j) - old(1, 1, left);
+
+    G(3 * j + 2, unknown(b12, j)) += 1;
+    G(3 * j + 2, unknown(b21, left)) += 1;
+    G(3 * j + 2, unknown(c1, j)) += -1;
+    g.row(3 * j + 2) = s1[j] + s2[j] + w0 / 8 * (s3[j] - s2[j]) - old(1, 2, j) - old(2, 1, left);
+  }
+
+  // The change on the 5 x 5 grid of face j as rows over the unknowns.
+  auto change = [&](int v, int u, int j) -> Eigen::RowVectorXd {
+    Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
+    if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;
+    if (u == 0 && (v == 1 || v == 2)) d[unknown(c1, j + 1)] = v == 1 ? 0.75 : 0.5;
+    if (u >= 1 && u <= 2 && v >= 1 && v <= 2) d[unknown(v == 1 ? (u == 1 ? b11 : b12) : (u == 1 ? b21 : b22), j)] = 1;
+    return d;
+  };
+  Eigen::MatrixXd L(N * 40, unknowns);
+  int row = 0;
+  for (int j = 0; j < N; ++j)
+    for (int a = 0; a < 5; ++a)
+      for (int b = 0; b < 4; ++b) {
+        L.row(row++) = change(a, b + 1, j) - change(a, b, j);
+        L.row(row++) = change(b + 1, a, j) - change(b, a, j);
+      }
+
+  // min |L x| subject to G x = g: a particular solution plus the kernel of G.
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(G);
+  const Eigen::MatrixXd kernel = lu.kernel(), particular = lu.solve(g);
+  const Eigen::MatrixXd LZ = L * kernel;
+  const Eigen::MatrixXd x = particular - kernel * (LZ.transpose() * LZ).ldlt().solve(LZ.transpose() * (L * particular));
+
+  for (int v = 0; v < 5; ++v)
+    for (int u = 0; u < 5; ++u) biquartic.row(5 * v + u) += change(v, u, 0) * x;
+  return biquartic;
+}
+
+}  // namespace tanktread::spline

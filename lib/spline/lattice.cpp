@@ -1,0 +1,137 @@
+#include "spline/lattice.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <unordered_map>
+
+#include <Eigen/Geometry>
+
+namespace tanktread::spline {
+
+namespace {
+
+/// Slots, cells and ways back of every vertex from the corners of the cells. A vertex starts its slots in its cell of lowest number.
+void connect(Lattice& l) {
+  const int n = int(l.position.size());
+  l.neighbour.assign(n, {-1, -1, -1, -1});
+  l.back.assign(n, {0, 0, 0, 0});
+  l.cell.assign(n, {-1, -1, -1, -1});
+  l.corner.assign(n, {0, 0, 0, 0});
+  l.slot.resize(l.corners.size());
+
+  // Incident cells of a vertex, in the order of their numbers.
+  std::vector<std::array<int, 4>> around(n, {-1, -1, -1, -1});
+  std::vector<std::array<std::uint8_t, 4>> which(n);
+  for (int c = 0; c < l.cells(); ++c)
+    for (int k = 0; k < 4; ++k) {
+      const int v = l.corners[c][k];
+      int i = 0;
+      while (around[v][i] >= 0) ++i;
+      around[v][i] = c;
+      which[v][i] = std::uint8_t(k);
+    }
+
+  for (int v = 0; v < n; ++v) {
+    int i = 0;
+    for (int s = 0; s < 4; ++s) {
+      const int c = around[v][i], k = which[v][i];
+      l.neighbour[v][s] = l.corners[c][(k + 1) & 3];
+      l.cell[v][s] = c;
+      l.corner[v][s] = std::uint8_t(k);
+      l.slot[c][k] = std::uint8_t(s);
+      const int last = l.corners[c][(k + 3) & 3];  // the next slot points there
+      if (last == l.neighbour[v][0]) break;
+      i = 0;
+      while (l.corners[around[v][i]][(which[v][i] + 1) & 3] != last) ++i;
+    }
+  }
+  for (int v = 0; v < n; ++v) {
+    for (int s = 0; s < 4 && l.neighbour[v][s] >= 0; ++s) {
+      const auto& there = l.neighbour[l.neighbour[v][s]];
+      l.back[v][s] = std::uint8_t(std::find(there.begin(), there.end(), v) - there.begin());
+    }
+    if (l.neighbour[v][3] < 0) l.extraordinary.push_back(v);
+  }
+}
+
+Walker cross(const Lattice& l, Walker w, int edge, int& entered) {
+  const int v = l.corners[w.cell][edge], s = (l.slot[w.cell][edge] + l.valence(v) - 1) % l.valence(v);
+  entered = (l.corner[v][s] + 3) & 3;
+  return {l.cell[v][s], w.turn};
+}
+
+/// Cells left before the side of the macro face, going in direction `turn`.
+int room(const Lattice& l, int cell, int turn) {
+  switch (turn) {
+    case 0: return l.units - 1 - l.x_of(cell);
+    case 1: return l.units - 1 - l.y_of(cell);
+    case 2: return l.x_of(cell);
+    default: return l.y_of(cell);
+  }
+}
+
+/// n cells in direction w.turn + offset.
+Walker move(const Lattice& l, Walker w, int n, int offset) {
+  const int stride[4] = {1, l.units, -1, -l.units};
+  while (n > 0) {
+    const int d = (w.turn + offset) & 3, inside = std::min(n, room(l, w.cell, d));
+    w.cell += inside * stride[d];
+    n -= inside;
+    if (n == 0) break;
+    int entered;
+    w = cross(l, w, (d + 1) & 3, entered);
+    w.turn = (entered + 1 - offset) & 3;
+    --n;
+  }
+  return w;
+}
+
+}  // namespace
+
+Walker forward(const Lattice& l, Walker w, int n) { return move(l, w, n, 0); }
+Walker left(const Lattice& l, Walker w, int n) { return move(l, w, n, 1); }
+
+Lattice cube_lattice(int elements_per_side, int levels) {
+  using Int3 = Eigen::Vector3i;
+  // Directions of x and y of each face; their cross product points out.
+  const Int3 X(1, 0, 0), Y(0, 1, 0), Z(0, 0, 1);
+  const Int3 axis[6][2] = {{Y, Z}, {Z, Y}, {Z, X}, {X, Z}, {X, Y}, {Y, X}};
+
+  Lattice l;
+  l.faces = 6;
+  l.base = 1 << levels;
+  const int R = l.units = elements_per_side * l.base;
+  l.corners.resize(std::size_t(6) * R * R);
+  l.position.reserve(std::size_t(6) * R * R + 2);
+
+  std::unordered_map<long long, int> on_a_side;  // vertices that several faces share
+  std::vector<int> id(std::size_t(R + 1) * (R + 1));
+  for (int f = 0; f < 6; ++f) {
+    const Int3 x = axis[f][0], y = axis[f][1], out = x.cross(y);
+    for (int j = 0; j <= R; ++j)
+      for (int i = 0; i <= R; ++i) {
+        const Int3 p = R * out + (2 * i - R) * x + (2 * j - R) * y;
+        auto fresh = [&] {
+          l.position.push_back(p.cast<double>() / R);
+          return int(l.position.size()) - 1;
+        };
+        int& v = id[std::size_t(j) * (R + 1) + i];
+        if (i > 0 && i < R && j > 0 && j < R) {
+          v = fresh();
+          continue;
+        }
+        const long long m = 2LL * R + 1, key = ((p[0] + R) * m + (p[1] + R)) * m + (p[2] + R);
+        const auto found = on_a_side.find(key);
+        v = found != on_a_side.end() ? found->second : (on_a_side[key] = fresh());
+      }
+    for (int j = 0; j < R; ++j)
+      for (int i = 0; i < R; ++i) {
+        const int a = j * (R + 1) + i, b = a + R + 1;
+        l.corners[l.cell_at(f, i, j)] = {id[a], id[a + 1], id[b + 1], id[b]};
+      }
+  }
+  connect(l);
+  return l;
+}
+
+}  // namespace tanktread::spline
