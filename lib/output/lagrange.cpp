@@ -8,27 +8,19 @@
 
 #include <Eigen/Geometry>
 
+#include "spline/bernstein.hpp"
+
 namespace tanktread::output {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 
-RowVectorXd bernstein(int p, double s) {
-  RowVectorXd b = RowVectorXd::Zero(p + 1);
-  b[0] = 1;
-  for (int q = 1; q <= p; ++q)
-    for (int i = q; i >= 0; --i) b[i] = (1 - s) * b[i] + (i > 0 ? s * b[i - 1] : 0);
-  return b;
-}
-
-RowVectorXd bernstein_slope(int p, double s) {
-  const RowVectorXd lower = bernstein(p - 1, s);
-  RowVectorXd d = RowVectorXd::Zero(p + 1);
-  d.head(p) -= p * lower;
-  d.tail(p) += p * lower;
-  return d;
-}
+/// Bernstein polynomials of one direction at a place, and their slopes.
+struct Line {
+  RowVectorXd values, slopes;
+  Line(int p, double s) : values(p + 1), slopes(p + 1) { spline::bernstein(p, s, values.data(), slopes.data(), nullptr); }
+};
 
 /// Tensor product of a row in s and one in t, s fastest.
 RowVectorXd tensor(const RowVectorXd& s, const RowVectorXd& t) {
@@ -65,10 +57,10 @@ Table table(int p, double inset) {
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto [i, j] = result.order[static_cast<std::size_t>(k)];
     const double s = double(i) / p, t = double(j) / p;
-    result.values.row(k) = tensor(bernstein(p, s), bernstein(p, t));
-    const double si = s + inset * (0.5 - s), ti = t + inset * (0.5 - t);
-    result.s_slopes.row(k) = tensor(bernstein_slope(p, si), bernstein(p, ti));
-    result.t_slopes.row(k) = tensor(bernstein(p, si), bernstein_slope(p, ti));
+    result.values.row(k) = tensor(Line(p, s).values, Line(p, t).values);
+    const Line in_s(p, s + inset * (0.5 - s)), in_t(p, t + inset * (0.5 - t));
+    result.s_slopes.row(k) = tensor(in_s.slopes, in_t.values);
+    result.t_slopes.row(k) = tensor(in_s.values, in_t.slopes);
   }
   return result;
 }
@@ -93,7 +85,8 @@ MatrixXd bezier(const spline::Element& element, const Field& control_values) {
   return element.extraction.transpose() * control_values(element.points, Eigen::all);
 }
 
-/// Number of the first of all places that coincide with each place. They are swept along a direction that no symmetry of a mesh has, so that few come near one another.
+/// For each place, the first of all places that coincide with it. They are swept along a direction that no symmetry of a mesh has, so
+/// that few come near one another.
 std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;
