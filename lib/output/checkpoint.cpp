@@ -18,9 +18,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr std::uint8_t kLagrangeQuadrilateral = 70;  // VTK_LAGRANGE_QUADRILATERAL
 
-hdf::Shape shape_of(const Eigen::MatrixXd& matrix) {
-  return {static_cast<hsize_t>(matrix.rows()), static_cast<hsize_t>(matrix.cols())};
-}
+hdf::Shape shape_of(const Eigen::MatrixXd& matrix) { return {static_cast<hsize_t>(matrix.rows()), static_cast<hsize_t>(matrix.cols())}; }
 
 void write_matrix(hid_t parent, const std::string& name, const Eigen::MatrixXd& matrix, const hdf::Shape& shape) {
   const RowMajor rows = matrix;

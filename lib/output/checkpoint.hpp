@@ -31,8 +31,8 @@ struct Field {
 /// The surface as ParaView draws it at one moment.
 struct Picture {
   const LagrangeMesh& mesh;
-  Eigen::MatrixXd points;          ///< (n_nodes, 3), from `nodal_values`
-  std::vector<Field> point_fields; ///< `Normals` among them gives smooth shading
+  Eigen::MatrixXd points;           ///< (n_nodes, 3), from `nodal_values`
+  std::vector<Field> point_fields;  ///< `Normals` among them gives smooth shading
   std::vector<Field> cell_fields;
 };
 

@@ -35,9 +35,7 @@ void write_any(hid_t parent, const std::string& name, hid_t type, const Shape& s
   check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write " + name);
 }
 
-Id dataset(hid_t parent, const std::string& name) {
-  return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "no dataset " + name};
-}
+Id dataset(hid_t parent, const std::string& name) { return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "no dataset " + name}; }
 
 void trim(std::string& text) { text.erase(text.find_last_not_of('\0') + 1); }
 
@@ -76,9 +74,7 @@ Id new_group(hid_t parent, const std::string& name) {
   return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "cannot create " + name};
 }
 
-Id group(hid_t parent, const std::string& name) {
-  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "no group " + name};
-}
+Id group(hid_t parent, const std::string& name) { return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "no group " + name}; }
 
 bool has(hid_t parent, const std::string& name) { return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0; }
 
@@ -101,9 +97,7 @@ void write(hid_t parent, const std::string& name, std::span<const std::int64_t> 
 void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values) {
   write_any(parent, name, H5T_NATIVE_UINT8, {values.size()}, values.data());
 }
-void write(hid_t parent, const std::string& name, const std::string& text) {
-  write_any(parent, name, text_type(text), {}, text.c_str());
-}
+void write(hid_t parent, const std::string& name, const std::string& text) { write_any(parent, name, text_type(text), {}, text.c_str()); }
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape) {
   const Id set = dataset(parent, name);
@@ -135,8 +129,8 @@ void attribute(hid_t parent, const std::string& name, const std::string& key, co
 
 void attribute(hid_t parent, const std::string& name, const std::string& key, std::span<const std::int64_t> values) {
   const Id space = space_of({values.size()});
-  const Id id(H5Acreate_by_name(parent, name.c_str(), key.c_str(), H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-              "cannot create " + key);
+  const Id id(H5Acreate_by_name(parent, name.c_str(), key.c_str(), H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+              H5Aclose, "cannot create " + key);
   check(H5Awrite(id, H5T_NATIVE_INT64, values.data()), "cannot write " + key);
 }
 
@@ -155,7 +149,8 @@ std::vector<std::string> attribute_names(hid_t parent, const std::string& name) 
     static_cast<std::vector<std::string>*>(list)->emplace_back(key);
     return 0;
   };
-  check(H5Aiterate_by_name(parent, name.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &result, H5P_DEFAULT), "cannot list attributes");
+  check(H5Aiterate_by_name(parent, name.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &result, H5P_DEFAULT),
+        "cannot list attributes");
   return result;
 }
 

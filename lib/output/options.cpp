@@ -5,8 +5,10 @@
 namespace tanktread::output {
 
 void Options::declare(deck::Section& section) {
-  section.key("interval", interval, deck::positive(), "time", "simulated time between snapshots; if not given, a twentieth of the final time");
-  section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds", "the run stops with a checkpoint after this time; if not given, never");
+  section.key("interval", interval, deck::positive(), "time",
+              "simulated time between snapshots; if not given, a twentieth of the final time");
+  section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
+              "the run stops with a checkpoint after this time; if not given, never");
 }
 
 }  // namespace tanktread::output

@@ -39,14 +39,19 @@ std::string progress_line(const Moment& moment, double begin, double end, double
     const auto filled = static_cast<std::size_t>(done * kWidth);
     line = "[" + std::string(filled, '#') + std::string(kWidth - filled, '-') + "] ";
   }
-  line += format("%3.0f %%  t %.4g/%.4g  step %d  %d iteration%s  D %.5f", std::floor(100 * done), moment.time, end, moment.step, moment.iterations,
-                 moment.iterations == 1 ? "" : "s", moment.deformation);
+  line += format("%3.0f %%  t %.4g/%.4g  step %d  %d iteration%s  D %.5f", std::floor(100 * done), moment.time, end, moment.step,
+                 moment.iterations, moment.iterations == 1 ? "" : "s", moment.deformation);
   if (done > 0 && done < 1) line += "  " + duration(seconds * (1 - done) / done) + " left";
   return line;
 }
 
 Progress::Progress(double begin, double end, bool quiet, std::FILE* out)
-    : begin_(begin), end_(end), manner_(quiet ? Manner::silent : isatty(fileno(out)) ? Manner::bar : Manner::lines), out_(out) {
+    : begin_(begin),
+      end_(end),
+      manner_(quiet                 ? Manner::silent
+              : isatty(fileno(out)) ? Manner::bar
+                                    : Manner::lines),
+      out_(out) {
   printed_.time = begin;
 }
 
@@ -97,7 +102,8 @@ std::string closing_table(const Phases& phases, const Entries<long>& counts, con
 
   std::string text = format("  %-*s %10s %6s %10s\n", column, "phase", "seconds", "share", "calls");
   for (const auto& phase : phases.all())
-    text += format("  %-*s %10.3f %4.0f %% %10ld\n", column, phase.name.c_str(), phase.seconds, total > 0 ? 100 * phase.seconds / total : 0, phase.calls);
+    text += format("  %-*s %10.3f %4.0f %% %10ld\n", column, phase.name.c_str(), phase.seconds, total > 0 ? 100 * phase.seconds / total : 0,
+                   phase.calls);
   text += format("  %-*s %10.3f\n", column, "total", total);
   for (const auto& [name, count] : counts) text += format("  %-*s %10ld\n", column, name.c_str(), count);
   return text + "  results in " + results.string() + "\n";

@@ -13,7 +13,7 @@ namespace tanktread::output {
 
 /// One finished step.
 struct Moment {
-  double time = 0;         ///< simulated
+  double time = 0;  ///< simulated
   int step = 0;
   int iterations = 0;      ///< of the step's solver
   double deformation = 0;  ///< taylor_inertia
