@@ -1,5 +1,5 @@
 #pragma once
-// Elements packed eight by eight for the hot loops of the membrane: extraction matrices, control-point ids and Gauss tables side by side.
+// Elements packed as many as a register has lanes, for the hot loops of the membrane: extraction matrices, control-point ids and Gauss tables side by side.
 
 #include <array>
 #include <span>
@@ -15,7 +15,7 @@ constexpr int max_degree = 8;      ///< of a Bezier element
 constexpr int max_order = 12;      ///< Gauss points per direction
 constexpr int max_functions = 64;  ///< functions that live on one element
 
-/// Up to eight elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
+/// Up to `lanes` elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
 struct Batch {
   int used = 0;                       ///< lanes that hold an element of their own
   int functions = 0;                  ///< m, the largest of its elements; missing functions have zero extraction

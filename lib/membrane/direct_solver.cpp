@@ -1,0 +1,161 @@
+#include "membrane/direct_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <Amesos2.hpp>
+#include <Kokkos_Core.hpp>
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Teuchos_ParameterList.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+
+#include "base/errors.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+using Map = Tpetra::Map<>;
+using Matrix = Tpetra::CrsMatrix<>;
+using MultiVector = Tpetra::MultiVector<>;
+using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+constexpr double residual_allowed = 1e-8;
+
+std::string solvers_of_this_build() {
+  std::string names;
+  for (const char* name : {"KLU2", "Tacho", "Basker", "ShyLUBasker", "SuperLU", "SuperLU_MT", "SuperLU_DIST", "MUMPS", "UMFPACK", "Cholmod",
+                           "PARDISO_MKL", "LAPACK", "STRUMPACK"})
+    if (Amesos2::query(name)) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
+}
+
+// Tpetra needs Kokkos; a program that has not started it (a serial test) gets it here.
+void start_kokkos() {
+  if (!Kokkos::is_initialized()) Kokkos::initialize();
+}
+
+std::string last_line(const std::string& text) {
+  const auto end = text.find_last_not_of(" \n");
+  if (end == std::string::npos) return text;
+  const auto before = text.find_last_of('\n', end);
+  return text.substr(before == std::string::npos ? 0 : before + 1, end - (before == std::string::npos ? 0 : before + 1) + 1);
+}
+
+bool same_pattern(const RowMajor& a, const RowMajor& b) {
+  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() && std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.rows() + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
+}
+
+}  // namespace
+
+struct DirectSolver::Impl {
+  DirectSolverOptions options;
+  RowMajor a;
+  Teuchos::RCP<const Map> map;
+  Teuchos::RCP<Matrix> matrix;
+  Teuchos::RCP<MultiVector> x, b;
+  Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
+
+  // Everything that depends on the pattern only.
+  void analyse() {
+    const auto n = static_cast<std::size_t>(a.rows());
+    map = Teuchos::rcp(new Map(n, n, 0, Teuchos::rcp(new Teuchos::SerialComm<int>)));
+    Teuchos::ArrayRCP<std::size_t> starts(n + 1);
+    Teuchos::ArrayRCP<int> columns(a.nonZeros());
+    std::copy_n(a.outerIndexPtr(), n + 1, starts.begin());
+    std::copy_n(a.innerIndexPtr(), a.nonZeros(), columns.begin());
+    const Teuchos::ArrayRCP<double> values(a.nonZeros());
+    matrix = Teuchos::rcp(new Matrix(map, map, starts, columns, values));
+    refill();
+    x = Teuchos::rcp(new MultiVector(map, 3));
+    b = Teuchos::rcp(new MultiVector(map, 3));
+    solver = Amesos2::create<Matrix, MultiVector>(options.name, matrix, x, b);
+    const auto list = Teuchos::rcp(options.amesos2 ? new Teuchos::ParameterList(*options.amesos2) : new Teuchos::ParameterList);
+    list->setName("Amesos2");
+    try {
+      solver->setParameters(list);
+    } catch (const std::exception& error) {
+      throw UserError("Solvers/Amesos2: Amesos2's " + options.name + " does not take this list: " + last_line(error.what()));
+    }
+    solver->symbolicFactorization();
+  }
+
+  void refill() {
+    matrix->resumeFill();
+    for (int row = 0; row < a.rows(); ++row) {
+      const int first = a.outerIndexPtr()[row], n = a.outerIndexPtr()[row + 1] - first;
+      matrix->replaceLocalValues(row, n, a.valuePtr() + first, a.innerIndexPtr() + first);
+    }
+    matrix->fillComplete(map, map);
+  }
+
+  // Solves for a net without small or repeated entries and looks at what is left.
+  double residual(const DirectSolver& self) const {
+    Net known(a.rows(), 3);
+    for (int i = 0; i < known.size(); ++i) known.data()[i] = 1 + 0.5 * std::sin(1.7 * i);
+    const Net right = a * known;
+    const Net found = self.solve(right);
+    return (a * found - right).norm() / right.norm();
+  }
+};
+
+DirectSolver::DirectSolver(const DirectSolverOptions& options) : impl_(std::make_unique<Impl>()) {
+  start_kokkos();
+  impl_->options = options;
+  if (!Amesos2::query(options.name))
+    throw UserError("Solvers/direct solver: this build's Amesos2 has no solver '" + options.name + "'; it has " + solvers_of_this_build() + ".");
+}
+DirectSolver::~DirectSolver() = default;
+DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
+DirectSolver& DirectSolver::operator=(DirectSolver&&) noexcept = default;
+
+void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
+  RowMajor rows = a;
+  rows.makeCompressed();
+  const bool known = impl_->solver != Teuchos::null && same_pattern(rows, impl_->a);
+  impl_->a = std::move(rows);
+  std::string trouble;
+  try {
+    if (known)
+      impl_->refill();
+    else
+      impl_->analyse();
+    impl_->solver->numericFactorization();
+    const double left = impl_->residual(*this);
+    if (!(left < residual_allowed)) trouble = "it leaves a relative residual of " + std::to_string(left);
+  } catch (const UserError&) {
+    throw;
+  } catch (const std::exception& error) {
+    trouble = last_line(error.what());
+  }
+  if (trouble.empty()) return;
+  impl_->solver = Teuchos::null;
+  if (impl_->options.name != "KLU2")
+    throw UserError("Solvers/direct solver: " + impl_->options.name + " does not suit a sparse system of this run (" + trouble + "); KLU2 does.");
+  throw RunFailure("A sparse system of " + std::to_string(a.rows()) + " unknowns could not be factored by KLU2: " + trouble + ".");
+}
+
+void DirectSolver::solve(const Net& b, Net& x) const {
+  const auto n = impl_->a.rows();
+  for (int c = 0; c < 3; ++c) {
+    const auto column = impl_->b->getDataNonConst(c);
+    for (Eigen::Index i = 0; i < n; ++i) column[i] = b(i, c);
+  }
+  impl_->solver->solve();
+  x.resize(n, 3);
+  for (int c = 0; c < 3; ++c) {
+    const auto column = impl_->x->getData(c);
+    for (Eigen::Index i = 0; i < n; ++i) x(i, c) = column[i];
+  }
+}
+
+Net DirectSolver::solve(const Net& b) const {
+  Net x;
+  solve(b, x);
+  return x;
+}
+
+}  // namespace tanktread::membrane

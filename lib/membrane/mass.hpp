@@ -1,0 +1,37 @@
+#pragma once
+// The mass matrix of a configuration.
+
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "membrane/packed.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::membrane {
+
+/// S_AB = int N_A N_B dGamma, shape (N, N), symmetric positive definite; left-hand side of (3.6) on the current surface and of (3.7),
+/// there called M0, on the unstressed one. The pattern is made once, the entries as often as the surface moves. Units area.
+class MassMatrix {
+ public:
+  /// `order` Gauss points per direction at degree 3, one more for each degree beyond. `space` is needed only here.
+  explicit MassMatrix(const spline::Space& space, int order = 4);
+
+  /// The matrix of the surface x; valid until the next update.
+  const Eigen::SparseMatrix<double>& update(const Net& x);
+
+ private:
+  std::vector<Group> groups_;
+  std::vector<std::vector<Pack>> values_;  // N_A at Gauss points, a group; [(batch m + A) n_gauss + q]
+  std::vector<std::vector<int>> slots_;    // of (A, B <= A) and of (B, A) among the entries, pair after pair; [(batch pairs + pair) lanes + lane]
+  Eigen::SparseMatrix<double> matrix_;
+};
+
+/// entries[pair] = sum_q weight_q N_A N_B for all A, B <= A in the order (0,0), (1,0), (1,1), (2,0), …; n: Gauss points.
+void mass_entries(int functions, int n, const Pack* values, const Pack* weight, Pack* entries);
+
+/// Gauss weights times J = |x_,s x x_,t|, from tangents in the layout of packed.hpp.
+void area_weights(int n, const Pack* a, const double* weight, Pack* area);
+
+}  // namespace tanktread::membrane
