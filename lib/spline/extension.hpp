@@ -12,9 +12,7 @@ struct TJunction {
 std::vector<TJunction> t_junctions(const TMesh& mesh);
 
 /// Whether a ray that arrives (its slot goes on) meets an edge perpendicular to it; a vertex on either side counts.
-inline bool touches(const TMesh& mesh, Ray r) {
-  return mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10);
-}
+inline bool touches(const TMesh& mesh, Ray r) { return mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10); }
 
 /// The unit edges (vertex, slot) of an extension: from the T-junction through two bays in its missing direction, up to the second
 /// perpendicular touch; or through one bay the other way.

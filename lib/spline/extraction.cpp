@@ -23,10 +23,14 @@ int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.w
 /// Cells from `cell` to the near side (behind) of its tile, looking in direction `turn`.
 int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   switch (turn & 3) {
-    case 0: return l.x_of(cell) - r.x;
-    case 1: return l.y_of(cell) - r.y;
-    case 2: return r.x + r.width - 1 - l.x_of(cell);
-    default: return r.y + r.height - 1 - l.y_of(cell);
+    case 0:
+      return l.x_of(cell) - r.x;
+    case 1:
+      return l.y_of(cell) - r.y;
+    case 2:
+      return r.x + r.width - 1 - l.x_of(cell);
+    default:
+      return r.y + r.height - 1 - l.y_of(cell);
   }
 }
 
@@ -46,8 +50,8 @@ struct Builder {
   const TMesh& mesh;
   const Lattice& l;
   Tiling tiling;
-  std::vector<int> anchor, point;    // lattice vertex of a control point; the inverse
-  std::vector<int> irregular;        // of a tile: its corner at an extraordinary point, or -1
+  std::vector<int> anchor, point;  // lattice vertex of a control point; the inverse
+  std::vector<int> irregular;      // of a tile: its corner at an extraordinary point, or -1
   std::vector<Contribution> entries;
 
   explicit Builder(const TMesh& m) : mesh(m), l(*m.lattice), tiling(bezier_mesh(m)), anchor(anchors(m)), point(control_points(m)) {

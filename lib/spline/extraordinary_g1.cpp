@@ -26,7 +26,9 @@ Row turned(const Row& r, int j) {
 }
 
 /// Bezier point next to the first corner of a face, by averaging.
-Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last) { return (4 * near + 2 * next + opposite + 2 * last) / 9; }
+Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last) {
+  return (4 * near + 2 * next + opposite + 2 * last) / 9;
+}
 
 /// The 4 x 4 control points around face 0 as (u, v) = 0 .. 3 with the face between 1 and 2; none across the extraordinary point.
 Row net(int u, int v) {

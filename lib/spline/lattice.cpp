@@ -63,10 +63,14 @@ Walker cross(const Lattice& l, Walker w, int edge, int& entered) {
 /// Cells left before the side of the macro face, going in direction `turn`.
 int room(const Lattice& l, int cell, int turn) {
   switch (turn) {
-    case 0: return l.units - 1 - l.x_of(cell);
-    case 1: return l.units - 1 - l.y_of(cell);
-    case 2: return l.x_of(cell);
-    default: return l.y_of(cell);
+    case 0:
+      return l.units - 1 - l.x_of(cell);
+    case 1:
+      return l.units - 1 - l.y_of(cell);
+    case 2:
+      return l.x_of(cell);
+    default:
+      return l.y_of(cell);
   }
 }
 

@@ -9,22 +9,22 @@
 
 namespace tanktread::spline {
 
-/// Unit quadrilaterals on a few square macro faces, glued along their sides into one closed surface. All of it is fixed; a T-mesh says which
-/// of its edges are there. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary point);
-/// the parity of a slot is its axis. Nothing here knows of rotations between faces: straight on, left and right are slots.
+/// Unit quadrilaterals on a few square macro faces, glued along their sides into one closed surface. All of it is fixed; a T-mesh says
+/// which of its edges are there. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary
+/// point); the parity of a slot is its axis. Nothing here knows of rotations between faces: straight on, left and right are slots.
 struct Lattice {
   int faces = 0;
-  int units = 0;           ///< cells along a side of a macro face
-  int base = 0;            ///< of these, cells along a side of one base element (a power of two)
+  int units = 0;               ///< cells along a side of a macro face
+  int base = 0;                ///< of these, cells along a side of one base element (a power of two)
   std::vector<Vec3> position;  ///< of a vertex on the cube [-1, 1]^3
 
-  std::vector<std::array<int, 4>> neighbour;       ///< vertex at the other end of slot k; -1: none
-  std::vector<std::array<std::uint8_t, 4>> back;   ///< slot there that points back
-  std::vector<std::array<int, 4>> cell;            ///< cell between slots k and k + 1; -1: none
-  std::vector<std::array<std::uint8_t, 4>> corner; ///< which corner of that cell this vertex is
+  std::vector<std::array<int, 4>> neighbour;        ///< vertex at the other end of slot k; -1: none
+  std::vector<std::array<std::uint8_t, 4>> back;    ///< slot there that points back
+  std::vector<std::array<int, 4>> cell;             ///< cell between slots k and k + 1; -1: none
+  std::vector<std::array<std::uint8_t, 4>> corner;  ///< which corner of that cell this vertex is
 
-  std::vector<std::array<int, 4>> corners;       ///< of a cell: vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1), outward orientation
-  std::vector<std::array<std::uint8_t, 4>> slot; ///< at corner k, the slot that points to corner k + 1
+  std::vector<std::array<int, 4>> corners;        ///< of a cell: vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1), outward orientation
+  std::vector<std::array<std::uint8_t, 4>> slot;  ///< at corner k, the slot that points to corner k + 1
 
   std::vector<int> extraordinary;  ///< vertices of valence 3
 

@@ -23,7 +23,8 @@ TMesh cube(int elements_per_side, int levels = 0);
 /// Whether a control point sits at the vertex: edges on both axes (T-junctions and extraordinary points included).
 bool is_anchor(const TMesh& mesh, int vertex);
 
-/// Lattice vertex of every control point, ascending; 6 n^2 + 2 of them on the uniform cube. Control point i of space(mesh, ...) is anchors(mesh)[i].
+/// Lattice vertex of every control point, ascending; 6 n^2 + 2 of them on the uniform cube. Control point i of space(mesh, ...) is
+/// anchors(mesh)[i].
 std::vector<int> anchors(const TMesh& mesh);
 
 /// The inverse: control point at a lattice vertex, or -1.
@@ -45,7 +46,8 @@ struct Tiling {
 /// Elements of the T-mesh (the ones that are marked for refinement).
 Tiling elements(const TMesh& mesh);
 
-/// Elements of the Bezier mesh: the T-mesh with the face extensions of its T-junctions; on each of them every spline function is one bicubic.
+/// Elements of the Bezier mesh: the T-mesh with the face extensions of its T-junctions; on each of them every spline function is one
+/// bicubic.
 Tiling bezier_mesh(const TMesh& mesh);
 
 }  // namespace tanktread::spline
