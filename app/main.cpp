@@ -1,0 +1,127 @@
+// tanktread [options] deck.yaml [overlay.yaml ...]: reads the command line and the decks, and runs the scene they describe.
+
+#include <filesystem>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+#include <mpi.h>
+
+#include "base/errors.hpp"
+#include "deck/document.hpp"
+#include "scene.hpp"
+#include "simulation.hpp"
+
+#ifndef TANKTREAD_VERSION
+#define TANKTREAD_VERSION "0.1.0"
+#endif
+
+namespace {
+
+using namespace tanktread;
+
+enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };
+
+struct Arguments {
+  std::vector<std::string> decks, settings;
+  std::string output, resume;
+  bool check = false, reference = false, quiet = false;
+};
+
+void state(CLI::App& app, Arguments& arguments) {
+  app.footer("Exit codes: 0 done, and every Expect met; 1 an Expect was missed; 2 a mistake in the deck or here; 3 the run failed.");
+  app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
+  app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
+  app.add_option("--output", arguments.output, "where results go (default: results/<deck name>)");
+  app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
+  app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory");
+  app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
+  app.add_flag("--quiet", arguments.quiet, "no progress bar");
+  app.set_version_flag("--version", "tanktread " TANKTREAD_VERSION);
+}
+
+/// What may not differ from the deck of the checkpoint.
+void check_changes(const std::string& stored, const deck::Document& now) {
+  Scene scene;
+  deck::Document before = deck::read_text(stored, "The stored deck");
+  before.declare(scene);
+  auto old_values = before.values();
+  auto new_values = now.values();
+  new_values.insert(old_values.begin(), old_values.end());  // keys that are set no longer
+  for (const auto& [path, value] : new_values)
+    if (old_values[path] != value && !may_change_on_resume(path))
+      throw UserError(path + " cannot change when a run goes on: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
+                      ", and now is " + value + ".");
+}
+
+int run(const Arguments& arguments, bool speaks) {
+  if (arguments.reference) {
+    if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene{});
+    return done;
+  }
+  const bool resume = !arguments.resume.empty();
+  if (arguments.decks.empty() && !resume) throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
+  if (resume && !arguments.output.empty()) throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
+
+  const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
+  Scene scene;
+  deck::Document deck = deck::read(arguments.decks, arguments.settings, stored);
+  deck.declare(scene);
+  if (resume) check_changes(stored, deck);
+  scene.check();
+
+  if (arguments.check) {
+    const std::string plan = plan_text(scene);
+    if (speaks) std::cout << deck.effective() << "\n" << plan;
+    return done;
+  }
+  const std::string first = resume ? std::filesystem::path(arguments.resume) / "" : std::filesystem::path(arguments.decks.front());
+  RunRequest request;
+  request.name = resume ? std::filesystem::path(first).parent_path().filename() : std::filesystem::path(first).stem();
+  request.output = resume ? arguments.resume : arguments.output.empty() ? "results/" + request.name : arguments.output;
+  request.resume = resume;
+  request.quiet = arguments.quiet;
+  request.deck_text = deck.effective();
+  return simulate(scene, request);
+}
+
+/// One line, whatever the message holds.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';
+  return text;
+}
+
+int guarded(int argc, char** argv, bool speaks) {
+  const auto report = [speaks](const char* text, Exit code) {
+    if (speaks) std::cerr << "tanktread: " << one_line(text) << std::endl;
+    return code;
+  };
+  try {
+    Arguments arguments;
+    CLI::App app("Deformable capsules and drops in viscous flow, by isogeometric boundary elements.", "tanktread");
+    state(app, arguments);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() != 0) return report(error.what(), mistake);
+      if (speaks) app.exit(error);  // --help, --version
+      return done;
+    }
+    return run(arguments, speaks);
+  } catch (const UserError& error) {
+    return report(error.what(), mistake);
+  } catch (const std::exception& error) {
+    return report(error.what(), failed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  MPI_Init(&argc, &argv);
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const int code = guarded(argc, argv, rank == 0);
+  MPI_Finalize();
+  return code;
+}

@@ -1,0 +1,74 @@
+#include "scene.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread {
+
+void ParticleOptions::declare(deck::Section& section) {
+  shape.declare(section);
+  const deck::Rule only_one{"equal to 1 (the double layer of other ratios is not built yet)", [](double ratio) { return ratio == 1.0; }};
+  section.key("viscosity ratio", viscosity_ratio, only_one, "1", "lambda: viscosity inside over viscosity outside");
+  section.key("motion", motion, deck::Choice{"deforming"}, "`deforming`: by the velocity of the fluid on its surface");
+}
+
+void Scene::declare(deck::Section& root) {
+  root.section("Flow", flow, "the ambient flow and the outer fluid");
+  root.section("Particle", particle, "the particle at rest");
+  root.section("Membrane", membrane, "what its surface is made of");
+  root.section("Surface", surface, "the spline space of its surface");
+  root.section("Volume", volume, "how its volume is kept");
+  root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
+  root.section("Time", time, "integration in time");
+  root.section("Solvers", solvers, "solvers of linear systems");
+  root.section("Output", output, "results");
+  root.section("Expect", expect, "expected results");
+}
+
+namespace {
+
+/// Bytes of the assembled single layer that an implicit step needs: dense, three rows and columns a control point.
+double assembled_bytes(int elements_per_side) {
+  const double points = 6.0 * elements_per_side * elements_per_side + 2.0;
+  return 9.0 * points * points * sizeof(double);
+}
+
+void check_size(const Scene& scene) {
+  constexpr double limit = 64e9;
+  const int n = scene.surface.elements_per_side;
+  const double bytes = assembled_bytes(n);
+  if (scene.time.scheme != "tr-bdf2" || bytes <= limit) return;
+  throw UserError("Surface/elements per side " + std::to_string(n) + " makes " + std::to_string(6 * n * n + 2) +
+                  " control points, whose single layer takes " + std::to_string(std::lround(bytes / 1e9)) +
+                  " GB assembled, as Time/scheme `tr-bdf2` needs it; the limit is 64 GB (n = 69), or give Time/scheme `bs3`.");
+}
+
+}  // namespace
+
+void Scene::check() const {
+  flow.check();
+  particle.shape.check();
+  membrane.check();
+  time.check();
+  modulus();
+  if (volume.constraint == "none" && membrane.load == "weak" && membrane.load_measure == "reference")
+    throw UserError("Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
+                    "the load per reference area (3.7) needs `flux` or `exact`.");
+  check_size(*this);
+}
+
+double Scene::radius() const { return particle.shape.equivalent_radius(); }
+
+double Scene::modulus() const { return membrane.modulus(flow.viscosity, flow.rate(), radius()); }
+
+double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
+
+bool may_change_on_resume(const std::string& path) {
+  for (const char* fixed : {"Flow", "Particle", "Membrane", "Surface", "Volume"})
+    if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
+  return true;
+}
+
+}  // namespace tanktread

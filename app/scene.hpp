@@ -1,0 +1,53 @@
+#pragma once
+// Everything that a deck says about one run.
+
+#include <string>
+#include <vector>
+
+#include "coupling/options.hpp"
+#include "deck/expectation.hpp"
+#include "membrane/options.hpp"
+#include "motion/options.hpp"
+#include "output/options.hpp"
+#include "quadrature/options.hpp"
+#include "stokes/flow_options.hpp"
+#include "surface/options.hpp"
+
+namespace tanktread {
+
+/// `Particle/*`: the resting shape and what fills it.
+struct ParticleOptions {
+  surface::ParticleShape shape;
+  double viscosity_ratio = 1;           ///< lambda
+  std::string motion = "deforming";
+
+  void declare(deck::Section& section);
+};
+
+/// The options of every room; one list of the deck each.
+struct Scene {
+  stokes::FlowOptions flow;
+  ParticleOptions particle;
+  membrane::Options membrane;
+  surface::MeshOptions surface;
+  coupling::VolumeOptions volume;
+  quadrature::Options quadrature;
+  motion::TimeOptions time;
+  coupling::SolverOptions solvers;
+  output::Options output;
+  deck::Expectations expect;
+
+  void declare(deck::Section& root);
+
+  /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
+  void check() const;
+
+  double radius() const;             ///< R_C: of the sphere of equal volume
+  double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length
+  double snapshot_interval() const;  ///< simulated time between snapshots
+};
+
+/// Paths of the keys that must not differ when a run goes on: what the checkpoint is made of.
+bool may_change_on_resume(const std::string& path);
+
+}  // namespace tanktread

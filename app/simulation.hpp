@@ -1,0 +1,28 @@
+#pragma once
+// The run itself: what main calls once the deck is read.
+
+#include <string>
+
+#include "scene.hpp"
+
+namespace tanktread {
+
+/// What the command line says beside the deck.
+struct RunRequest {
+  std::string name;         ///< of the run: the deck's file name without its ending
+  std::string output;       ///< directory of the results
+  bool resume = false;      ///< go on from the newest checkpoint there
+  bool quiet = false;       ///< no progress bar
+  std::string deck_text;    ///< the effective deck, to be stored with the results
+};
+
+/// Runs the scene to its end. Exit code: 0 every expectation met, 1 one was missed. Throws UserError and RunFailure. Collective.
+int simulate(const Scene& scene, const RunRequest& request);
+
+/// The plan of `--check` as text: blocks, unknowns, memory, kernel evaluations. Collective.
+std::string plan_text(const Scene& scene);
+
+/// The effective deck that the newest checkpoint of a directory holds. Throws UserError when there is none.
+std::string stored_deck(const std::string& directory);
+
+}  // namespace tanktread

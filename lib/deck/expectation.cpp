@@ -1,0 +1,85 @@
+#include "deck/expectation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+void Expectation::declare(Section& section) {
+  if (name.front() != '<')  // the manual's placeholder
+    for (const char* key : {"value", "tolerance"})
+      if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
+  section.key("series", series, Choice{}, "the series of the results, if it is not the list's own name");
+  section.key("value", value, any(), "of the series", "expected value (required)");
+  section.key("tolerance", tolerance, positive(), "of the series, or 1", "largest error that passes (required)");
+  section.key("kind", kind, Choice{"absolute", "relative"}, "whether the tolerance is for the error, or for the error over the value");
+  section.key("at", at, not_negative(), "time", "when; the last moment if not given");
+  section.key("source", source, Choice{}, "where the value comes from");
+  if (kind == "relative" && value == 0.0) throw UserError(section.path("kind") + " `relative` and the value 0 contradict each other.");
+}
+
+void Expectations::declare(Section& section) {
+  section.each("a value that the results must have; the run ends with exit code 1 when one is off", [this](const std::string& name, Section& inner) {
+    Expectation expectation;
+    expectation.name = expectation.series = name;
+    expectation.declare(inner);
+    all.push_back(expectation);
+  });
+}
+
+double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t) {
+  const std::size_t rows = times.size(), points = std::min<std::size_t>(4, rows);
+  const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
+  if (above < rows && times[above] == t) return values[above];
+  const std::size_t first = std::min(above < 2 ? 0 : above - 2, rows - points);
+  double sum = 0;
+  for (std::size_t i = first; i < first + points; ++i) {
+    double weight = 1;
+    for (std::size_t j = first; j < first + points; ++j)
+      if (j != i) weight *= (t - times[j]) / (times[i] - times[j]);
+    sum += weight * values[i];
+  }
+  return sum;
+}
+
+namespace {
+
+Verdict verdict(const Expectation& e, const SeriesTable& series) {
+  Verdict out{e.name, std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {}};
+  const auto values = series.find(e.series), times = series.find("time");
+  if (values == series.end() || values->second.empty()) {
+    out.reason = "the results hold no series " + e.series;
+    return out;
+  }
+  if (e.at) {
+    const bool usable = times != series.end() && times->second.size() == values->second.size();
+    const double slack = 1e-9 * std::max(1.0, std::abs(*e.at));
+    if (!usable || *e.at < times->second.front() - slack || *e.at > times->second.back() + slack) {
+      out.reason = "the results do not reach the time " + number_text(*e.at);
+      return out;
+    }
+    out.value = interpolated(times->second, values->second, std::clamp(*e.at, times->second.front(), times->second.back()));
+  } else {
+    out.value = values->second.back();
+  }
+  out.error = std::abs(out.value - e.value) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
+  out.passed = out.error <= e.tolerance;  // false for not-a-number
+  if (!out.passed)
+    out.reason = e.series + " is " + number_text(out.value) + ", expected " + number_text(e.value) + " within " + number_text(e.tolerance) +
+                 (e.kind == "relative" ? " (relative)" : "");
+  return out;
+}
+
+}  // namespace
+
+std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series) {
+  std::vector<Verdict> out;
+  for (const Expectation& expectation : expectations) out.push_back(verdict(expectation, series));
+  return out;
+}
+
+}  // namespace tanktread::deck

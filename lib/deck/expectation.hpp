@@ -1,0 +1,52 @@
+#pragma once
+// What a deck expects of its results: `Expect/<name>`.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deck/section.hpp"
+
+namespace tanktread::deck {
+
+/// One expected value of a series.
+struct Expectation {
+  std::string name;                ///< the user's, of the list
+  std::string series;              ///< the name itself, unless the deck says otherwise
+  double value = 0;                ///< required
+  double tolerance = 0;            ///< required; absolute, or relative to `value`
+  std::string kind = "absolute";   ///< absolute, relative
+  std::optional<double> at;        ///< time; empty: the last one
+  std::string source;              ///< where the value comes from
+
+  void declare(Section& section);
+};
+
+/// All of `Expect/*`.
+struct Expectations {
+  std::vector<Expectation> all;
+  void declare(Section& section);
+};
+
+/// What became of one expectation.
+struct Verdict {
+  std::string name;
+  double value = 0;     ///< found; not a number when there was nothing to look at
+  double expected = 0;
+  double error = 0;     ///< |value - expected|, over |expected| when the kind is relative
+  bool passed = false;
+  std::string reason;   ///< why nothing could be looked at, or how far it is off; empty when passed
+};
+
+/// Series by name, rows in order of time, with the series `time` among them.
+using SeriesTable = std::map<std::string, std::vector<double>>;
+
+/// One verdict an expectation, never fewer: a missing series, or a time that was not reached, is a failure.
+/// Between rows the value is that of the cubic through the four rows around the time.
+std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series);
+
+/// The polynomial of degree <= 3 through the (at most four) points nearest to t, at t; `times` ascending, not empty, holding t in their range.
+double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t);
+
+}  // namespace tanktread::deck

@@ -1,0 +1,91 @@
+#include "deck/record.hpp"
+
+#include <algorithm>
+
+#include <Teuchos_ParameterList.hpp>
+
+#include "base/errors.hpp"
+#include "deck/value.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+std::vector<std::string> names_in(const List& list) {
+  std::vector<std::string> names;
+  for (const Entry& entry : list.entries) names.push_back(entry.key);
+  for (const auto& inner : list.lists) names.push_back(inner->name);
+  return names;
+}
+
+/// The path of a key of this very name elsewhere in the deck; empty: none.
+std::string elsewhere(const List& list, const std::string& key) {
+  for (const Entry& entry : list.entries)
+    if (entry.key == key) return list.path_of(key);
+  for (const auto& inner : list.lists)
+    if (const std::string path = elsewhere(*inner, key); !path.empty()) return path;
+  return {};
+}
+
+[[noreturn]] void refuse(const List& list, const List& root, const std::string& key) {
+  const std::vector<std::string> names = names_in(list);
+  std::string meant = guess(key, names);
+  if (!meant.empty()) meant = list.path_of(meant);
+  if (meant.empty()) meant = elsewhere(root, key);
+  const std::string what = list.path_of(key) + " is not a key of the deck";
+  if (!meant.empty()) throw UserError(what + "; was " + meant + " meant?");
+  throw UserError(what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".");
+}
+
+}  // namespace
+
+void refuse_unknown_keys(const List& list, const List& root) {
+  if (list.foreign) return;
+  if (list.given) {
+    const std::vector<std::string> names = names_in(list);
+    for (const auto& item : *list.given)
+      if (std::find(names.begin(), names.end(), item.first) == names.end()) refuse(list, root, item.first);
+  }
+  for (const auto& inner : list.lists) refuse_unknown_keys(*inner, root);
+}
+
+std::string yaml_text(const List& list, int depth) {
+  if (list.foreign) return yaml_text(*list.foreign, depth);
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  const auto name_text = [](const std::string& name) { return is_plain(name) ? name : in_quotes(name); };
+  std::string out;
+  for (const Entry& entry : list.entries)
+    if (!entry.value.empty()) out += indent + name_text(entry.key) + ": " + entry.value + "\n";
+  for (const auto& inner : list.lists)
+    if (const std::string text = yaml_text(*inner, depth + 1); !text.empty()) out += indent + name_text(inner->name) + ":\n" + text;
+  return out;
+}
+
+std::string markdown_text(const List& list) {
+  const auto cell = [](std::string text) {
+    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+    return text;
+  };
+  std::string out;
+  if (!list.path.empty()) {
+    out += "## " + (list.path.find('<') == std::string::npos ? list.path : "`" + list.path + "`") + "\n\n";
+    std::string meaning = list.meaning;
+    if (!meaning.empty()) meaning.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning.front())));
+    if (!meaning.empty()) out += meaning + ".\n\n";
+  }
+  if (!list.entries.empty()) {
+    out += "| key | default | values | unit | meaning |\n|---|---|---|---|---|\n";
+    for (const Entry& e : list.entries) {
+      const std::string fallback = e.fallback.empty() ? "" : "`" + e.fallback + "`";
+      out += "| `" + e.key + "` | " + cell(fallback) + " | " + cell(e.values) + " | " + cell(e.unit) + " | " + cell(e.meaning) + " |\n";
+    }
+    out += "\n";
+  }
+  if (list.foreign)
+    if (const std::string defaults = yaml_text(list, 0); !defaults.empty()) out += "Defaults:\n\n```yaml\n" + defaults + "```\n\n";
+  for (const auto& inner : list.lists) out += markdown_text(*inner);
+  return out;
+}
+
+}  // namespace tanktread::deck

@@ -1,0 +1,51 @@
+#pragma once
+// What has been stated about a deck: the tree of keys, filled by Section, read by the effective deck and the manual.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deck/section.hpp"
+
+namespace tanktread::deck {
+
+/// One key as it was stated, everything as text.
+struct Entry {
+  std::string key;
+  std::string fallback;  ///< its default; empty: none
+  std::string values;    ///< its rule
+  std::string unit;
+  std::string meaning;
+  std::string value;  ///< in YAML, as it stands after reading; empty: not set
+};
+
+/// One list of the deck as it was stated.
+struct List {
+  std::string name;
+  std::string path;  ///< `Flow`, `Expect/volume`; empty for the root
+  std::string meaning;
+  const Teuchos::ParameterList* given = nullptr;  ///< what the user gave for it, or nothing
+  std::vector<Entry> entries;
+  std::vector<std::unique_ptr<List>> lists;
+  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< set when the list belongs to another library
+  bool open = false;                                ///< the user chooses the names of its lists
+
+  std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
+};
+
+/// The list that a section writes to, and whether a manual is being made (then open lists are stated once, as `<name>`).
+struct Section::State {
+  List* list;
+  bool documenting;
+};
+
+/// Throws UserError at the first key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists.
+void refuse_unknown_keys(const List& list, const List& root);
+
+/// The values of a list and all below as YAML, indented by `depth` steps.
+std::string yaml_text(const List& list, int depth);
+
+/// The statements of a list and all below as Markdown.
+std::string markdown_text(const List& list);
+
+}  // namespace tanktread::deck

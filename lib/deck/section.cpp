@@ -1,0 +1,214 @@
+#include "deck/section.hpp"
+
+#include <cmath>
+
+#include <Teuchos_ParameterList.hpp>
+
+#include "base/errors.hpp"
+#include "deck/record.hpp"
+#include "deck/value.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& must, std::string_view unit, const std::string& given) {
+  const std::string in = unit.empty() || unit == "1" ? "" : " (unit: " + std::string(unit) + ")";
+  throw UserError(path + " must be " + must + in + ", but is " + given + ".");
+}
+
+std::string rule_text(const Rule& rule, const std::string& kind) {
+  return rule.text == any().text ? "a " + kind : "a " + kind + ", " + rule.text;
+}
+
+/// Unit of a number whose value the message repeats: checks type, finiteness and rule.
+double checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit) {
+  const auto number = as_number(entry);
+  if (!number || !std::isfinite(*number) || !rule.holds(*number)) refuse(path, rule_text(rule, "number"), unit, description(entry));
+  return *number;
+}
+
+template <int rows, int columns>
+Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& each,
+                                                   std::string_view unit) {
+  const auto numbers = as_numbers(entry);
+  const bool fits = numbers && numbers->size() == static_cast<std::size_t>(rows * columns);
+  bool good = fits;
+  if (fits)
+    for (const double number : *numbers) good = good && std::isfinite(number) && each.holds(number);
+  if (!good) {
+    const std::string wording = std::string(columns == 1 ? "three" : "nine") + " numbers in brackets";
+    refuse(path, each.text == any().text ? wording : wording + ", each " + each.text, unit, description(entry));
+  }
+  Eigen::Matrix<double, rows, columns> out;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) out(i, j) = (*numbers)[static_cast<std::size_t>(columns * i + j)];
+  return out;
+}
+
+template <int rows, int columns>
+std::string array_text(const Eigen::Matrix<double, rows, columns>& values) {
+  std::string out = "[";
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) out += (i + j > 0 ? ", " : "") + real_text(values(i, j));
+  return out + "]";
+}
+
+/// One statement of any type: `read` turns what was given into a value, `write` a value into YAML.
+template <class Value, class Field, class Read, class Write>
+void state(List& list, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
+           const Read& read, const Write& write) {
+  constexpr bool optional = !std::is_same_v<Field, Value>;
+  const auto text = [&]() -> std::string {
+    if constexpr (optional)
+      return field ? write(*field) : std::string();
+    else
+      return write(field);
+  };
+  Entry entry{std::string(name), text(), values, std::string(unit), std::string(meaning), {}};
+  const Teuchos::ParameterEntry* given = list.given ? list.given->getEntryPtr(entry.key) : nullptr;
+  if (given) field = read(list.path_of(name), *given);
+  entry.value = text();
+  list.entries.push_back(std::move(entry));
+}
+
+std::string array_rule(const Rule& each, const char* count) {
+  return each.text == any().text ? std::string(count) + " numbers" : std::string(count) + " numbers, each " + each.text;
+}
+
+template <class Field>
+void state_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked(path, entry, rule, unit); };
+  state<double>(list, name, field, rule.text, unit, meaning, read, real_text);
+}
+
+template <class Field>
+void state_whole_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    const auto number = as_whole_number(entry);
+    if (!number || !rule.holds(*number)) refuse(path, rule_text(rule, "whole number"), unit, description(entry));
+    return *number;
+  };
+  state<int>(list, name, field, "whole, " + rule.text, unit, meaning, read, [](int value) { return std::to_string(value); });
+}
+
+template <class Field>
+void state_vector(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked_array<3, 1>(path, entry, each, unit); };
+  state<Vec3>(list, name, field, array_rule(each, "three"), unit, meaning, read, array_text<3, 1>);
+}
+
+template <class Field>
+void state_matrix(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked_array<3, 3>(path, entry, each, unit); };
+  state<Mat3>(list, name, field, array_rule(each, "nine"), unit, meaning, read, array_text<3, 3>);
+}
+
+}  // namespace
+
+Section::Section(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+void Section::key(std::string_view name, double& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  state_number(*state_->list, name, field, rule, unit, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<double>& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  state_number(*state_->list, name, field, rule, unit, meaning);
+}
+
+void Section::key(std::string_view name, int& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  state_whole_number(*state_->list, name, field, rule, unit, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<int>& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  state_whole_number(*state_->list, name, field, rule, unit, meaning);
+}
+
+void Section::key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+  state_vector(*state_->list, name, field, each, unit, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+  state_vector(*state_->list, name, field, each, unit, meaning);
+}
+
+void Section::key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+  state_matrix(*state_->list, name, field, each, unit, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+  state_matrix(*state_->list, name, field, each, unit, meaning);
+}
+
+void Section::key(std::string_view name, bool& field, std::string_view meaning) {
+  const auto read = [](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    const auto truth = as_truth(entry);
+    if (!truth) refuse(path, "true or false", "", description(entry));
+    return *truth;
+  };
+  state<bool>(*state_->list, name, field, "true or false", "", meaning, read, [](bool value) { return value ? "true" : "false"; });
+}
+
+void Section::key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning) {
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    const auto text = as_text(entry);
+    if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
+    bool known = choice.empty();
+    for (const std::string& word : choice) known = known || (text && word == *text);
+    if (known) return *text;
+    const std::string meant = text ? guess(*text, choice) : std::string();
+    const std::string hint = meant.empty() ? "" : "; was `" + meant + "` meant?";
+    throw UserError(path + " must be " + alternatives(choice) + ", but is " + description(entry) + (hint.empty() ? "." : hint));
+  };
+  const auto write = [](const std::string& text) { return is_plain(text) ? text : in_quotes(text); };
+  std::string values;
+  for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
+  state<std::string>(*state_->list, name, field, choice.empty() ? "text" : values, "", meaning, read, write);
+}
+
+Section Section::enter(std::string_view name, std::string_view meaning) {
+  List& outer = *state_->list;
+  auto inner = std::make_unique<List>();
+  inner->name = name;
+  inner->path = outer.path_of(name);
+  inner->meaning = meaning;
+  if (const auto* entry = outer.given ? outer.given->getEntryPtr(inner->name) : nullptr) {
+    if (!entry->isList()) throw UserError(inner->path + " must be a list of keys, but is " + description(*entry) + ".");
+    inner->given = &Teuchos::getValue<Teuchos::ParameterList>(*entry);
+  }
+  outer.lists.push_back(std::move(inner));
+  return Section(std::make_shared<State>(State{outer.lists.back().get(), state_->documenting}));
+}
+
+void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning) {
+  Section inner = enter(name, meaning);
+  List& list = *inner.state_->list;
+  auto merged = field ? std::make_shared<Teuchos::ParameterList>(*field) : std::make_shared<Teuchos::ParameterList>();
+  if (list.given) overlay(*merged, *list.given);
+  merged->setName(list.name);
+  field = list.foreign = std::move(merged);
+}
+
+void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use) {
+  List& list = *state_->list;
+  list.open = true;
+  std::vector<std::string> names;
+  if (list.given)
+    for (const auto& item : *list.given) names.push_back(item.first);
+  if (state_->documenting) names = {"<name>"};
+  for (const std::string& name : names) {
+    Section inner = enter(name, meaning);
+    use(name, inner);
+  }
+}
+
+bool Section::given(std::string_view name) const {
+  return state_->list->given && state_->list->given->isParameter(std::string(name));
+}
+
+std::string Section::path(std::string_view name) const {
+  return name.empty() ? state_->list->path : state_->list->path_of(name);
+}
+
+}  // namespace tanktread::deck

@@ -1,0 +1,110 @@
+#include "deck/source.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include <Teuchos_ParameterList.hpp>
+#include <Teuchos_XMLParameterListCoreHelpers.hpp>
+#include <Teuchos_YamlParameterListCoreHelpers.hpp>
+
+#include "base/errors.hpp"
+#include "deck/words.hpp"
+#include "deck/yaml_lines.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+std::shared_ptr<Teuchos::ParameterList> shared(const Teuchos::ParameterList& list) { return std::make_shared<Teuchos::ParameterList>(list); }
+
+/// The one thing to know from the several lines that Teuchos throws: where it stopped, and the line that stands there.
+std::string reduced(const std::string& error, const std::vector<std::string>& lines) {
+  std::smatch match;
+  if (std::regex_search(error, match, std::regex("Parameter \"([^\"]*)\" already exists"))) return ": " + match[1].str() + " is given twice";
+  if (!std::regex_search(error, match, std::regex("line (\\d+)")) || lines.empty()) return " is not YAML";
+  std::size_t number = std::min(static_cast<std::size_t>(std::stoul(match[1].str())), lines.size());
+  while (number > 1 && lines[number - 1].empty()) --number;
+  std::string line = lines[number - 1];
+  line.erase(0, line.find_first_not_of(" \t"));
+  if (line.size() > 80) line = line.substr(0, 77) + "...";
+  return ", line " + std::to_string(number) + ": this is not YAML that can be read: `" + line + "`";
+}
+
+void check_root(const std::vector<std::string>& keys, const std::string& origin) {
+  if (keys.empty()) throw UserError(origin + " is empty; a deck holds one list named `" + root_name + "`.");
+  if (keys.size() == 1 && keys.front() == root_name) return;
+  const std::string& other = keys.front() == root_name ? keys.back() : keys.front();
+  const std::string found = other.empty() || other.size() > 60 ? "something else" : "`" + other + "`";
+  throw UserError(origin + ": the outermost list must be `" + root_name + "`, and the only one, but there is " + found + ".");
+}
+
+std::shared_ptr<Teuchos::ParameterList> parsed(const std::vector<std::string>& lines, const std::string& origin) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  try {
+    return shared(*Teuchos::getParametersFromYamlString(text));
+  } catch (const std::exception& error) {
+    throw UserError(origin + reduced(error.what(), lines) + ".");
+  }
+}
+
+}  // namespace
+
+std::string file_text(const std::string& file) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw UserError("The deck " + file + " does not exist.");
+  if (fs::is_directory(status)) throw UserError(file + " is a directory, not a deck.");
+  if (fs::is_regular_file(status) && fs::file_size(file, error) > 10'000'000) throw UserError(file + " is larger than 10 MB, so no deck.");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw UserError("The deck " + file + " cannot be read.");
+  return text.str();
+}
+
+std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin) {
+  const std::vector<std::string> lines = clean_lines(text, origin);
+  const std::vector<std::string> keys = outermost_keys(lines);
+  const bool any_key = std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return !key.empty(); });
+  if (any_key || keys.empty()) check_root(keys, origin);  // otherwise let the reader say where it stops
+  return parsed(lines, origin);
+}
+
+std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin) {
+  Teuchos::RCP<Teuchos::ParameterList> list;
+  try {
+    list = Teuchos::getParametersFromXmlString(text);
+  } catch (const std::exception&) {
+    throw UserError(origin + " is not XML of the kind that Teuchos reads.");
+  }
+  check_root({list->name()}, origin);
+  return shared(*list);
+}
+
+std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {
+  const std::string origin = "--set '" + setting + "'";
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size()) throw UserError(origin + " must be of the form Section/key=value.");
+  std::istringstream path(setting.substr(0, equals));
+  std::vector<std::string> keys;
+  for (std::string key; std::getline(path, key, '/');) keys.push_back(key);
+  if (keys.front() == root_name) keys.erase(keys.begin());
+  if (keys.size() < 2 || std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key.empty(); }))
+    throw UserError(origin + " must be of the form Section/key=value.");
+  std::string text = std::string(root_name) + ":\n", indent;
+  for (std::size_t i = 0; i < keys.size(); ++i) text += (indent += "  ") + in_quotes(keys[i]) + ":" + (i + 1 < keys.size() ? "\n" : " ");
+  text += setting.substr(equals + 1);
+  const std::vector<std::string> lines = clean_lines(text, origin);
+  try {
+    return parsed(lines, origin);
+  } catch (const UserError&) {
+    throw UserError(origin + ": the value is not YAML that can be read.");
+  }
+}
+
+}  // namespace tanktread::deck

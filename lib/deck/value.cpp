@@ -1,0 +1,129 @@
+#include "deck/value.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <Teuchos_ParameterList.hpp>
+#include <Teuchos_TwoDArray.hpp>
+
+#include "base/errors.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+template <class Type>
+const Type* held(const Teuchos::ParameterEntry& entry) {
+  return entry.isType<Type>() ? &Teuchos::getValue<Type>(entry) : nullptr;
+}
+
+template <class Values>
+std::vector<double> doubles(const Values& values) {
+  std::vector<double> out;
+  for (const auto& value : values) out.push_back(static_cast<double>(value));
+  return out;
+}
+
+std::string bracketed(const std::vector<std::string>& words) {
+  std::string out = "[";
+  for (std::size_t i = 0; i < words.size(); ++i) out += (i > 0 ? ", " : "") + words[i];
+  return out + "]";
+}
+
+/// Everything that Teuchos reads from YAML or XML and that a deck may hold, as YAML.
+std::string yaml_value(const Teuchos::ParameterEntry& entry) {
+  if (const auto* value = held<double>(entry)) return real_text(*value);
+  if (const auto number = as_number(entry)) return number_text(*number);
+  if (const auto truth = as_truth(entry)) return *truth ? "true" : "false";
+  if (const auto text = as_text(entry)) return is_plain(*text) ? *text : in_quotes(*text);
+  if (const auto* texts = held<Teuchos::Array<std::string>>(entry)) {
+    std::vector<std::string> words;
+    for (const auto& text : *texts) words.push_back(in_quotes(text));
+    return bracketed(words);
+  }
+  const bool real = held<Teuchos::Array<double>>(entry) || held<Teuchos::TwoDArray<double>>(entry);
+  std::vector<std::string> words;
+  for (const double value : as_numbers(entry).value_or(std::vector<double>{})) words.push_back(real ? real_text(value) : number_text(value));
+  return bracketed(words);
+}
+
+}  // namespace
+
+std::optional<double> as_number(const Teuchos::ParameterEntry& entry) {
+  if (const auto* value = held<double>(entry)) return *value;
+  if (const auto* value = held<int>(entry)) return static_cast<double>(*value);
+  if (const auto* value = held<long long>(entry)) return static_cast<double>(*value);
+  if (const auto* value = held<float>(entry)) return static_cast<double>(*value);
+  return std::nullopt;
+}
+
+std::optional<int> as_whole_number(const Teuchos::ParameterEntry& entry) {
+  const auto number = as_number(entry);
+  if (!number || *number != std::floor(*number) || std::abs(*number) > std::numeric_limits<int>::max()) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry) {
+  if (const auto* value = held<bool>(entry)) return *value;
+  return std::nullopt;
+}
+
+std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry) {
+  const auto* value = held<std::string>(entry);
+  if (!value) return std::nullopt;
+  std::string text = *value;
+  for (char& c : text)
+    if (c == '\n' || c == '\t' || c == '\r') c = ' ';
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry) {
+  if (const auto* values = held<Teuchos::Array<double>>(entry)) return doubles(*values);
+  if (const auto* values = held<Teuchos::Array<int>>(entry)) return doubles(*values);
+  if (const auto* values = held<Teuchos::Array<long long>>(entry)) return doubles(*values);
+  if (const auto* values = held<Teuchos::TwoDArray<double>>(entry)) return doubles(values->getDataArray());
+  if (const auto* values = held<Teuchos::TwoDArray<int>>(entry)) return doubles(values->getDataArray());
+  return std::nullopt;
+}
+
+std::string description(const Teuchos::ParameterEntry& entry) {
+  if (entry.isList()) return "a list of keys";
+  if (const auto text = as_text(entry)) return in_quotes(text->size() > 80 ? text->substr(0, 77) + "..." : *text) + " (text)";
+  if (const auto numbers = as_numbers(entry); numbers && numbers->size() > 12) return std::to_string(numbers->size()) + " numbers";
+  if (const auto* value = held<double>(entry)) return number_text(*value);
+  return yaml_value(entry);
+}
+
+std::string yaml_text(const Teuchos::ParameterList& list, int depth) {
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  std::string out;
+  for (const auto& item : list) {
+    const std::string& name = item.first;
+    const Teuchos::ParameterEntry& entry = item.second;
+    const std::string key = indent + (is_plain(name) ? name : in_quotes(name)) + ":";
+    if (!entry.isList()) {
+      out += key + " " + yaml_value(entry) + "\n";
+      continue;
+    }
+    const std::string inner = yaml_text(Teuchos::getValue<Teuchos::ParameterList>(entry), depth + 1);
+    out += key + (inner.empty() ? " {}\n" : "\n" + inner);
+  }
+  return out;
+}
+
+void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over) {
+  for (const auto& item : over) {
+    const std::string& name = item.first;
+    const Teuchos::ParameterEntry& entry = item.second;
+    if (entry.isList()) {
+      if (base.isParameter(name) && !base.isSublist(name)) base.remove(name);
+      overlay(base.sublist(name), Teuchos::getValue<Teuchos::ParameterList>(entry));
+    } else {
+      base.setEntry(name, entry);
+    }
+  }
+}
+
+}  // namespace tanktread::deck

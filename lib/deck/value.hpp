@@ -1,0 +1,29 @@
+#pragma once
+// From an entry of a parameter list to a value of the type that was asked for.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Teuchos {
+class ParameterEntry;
+class ParameterList;
+}  // namespace Teuchos
+
+namespace tanktread::deck {
+
+/// The entry as the type, or nothing if it is of another one. Whole numbers are numbers, too.
+std::optional<double> as_number(const Teuchos::ParameterEntry& entry);
+std::optional<int> as_whole_number(const Teuchos::ParameterEntry& entry);
+std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
+std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
+std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< a row, or rows of a table one after the other
+
+/// What was given, for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
+std::string description(const Teuchos::ParameterEntry& entry);
+
+/// A list of another library as YAML, and the merge of two lists, key by key: `over` wins.
+std::string yaml_text(const Teuchos::ParameterList& list, int depth);
+void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over);
+
+}  // namespace tanktread::deck

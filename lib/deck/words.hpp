@@ -1,0 +1,28 @@
+#pragma once
+// Values and lists of names as text, for messages, decks and the manual.
+
+#include <string>
+#include <vector>
+
+namespace tanktread::deck {
+
+/// The shortest decimal text that reads back to the same double, at most 17 digits: `0.1`, `12`, `1e-05`.
+std::string number_text(double value);
+
+/// The same with a point in it, which every YAML reader takes for a real number: `12.0`, `1.0e-05`.
+std::string real_text(double value);
+
+/// Text in double quotes, with `"` and `\` escaped.
+std::string in_quotes(const std::string& text);
+
+/// Whether YAML reads the bare word as this very text (no number, no truth value, no punctuation).
+bool is_plain(const std::string& text);
+
+/// `a, b or c`.
+std::string alternatives(const std::vector<std::string>& words);
+
+/// The candidate that was most probably meant, or nothing: the smallest edit distance (insert, delete, replace, swap of neighbours),
+/// no more than a third of the length, upper and lower case alike.
+std::string guess(const std::string& given, const std::vector<std::string>& candidates);
+
+}  // namespace tanktread::deck
