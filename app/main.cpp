@@ -4,16 +4,13 @@
 #include <iostream>
 
 #include <CLI/CLI.hpp>
-#include <mpi.h>
 
+#include "app/provenance.hpp"
+#include "app/scene.hpp"
+#include "app/simulation.hpp"
 #include "base/errors.hpp"
+#include "coupling/ranks.hpp"
 #include "deck/document.hpp"
-#include "scene.hpp"
-#include "simulation.hpp"
-
-#ifndef TANKTREAD_VERSION
-#define TANKTREAD_VERSION "0.1.0"
-#endif
 
 namespace {
 
@@ -36,7 +33,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
-  app.set_version_flag("--version", "tanktread " TANKTREAD_VERSION);
+  app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
 
 /// What may not differ from the deck of the checkpoint.
@@ -70,13 +67,13 @@ int run(const Arguments& arguments, bool speaks) {
   scene.check();
 
   if (arguments.check) {
-    const std::string plan = plan_text(scene);
+    const std::string plan = plan_text(scene, coupling::Ranks().size());
     if (speaks) std::cout << deck.effective() << "\n" << plan;
     return done;
   }
-  const std::string first = resume ? std::filesystem::path(arguments.resume) / "" : std::filesystem::path(arguments.decks.front());
+  const std::filesystem::path named = resume ? arguments.resume : arguments.decks.front();
   RunRequest request;
-  request.name = resume ? std::filesystem::path(first).parent_path().filename() : std::filesystem::path(first).stem();
+  request.name = named.stem();
   request.output = resume ? arguments.resume : arguments.output.empty() ? "results/" + request.name : arguments.output;
   request.resume = resume;
   request.quiet = arguments.quiet;
@@ -91,6 +88,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// The whole program on one rank; only the first one speaks.
 int guarded(int argc, char** argv, bool speaks) {
   const auto report = [speaks](const char* text, Exit code) {
     if (speaks) std::cerr << "tanktread: " << one_line(text) << std::endl;
@@ -118,10 +116,6 @@ int guarded(int argc, char** argv, bool speaks) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  MPI_Init(&argc, &argv);
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  const int code = guarded(argc, argv, rank == 0);
-  MPI_Finalize();
-  return code;
+  const coupling::Session session(&argc, &argv);
+  return guarded(argc, argv, session.rank() == 0);
 }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene.hpp"
+#include "app/scene.hpp"
 
 namespace tanktread {
 
@@ -20,7 +20,7 @@ struct RunRequest {
 int simulate(const Scene& scene, const RunRequest& request);
 
 /// The plan of `--check` as text: blocks, unknowns, memory, kernel evaluations. Collective.
-std::string plan_text(const Scene& scene);
+std::string plan_text(const Scene& scene, int ranks = 1);
 
 /// The effective deck that the newest checkpoint of a directory holds. Throws UserError when there is none.
 std::string stored_deck(const std::string& directory);
