@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""What a reader expects of every file: lines of at most 150 characters in C++ (140 is the aim), #pragma once in headers, Debian's Python in scripts,
+bash that stops at the first error.
+
+Usage: form.py <source directory>
+"""
+import os
+import pathlib
+import sys
+
+
+def cpp_errors(path, text):
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > 150:
+            yield f"{path}:{number}: {len(line)} characters"
+        if "\t" in line or line != line.rstrip():
+            yield f"{path}:{number}: a tab, or a blank at the end of the line"
+    if path.suffix == ".hpp" and "#pragma once" not in text:
+        yield f"{path}: no #pragma once"
+
+
+def script_errors(path, text):
+    first = text.split("\n", 1)[0]
+    executable = os.access(path, os.X_OK)
+    if path.suffix == ".py" and (executable or first.startswith("#!")) and first != "#!/usr/bin/python3":
+        yield f"{path}: starts with '{first}' instead of #!/usr/bin/python3"
+    if first.startswith("#!") and "bash" in first and "set -euo pipefail" not in text:
+        yield f"{path}: no set -euo pipefail"
+
+
+def main():
+    source = pathlib.Path(sys.argv[1])
+    errors = []
+    for folder in ("app", "lib", "tests", "postproc", ".ci"):
+        for path in sorted(p for p in (source / folder).rglob("*") if p.is_file()):
+            if path.suffix in (".cpp", ".hpp"):
+                errors += cpp_errors(path, path.read_text())
+            elif path.suffix in (".py", ""):
+                errors += script_errors(path, path.read_text())
+    print("\n".join(errors))
+    sys.exit(bool(errors))
+
+
+main()

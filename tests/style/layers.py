@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""The direction of dependencies: every #include in lib/ is one that the room's line in lib/CMakeLists.txt allows.
+
+Usage: layers.py <source directory>
+"""
+import pathlib
+import re
+import sys
+
+# Whose headers these are. Eigen and the standard library are everybody's.
+OWNERS = {
+    "METIS": r"metis\.h",
+    "HDF5": r"(hdf5|H5\w+)\.h",
+    "TEUCHOS": r"Teuchos_\w+\.hpp",
+    "TRILINOS": r"(Teuchos|Tpetra|Belos|Amesos2?|NOX|Thyra|Stratimikos|Kokkos|Xpetra|Ifpack2|MueLu|Teko|Piro)\w*\.(hpp|H)",
+    "MPI": r"mpi\.h",
+}
+# A library that brings another with it.
+BRINGS = {"TRILINOS": {"TRILINOS", "TEUCHOS", "MPI"}, "HDF5": {"HDF5", "MPI"}}
+# Trilinos in one file only: everything else of the room computes without it.
+ONLY_IN = {("membrane", "TRILINOS"): "direct_solver.cpp"}
+
+
+def allowed(source):
+    """room -> (rooms, libraries) that it may use."""
+    rooms = {}
+    for line in (source / "lib/CMakeLists.txt").read_text().splitlines():
+        match = re.fullmatch(r"room\((\w+)(?: +USES +([a-z ]+?))?(?: +EXTERNAL +([A-Z0-9 ]+?))? *\)", line.strip())
+        if match:
+            name, uses, external = match.groups()
+            libraries = set((external or "").split())
+            for library in set(libraries):
+                libraries |= BRINGS.get(library, set())
+            rooms[name] = ({name, *(uses or "").split()}, libraries)
+        elif line.startswith("room("):
+            sys.exit(f"lib/CMakeLists.txt: not understood: {line}")
+    return rooms
+
+
+def order_errors(rooms):
+    """A room uses only rooms that stand above it; fluid and membrane never meet."""
+    names = list(rooms)
+    for position, name in enumerate(names):
+        for used in rooms[name][0] - {name}:
+            if used not in names[:position]:
+                yield f"lib/CMakeLists.txt: {name} uses {used}, which does not stand above it"
+    for name, other in (("stokes", "membrane"), ("membrane", "stokes")):
+        if other in rooms[name][0]:
+            yield f"lib/CMakeLists.txt: {name} may not see {other}"
+
+
+def include_errors(source, rooms):
+    for path in sorted((source / "lib").glob("*/*.[ch]pp")):
+        room = path.parent.name
+        if room not in rooms:
+            yield f"{path}: lib/CMakeLists.txt has no line for this room"
+            continue
+        uses, libraries = rooms[room]
+        for header in re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.MULTILINE):
+            first = header.split("/")[0]
+            if "/" in header and first not in ("Eigen", "unsupported", "sys") and first not in uses:
+                yield f"{path}: {room} may not include {header}"
+            owners = {owner for owner, pattern in OWNERS.items() if re.fullmatch(pattern, header)}
+            if owners and not owners & libraries:
+                yield f"{path}: {room} may not include {header}, of {'/'.join(sorted(owners))}"
+            for owner in owners:
+                if path.name != ONLY_IN.get((room, owner), path.name):
+                    yield f"{path}: in {room} only {ONLY_IN[room, owner]} may include {header}"
+
+
+def main():
+    source = pathlib.Path(sys.argv[1])
+    rooms = allowed(source)
+    errors = [*order_errors(rooms), *include_errors(source, rooms)]
+    print("\n".join(errors))
+    sys.exit(bool(errors))
+
+
+main()
