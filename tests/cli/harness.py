@@ -1,0 +1,106 @@
+"""What the scripts of tests/cli share. A script is called as `<name>.py <tanktread> <source directory>` and reads like this:
+
+    #!/usr/bin/python3
+    # label: long                     (optional: left out of the default run)
+    # ranks: 2                        (optional: processes it starts at a time)
+    from harness import check, main, run
+
+    def an_unknown_key_is_named():
+        result = run("inputs/shear_neo_hookean.yaml", "--set", "Flow/shaer rate=1", "--check", code=2)
+        check("shaer rate" in result.stderr, result.stderr)
+
+    main()
+
+main() runs every function of the script whose docstring is not "not a test", each in an empty directory of its own, and fails if one
+fails. Relative paths given to run() that exist in the source directory are taken from there.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import traceback
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
+SOURCE = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
+
+
+class Failed(Exception):
+    pass
+
+
+def check(holds, *message):
+    """Fails the test unless `holds`."""
+    if not holds:
+        raise Failed(" ".join(str(part) for part in message))
+
+
+def close(value, expected, tolerance, what="value"):
+    """Fails the test unless |value - expected| <= tolerance."""
+    check(abs(value - expected) <= tolerance, f"{what} is {value!r}, expected {expected!r} within {tolerance!r}")
+
+
+def deck(text, name="deck.yaml"):
+    """Writes a deck into the test's directory."""
+    path = pathlib.Path(name)
+    path.write_text(text)
+    return path
+
+
+def command(*arguments, ranks=1):
+    """The command line of the program."""
+    words = [str(SOURCE / a) if isinstance(a, str) and "/" in a and (SOURCE / a).is_file() else str(a) for a in arguments]
+    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    return [*launcher, str(PROGRAM), *words]
+
+
+def run(*arguments, code=0, ranks=1, timeout=600):
+    """Runs the program and fails the test unless it exits with `code` (None: any). Returns stdout, stderr and returncode."""
+    words = command(*arguments, ranks=ranks)
+    result = subprocess.run(words, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=timeout)
+    if code is not None and result.returncode != code:
+        raise Failed(f"{' '.join(words)}\nexit code {result.returncode}, expected {code}\n{result.stdout}\n{result.stderr}")
+    return result
+
+
+def start(*arguments, ranks=1):
+    """Starts the program in the background: a subprocess.Popen, for tests that kill it."""
+    return subprocess.Popen(command(*arguments, ranks=ranks), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True)
+
+
+def series(results, name):
+    """One series of a run, as a numpy array."""
+    import h5py
+
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return file["series"][name][:]
+
+
+def summary(results):
+    """The summary of a run, as a dictionary."""
+    import yaml
+
+    return yaml.safe_load((pathlib.Path(results) / "summary.yaml").read_text())
+
+
+def main():
+    """Runs the functions of the calling script."""
+    script = sys.modules["__main__"]
+    tests = [f for f in vars(script).values() if callable(f) and getattr(f, "__module__", None) == "__main__"
+             and not f.__name__.startswith("_") and (f.__doc__ or "") != "not a test"]
+    if not tests:
+        sys.exit("no tests in this script")
+    failed = 0
+    for test in tests:
+        with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
+            os.chdir(directory)
+            try:
+                test()
+                print("passed", test.__name__.replace("_", " "))
+            except Exception as error:  # the rest of the script still runs
+                failed += 1
+                print("FAILED", test.__name__.replace("_", " "))
+                print(error if isinstance(error, Failed) else traceback.format_exc())
+            os.chdir(SOURCE)
+    sys.exit(1 if failed else 0)
