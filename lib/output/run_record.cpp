@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/errors.hpp"
 #include "output/file.hpp"
 #include "output/hdf.hpp"
 
@@ -12,7 +13,7 @@ namespace tanktread::output {
 RunRecord::RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance)
     : path_(std::move(path)), deck_(std::move(deck)), provenance_(std::move(provenance)) {}
 
-RunRecord RunRecord::load(const std::filesystem::path& path) {
+RunRecord RunRecord::load(const std::filesystem::path& path) try {
   const hdf::Id file = hdf::open(path);
   RunRecord record(path, hdf::read_text(file, "deck"), {});
   for (const auto& key : hdf::attribute_names(file, "provenance")) record.provenance_[key] = hdf::read_attribute(file, "provenance", key);
@@ -21,9 +22,11 @@ RunRecord RunRecord::load(const std::filesystem::path& path) {
     hdf::Shape shape;
     record.series_.push_back({name, hdf::read_attribute(series, name, "unit"), hdf::read_attribute(series, name, "description"),
                               hdf::read_doubles(series, name, shape)});
-    if (record.series_.back().values.size() != record.rows()) throw std::runtime_error(path.string() + ": series of unequal length");
+    if (record.series_.back().values.size() != record.rows()) throw std::runtime_error("series of unequal length");
   }
   return record;
+} catch (const std::runtime_error& error) {
+  throw UserError("the record " + path.string() + " is missing or damaged (" + error.what() + ")");
 }
 
 void RunRecord::declare(std::string name, std::string unit, std::string description) {

@@ -27,7 +27,7 @@ class RunRecord {
   /// A record without rows. Nothing is written before the first `append`.
   RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance);
 
-  /// The record that stands at `path`. Throws std::runtime_error when it is missing or damaged.
+  /// The record that stands at `path`. Throws UserError when it is missing or damaged.
   static RunRecord load(const std::filesystem::path& path);
 
   /// Declares a series; all of them before the first row, and again after `load`. One that exists already keeps its values; a new

@@ -86,8 +86,8 @@ TEST(RunRecord, SaysThatADamagedFileIsOne) {
   const Scratch scratch;
   three_series(scratch / "run.h5").append(std::array{1., 2., 3.});
   std::filesystem::resize_file(scratch / "run.h5", 1000);
-  EXPECT_THROW(RunRecord::load(scratch / "run.h5"), std::runtime_error);
-  EXPECT_THROW(RunRecord::load(scratch / "absent.h5"), std::runtime_error);
+  EXPECT_THROW(RunRecord::load(scratch / "run.h5"), UserError);
+  EXPECT_THROW(RunRecord::load(scratch / "absent.h5"), UserError);
 }
 
 TEST(RunRecord, ADiskThatRefusesIsARunFailure) {

@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+"""Deformation and inclination over time, beside the curves of the literature."""
+
+import argparse
+
+import literature
+import read
+import style
+from style import plt
+
+EXPECTED = "expected by the deck"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", nargs="+", help="directories of runs' results")
+    parser.add_argument("-o", "--output", default="deformation.png", metavar="FILE", help="the picture (default: %(default)s)")
+    parser.add_argument("--curves", default=literature.DEFAULT, metavar="DIR", help="folder of literature curves (default: %(default)s)")
+    parser.add_argument("--deformation", default="taylor_inertia", choices=["taylor_inertia", "taylor_surface"], help="which Taylor parameter")
+    arguments = parser.parse_args()
+
+    runs = [read.run(directory) for directory in arguments.results]
+    figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 6.4), sharex=True, height_ratios=[3, 2])
+    known = []
+    for run in runs:
+        known += [curve for curve in literature.curves(run, arguments.curves) if curve.label not in [one.label for one in known]]
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        draw_run(upper, lower, run, arguments.deformation, color)
+        report(run, literature.curves(run, arguments.curves))
+    draw_literature(upper, lower, known, end=max(run.series["time"][-1] for run in runs))
+
+    upper.set_ylabel("Taylor parameter D" if arguments.deformation == "taylor_inertia" else "Taylor parameter D (surface)")
+    upper.set_ylim(bottom=0)
+    upper.set_title(title(runs))
+    upper.legend(loc="lower right")
+    lower.set_ylabel("inclination, degrees")
+    lower.set_xlabel("time · shear rate" if all("shear" in str(run.value("Flow/type")) for run in runs) else "time")
+    lower.set_xlim(left=0)
+    style.save(figure, arguments.output)
+
+
+def title(runs):
+    first = runs[0]
+    words = [first.value("Membrane/law"), first.value("Flow/type")]
+    if len(runs) == 1 and first.value("Membrane/capillary number"):
+        words.append(f"Ca = {first.value('Membrane/capillary number'):g}")
+    return ", ".join(str(word) for word in words if word)
+
+
+def label(run):
+    points = run.series.get("n_control_points")
+    mesh = f", {points[-1]:.0f} control points" if points is not None and len(points) else ""
+    return run.name + mesh
+
+
+def draw_run(upper, lower, run, deformation, color):
+    t = run.series["time"]
+    upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
+    shaped = run.series["taylor_inertia"] > 1e-8  # a sphere has no inclination
+    lower.plot(t[shaped], run.series["inclination"][shaped], color=color, zorder=3)
+    for axes, name in (upper, deformation), (lower, "inclination"):
+        expected = run.value(f"Expect/{name}")
+        if expected:
+            at = expected.get("at", t[-1])
+            known = {text.get_label() for text in axes.lines}
+            axes.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6, label=EXPECTED if EXPECTED not in known else None)
+
+
+def draw_literature(upper, lower, known, end):
+    marks = iter(style.MARKS)
+    for curve in known:
+        inside = curve.t <= end * 1.001
+        if curve.exact:
+            pen = {"color": style.INK, "linestyle": (0, (1, 1.6)), "linewidth": 2.2, "zorder": 5}
+            upper.plot(curve.t, curve.d, label=curve.label, **pen)
+            lower.plot(curve.t, curve.inclination, **pen)
+            continue
+        every = max(1, inside.sum() // 40)
+        pen = {"linestyle": "none", "marker": next(marks), "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8, "zorder": 2, "markevery": every}
+        upper.plot(curve.t[inside], curve.d[inside], label=curve.label, **pen)
+        if curve.inclination is not None:
+            formed = inside & (curve.t > 0.05)
+            lower.plot(curve.t[formed], curve.inclination[formed], **pen)
+
+
+def report(run, known):
+    t = run.series["time"]
+    for curve in known:
+        if not curve.exact:
+            continue
+        d = literature.difference(t, run.series["taylor_inertia"], curve.t, curve.d)
+        angle = literature.difference(t[1:], run.series["inclination"][1:], curve.t, curve.inclination)
+        print(f"{run.name}: largest difference from the {curve.label}: {d:.2e} in D, {angle:.2e} degrees")
+
+
+if __name__ == "__main__":
+    main()

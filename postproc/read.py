@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+"""Results of a run as numpy arrays: `read.run("results/shear")`. As a program it lists what a run recorded.
+
+    import read
+    run = read.run("results/shear_neo_hookean")
+    run.series["taylor_inertia"]       # one value a step, with .units[...] and .descriptions[...]
+    run.deck["Flow"]["type"]           # the effective deck
+    last = run.snapshots()[-1]         # a saved step
+    last.fields["load"]                # at the nodes of its cells
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+
+import h5py
+import numpy
+import yaml
+
+
+class Run:
+    """`series`, `units`, `descriptions` by name; `deck`, the effective deck as nested dicts; `provenance`; `summary` (None before the end)."""
+
+    def __init__(self, directory):
+        self.directory = pathlib.Path(directory)
+        with h5py.File(self.directory / "run.h5", "r") as file:
+            self.series = {name: data[:] for name, data in file["series"].items()}
+            self.units = {name: _text(data.attrs["unit"]) for name, data in file["series"].items()}
+            self.descriptions = {name: _text(data.attrs["description"]) for name, data in file["series"].items()}
+            self.deck_text = _text(file["deck"][()])
+            self.provenance = {key: _text(value) for key, value in file["provenance"].attrs.items()}
+        self.deck = (yaml.safe_load(self.deck_text) or {}).get("Tanktread", {})
+        summary = self.directory / "summary.yaml"
+        self.summary = yaml.safe_load(summary.read_text(encoding="utf-8")) if summary.exists() else None
+
+    @property
+    def name(self):
+        return self.directory.resolve().name
+
+    def value(self, path, default=None):
+        """One key of the deck: `value("Membrane/capillary number")`."""
+        node = self.deck
+        for part in path.split("/"):
+            if not isinstance(node, dict) or part not in node:
+                return default
+            node = node[part]
+        return node
+
+    def snapshots(self):
+        """The saved steps, in order of time; each is read when it is used."""
+        series = self.directory / "run.hdf.series"
+        if not series.exists():
+            return []
+        return [Snapshot(self.directory / entry["name"], entry["time"]) for entry in json.loads(series.read_text())["files"]]
+
+    def snapshot_at(self, time):
+        """The saved step nearest to a time (None: the last one)."""
+        saved = self.snapshots()
+        if not saved:
+            raise FileNotFoundError(f"{self.directory} holds no snapshots")
+        return saved[-1] if time is None else min(saved, key=lambda one: abs(one.time - time))
+
+
+class Snapshot:
+    """A saved step. `points` (n, 3) and `fields` {name: (n,) or (n, k)} at the nodes; `cells`: node numbers of each Lagrange quadrilateral."""
+
+    def __init__(self, path, time):
+        self.path, self.time = pathlib.Path(path), time
+        self._content = None
+
+    def _read(self):
+        if self._content is None:
+            with h5py.File(self.path, "r") as file:
+                grid = file["VTKHDF"]
+                connectivity, offsets = grid["Connectivity"][:], grid["Offsets"][:]
+                cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
+                fields = {name: data[:] for name, data in grid["PointData"].items()}
+                self._content = grid["Points"][:], cells, fields
+        return self._content
+
+    points = property(lambda self: self._read()[0])
+    cells = property(lambda self: self._read()[1])
+    fields = property(lambda self: self._read()[2])
+
+    def checkpoint(self):
+        """What the run goes on from: {"arrays": {...}, "numbers": {...}, "texts": {...}}."""
+        with h5py.File(self.path, "r") as file:
+            root = file["checkpoint"]
+            return {
+                "arrays": {name: data[:] for name, data in root["arrays"].items()},
+                "numbers": {name: float(data[()]) for name, data in root["numbers"].items()},
+                "texts": {name: _text(data[()]) for name, data in root["texts"].items()},
+            }
+
+    def sampled(self, values, k=8):
+        """A field at the (k + 1)^2 points of a uniform grid on every cell: shape (cells, k + 1, k + 1[, components]); t first, then s.
+
+        Exact: a cell holds the polynomial of its element.
+        """
+        values = numpy.asarray(values)
+        result = numpy.empty((len(self.cells), k + 1, k + 1) + values.shape[1:])
+        for n in {len(cell) for cell in self.cells}:
+            which = [i for i, cell in enumerate(self.cells) if len(cell) == n]
+            table = _lagrange_table(int(round(n**0.5)) - 1, k)
+            nodes = values[numpy.array([self.cells[i] for i in which])]
+            sampled = numpy.einsum("gn,cn...->cg...", table, nodes)
+            result[which] = sampled.reshape((len(which), k + 1, k + 1) + values.shape[1:])
+        return result
+
+
+def run(directory):
+    """The run whose results stand in a directory. One sentence and the end of the program where there are none."""
+    try:
+        return Run(directory)
+    except FileNotFoundError:
+        sys.exit(f"{directory} holds no run.h5: give the directory of a run's results")
+    except OSError as error:
+        sys.exit(f"{directory}/run.h5 cannot be read: {error}")
+
+
+def _text(value):
+    return value.decode("utf-8") if isinstance(value, bytes) else str(value)
+
+
+def _node_order(p):
+    """(i, j) of the nodes of a Lagrange quadrilateral, as lib/output/lagrange.hpp states it."""
+    inner = range(1, p)
+    edges = [(i, 0) for i in inner] + [(p, j) for j in inner] + [(i, p) for i in inner] + [(0, j) for j in inner]
+    return [(0, 0), (p, 0), (p, p), (0, p)] + edges + [(i, j) for j in inner for i in inner]
+
+
+def _lagrange_table(p, k):
+    """Lagrange polynomials of the nodes at the uniform grid: shape ((k + 1)^2, (p + 1)^2)."""
+    nodes, grid = numpy.arange(p + 1) / p, numpy.arange(k + 1) / k
+    line = numpy.ones((k + 1, p + 1))
+    for i in range(p + 1):
+        for other in range(p + 1):
+            if other != i:
+                line[:, i] *= (grid - nodes[other]) / (nodes[i] - nodes[other])
+    return numpy.array([numpy.outer(line[:, j], line[:, i]).ravel() for i, j in _node_order(p)]).T
+
+
+def main():
+    parser = argparse.ArgumentParser(description="List what a run recorded.")
+    parser.add_argument("results", help="directory of a run's results")
+    parser.add_argument("-s", "--series", nargs="+", metavar="NAME", help="print these series, one line a step, instead of the list")
+    arguments = parser.parse_args()
+    result = run(arguments.results)
+    if arguments.series:
+        unknown = [name for name in arguments.series if name not in result.series]
+        if unknown:
+            sys.exit(f"no series {unknown[0]}; there are: {', '.join(sorted(result.series))}")
+        for values in zip(*(result.series[name] for name in arguments.series)):
+            print(*(f"{value:.16g}" for value in values))
+        return
+    print(f"{result.name}: {len(result.series['time'])} rows, {len(result.snapshots())} snapshots")
+    for name, values in sorted(result.series.items()):
+        print(f"  {name:24} {values[-1] if len(values) else float('nan'):14.7g}  {result.units[name]:14}  {result.descriptions[name]}")
+
+
+if __name__ == "__main__":
+    main()
