@@ -1,5 +1,5 @@
 #pragma once
-// From control nets to the Bezier points of the elements, in the layout that the hot loops work on.
+// From control nets to the Bezier points of the elements, and back for what is dual to them, in the layouts that the hot loops work on.
 
 #include <utility>
 #include <vector>
@@ -15,7 +15,7 @@ struct Block {
   std::vector<int> elements;
 };
 
-/// The elements grouped by degree.
+/// The elements grouped by degree: degrees ascending, elements ascending in each.
 struct Blocks {
   std::vector<Block> blocks;
   std::vector<std::pair<int, int>> place;  ///< element -> (block, position in it)
@@ -25,5 +25,45 @@ Blocks blocks_by_degree(const spline::Space& space);
 /// Bezier points of every element of a block. Column c * n_e + k holds component c of element k: shape ((p+1)^2, 3 n_e), column-major,
 /// so that (Bernstein table) * (this) gives one contiguous array a component over all nodes of all elements.
 Eigen::MatrixXd bezier_points(const spline::Space& space, const Block& block, const Net& net);
+
+/// The extraction of a space as a map between control nets and Bezier points, made once a mesh and good for any number of nets.
+/// Equal extraction matrices are kept once (a uniform mesh has one for nearly all elements), so they stay in the cache.
+class BezierMap {
+ public:
+  explicit BezierMap(const spline::Space& space);
+
+  int n_points() const { return n_points_; }
+  int n_elements() const { return static_cast<int>(elements_.size()); }
+  int degree(int element) const { return elements_[element].degree; }
+  int n_bezier(int element) const { return (degree(element) + 1) * (degree(element) + 1); }
+  const Blocks& blocks() const { return blocks_; }
+
+  /// Bezier points of one element, `out` of shape (3, n_b): all of x1, then x2, then x3.
+  void points(int element, const Net& net, double* out) const;
+
+  /// The same for every element of a block, shape ((p+1)^2, 3 n_e) as above; `out` is resized only if it has another shape.
+  void points(const Block& block, const Net& net, Eigen::MatrixXd& out) const;
+
+  /// The transpose of `points`: net_A += sum_b extraction(A, b) in_b, with `in` of shape (3, n_b). Turns derivatives with respect to
+  /// Bezier points into derivatives with respect to control points.
+  void add_transposed(int element, const double* in, Net& net) const;
+
+  /// The same for a scalar quantity, `in` of length n_b, `field` of length N.
+  void add_transposed(int element, const double* in, Eigen::VectorXd& field) const;
+
+ private:
+  struct Operator {
+    int m, n_b;
+    std::vector<double> by_function, by_bezier;  ///< the matrix with the Bezier index, with the function index running fastest
+  };
+  struct Element {
+    int degree, first, operation;  ///< degree, start in `points_`, position in `operators_`
+  };
+  int n_points_;
+  Blocks blocks_;
+  std::vector<Element> elements_;
+  std::vector<int> points_;
+  std::vector<Operator> operators_;
+};
 
 }  // namespace tanktread::surface

@@ -1,0 +1,27 @@
+#pragma once
+// A smooth way from the surface of a cube to the sphere, to start fits from.
+
+#include "base/types.hpp"
+
+namespace tanktread::surface {
+
+/// The Catmull-Clark surface of the projected cube net of 3 x 3 elements a face, drawn radially onto the unit sphere: C2 everywhere but at the
+/// eight corners, cube edges included. (An equiangular map has kinks along the cube edges, which a smooth spline space smears out: ten times
+/// the error in the normal.)
+///
+/// The surface has all symmetries of the cube, so one face suffices: what lies beyond its sides are its own mirror images.
+class CubeSphere {
+ public:
+  /// `levels` subdivisions of the 3 x 3 net; the last net is evaluated as a bicubic B-spline surface, which is exact but for the eight
+  /// corner elements.
+  explicit CubeSphere(int levels = 5);
+
+  /// Point of the unit sphere for a point on the surface of the cube [-1, 1]^3.
+  Vec3 operator()(const Vec3& on_cube) const;
+
+ private:
+  int n_;
+  Net net_;  ///< vertices (i, j), -1 <= i, j <= n + 1, of the face x3 = 1, i fastest
+};
+
+}  // namespace tanktread::surface

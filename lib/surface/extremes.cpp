@@ -1,0 +1,225 @@
+#include "surface/extremes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "base/errors.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Value, gradient and Hessian of sign * x_c on a patch.
+struct Height {
+  double value;
+  Vec2 gradient;
+  Mat2 hessian;
+};
+Height height(const Patch& patch, int c, double sign, const Vec2& at) {
+  const Jet j = jet(patch, at[0], at[1]);
+  Height result{sign * j.x[c], sign * Vec2(j.s[c], j.t[c]), {}};
+  result.hessian << sign * j.ss[c], sign * j.st[c], sign * j.st[c], sign * j.tt[c];
+  return result;
+}
+
+/// Newton's step uphill on the unit square: coordinates that press against a side stay there; steepest ascent where Newton would descend.
+Vec2 uphill(const Height& h, const Vec2& at) {
+  const bool held[2] = {(at[0] <= 0 && h.gradient[0] <= 0) || (at[0] >= 1 && h.gradient[0] >= 0),
+                        (at[1] <= 0 && h.gradient[1] <= 0) || (at[1] >= 1 && h.gradient[1] >= 0)};
+  if (held[0] && held[1]) return Vec2::Zero();
+  if (held[0] || held[1]) {
+    const int free = held[0] ? 1 : 0;
+    Vec2 step = Vec2::Zero();
+    const double curvature = h.hessian(free, free), slope = h.gradient[free];
+    step[free] = curvature < 0 ? -slope / curvature : std::copysign(0.25, slope);
+    return step;
+  }
+  if (h.hessian(0, 0) < 0 && h.hessian.determinant() > 0) return -h.hessian.inverse() * h.gradient;
+  return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
+}
+
+/// The largest value that can be climbed to from a point of the patch.
+double summit(const Patch& patch, int c, double sign, Vec2 at) {
+  Height here = height(patch, c, sign, at);
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    Vec2 step = uphill(here, at);
+    double moved = 0;
+    for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
+      const Vec2 next = (at + step).cwiseMax(0).cwiseMin(1);
+      const Height there = height(patch, c, sign, next);
+      if (there.value < here.value) continue;
+      moved = (next - at).norm();
+      at = next;
+      here = there;
+      break;
+    }
+    if (moved < 1e-9) break;  // the height errs by the square of this
+  }
+  return here.value;
+}
+
+double largest_coordinate(const Patches& surface, int c, double sign) {
+  double best = -infinity;
+  for (int e = 0; e < surface.size(); ++e) {
+    const Patch& patch = surface[e];
+    for (const int corner : {0, patch.degree, patch.n_bezier() - 1 - patch.degree, patch.n_bezier() - 1})
+      best = std::max(best, sign * patch.coordinate(c, corner));
+  }
+  // A Bezier patch stays below its highest point, so all but a few elements drop out.
+  struct Candidate {
+    double bound;
+    int element, point;
+  };
+  std::vector<Candidate> candidates;
+  for (int e = 0; e < surface.size(); ++e) {
+    Candidate candidate{-infinity, e, 0};
+    for (int b = 0; b < surface[e].n_bezier(); ++b) {
+      const double bound = sign * surface[e].coordinate(c, b);
+      if (bound > candidate.bound) candidate = {bound, e, b};
+    }
+    if (candidate.bound > best) candidates.push_back(candidate);
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.bound > b.bound; });
+  for (const Candidate& candidate : candidates) {
+    if (candidate.bound <= best) break;
+    const Patch& patch = surface[candidate.element];
+    const int p = patch.degree;
+    const Vec2 start(double(candidate.point % (p + 1)) / p, double(candidate.point / (p + 1)) / p);
+    best = std::max(best, summit(patch, c, sign, start));
+  }
+  return best;
+}
+
+/// A point of the section curve on one element, found by sampling.
+struct Crossing {
+  Vec2 at;
+  double distance;
+};
+
+constexpr int cells = 6;  ///< sampling intervals an element and direction
+
+/// Where the plane x2 = centre_2 cuts the lines of a sampling grid, by linear interpolation.
+void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
+  result.clear();
+  double above[cells + 1][cells + 1];
+  Vec3 y[cells + 1][cells + 1];
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      y[j][i] = place(patch, double(i) / cells, double(j) / cells) - centre;
+      above[j][i] = std::abs(y[j][i][1]) < 1e-13 * y[j][i].norm() ? 0. : y[j][i][1];
+    }
+  }
+  const auto edge = [&](int j, int i, int j2, int i2) {
+    const double a = above[j][i], b = above[j2][i2];
+    if (a * b > 0) return;
+    const double share = a == b ? 0.5 : a / (a - b);
+    const Vec3 cut = y[j][i] + share * (y[j2][i2] - y[j][i]);
+    result.push_back({Vec2(i + share * (i2 - i), j + share * (j2 - j)) / cells, std::hypot(cut[0], cut[2])});
+  };
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      if (i < cells) edge(j, i, j, i + 1);
+      if (j < cells) edge(j, i, j + 1, i);
+    }
+  }
+}
+
+/// Stationary distance on the section curve: Newton's method for  grad(r^2/2) = lambda grad(y2),  y2 = 0. Nothing when it leaves the element.
+std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre, Vec2 at) {
+  double lambda = std::numeric_limits<double>::quiet_NaN();
+  for (int iteration = 0; iteration < 15; ++iteration) {
+    const Jet j = jet(patch, at[0], at[1]);
+    const double y1 = j.x[0] - centre[0], y2 = j.x[1] - centre[1], y3 = j.x[2] - centre[2];
+    const Vec2 pull(y1 * j.s[0] + y3 * j.s[2], y1 * j.t[0] + y3 * j.t[2]), slope(j.s[1], j.t[1]);
+    if (std::isnan(lambda)) lambda = pull.dot(slope) / slope.squaredNorm();
+    Mat3 system = Mat3::Zero();
+    system(0, 0) = j.s[0] * j.s[0] + j.s[2] * j.s[2] + y1 * j.ss[0] + y3 * j.ss[2] - lambda * j.ss[1];
+    system(0, 1) = j.s[0] * j.t[0] + j.s[2] * j.t[2] + y1 * j.st[0] + y3 * j.st[2] - lambda * j.st[1];
+    system(1, 1) = j.t[0] * j.t[0] + j.t[2] * j.t[2] + y1 * j.tt[0] + y3 * j.tt[2] - lambda * j.tt[1];
+    system(1, 0) = system(0, 1);
+    system.block<2, 1>(0, 2) = -slope;
+    system.block<1, 2>(2, 0) = slope.transpose();
+    const Vec3 change = system.partialPivLu().solve(Vec3(-pull[0], -pull[1], -y2));
+    Vec2 step = change.head<2>();
+    const double length = step.norm();
+    if (!(length < 1e3)) return {};
+    if (length > 0.3) step *= 0.3 / length;
+    at += step;
+    lambda = change[2];
+    if ((at.array() < -0.5).any() || (at.array() > 1.5).any()) return {};
+    if (length < 1e-9) break;
+  }
+  constexpr double slack = 1e-7;  // neighbours agree beyond their common side to the third power of it
+  if ((at.array() < -slack).any() || (at.array() > 1 + slack).any()) return {};
+  const Vec3 y = place(patch, at[0], at[1]) - centre;
+  if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
+  return std::hypot(y[0], y[2]);
+}
+
+/// Distance at a sampled crossing moved onto the curve along the gradient of y2, for elements that hold no stationary point.
+std::optional<double> distance_on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    const Jet j = jet(patch, at[0], at[1]);
+    const Vec2 slope(j.s[1], j.t[1]);
+    const Vec2 step = -(j.x[1] - centre[1]) / slope.squaredNorm() * slope;
+    if (!(step.norm() < 1)) break;
+    at = (at + step).cwiseMax(0).cwiseMin(1);
+    if (step.norm() < 1e-10) break;
+  }
+  const Vec3 y = place(patch, at[0], at[1]) - centre;
+  if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
+  return std::hypot(y[0], y[2]);
+}
+
+/// Elements that may hold the extremum, each with its best crossing.
+struct Candidate {
+  int element;
+  Crossing crossing;
+  double spread;  ///< largest minus smallest sampled distance on the element
+};
+
+/// The best of sign * distance over the candidates.
+double best_distance(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign) {
+  double sampled = -infinity, best = -infinity;
+  for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
+  for (const Candidate& c : candidates) {
+    if (sign * c.crossing.distance + c.spread < sampled) continue;  // sampling errs by less than what the distance varies by
+    for (const auto& method : {stationary_distance, distance_on_curve})
+      if (const std::optional<double> found = method(surface[c.element], centre, c.crossing.at)) best = std::max(best, sign * *found);
+  }
+  return sign * (std::isfinite(best) ? best : sampled);
+}
+
+}  // namespace
+
+Range coordinate_range(const Patches& surface, int c) { return {-largest_coordinate(surface, c, -1), largest_coordinate(surface, c, 1)}; }
+
+Range section_distances(const Patches& surface, const Vec3& centre) {
+  std::vector<Candidate> longest, shortest;
+  std::vector<Crossing> found;
+  for (int e = 0; e < surface.size(); ++e) {
+    const Patch& patch = surface[e];
+    const auto [low, high] = std::minmax_element(patch.points + patch.n_bezier(), patch.points + 2 * patch.n_bezier());
+    const double slack = 1e-12 * (std::abs(centre[1]) + *high - *low);
+    if (*low > centre[1] + slack || *high < centre[1] - slack) continue;
+    crossings(patch, centre, found);
+    if (found.empty()) continue;
+    const auto [nearest, farthest] =
+        std::minmax_element(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
+    const double spread = farthest->distance - nearest->distance;
+    longest.push_back({e, *farthest, spread});
+    shortest.push_back({e, *nearest, spread});
+  }
+  if (longest.empty()) throw RunFailure("the plane x2 = const. through the centroid misses the surface: it is no longer closed or not a number");
+  return {best_distance(surface, centre, shortest, -1), best_distance(surface, centre, longest, 1)};
+}
+
+}  // namespace tanktread::surface

@@ -1,0 +1,150 @@
+#include "surface/geometry.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "surface/extremes.hpp"
+#include "surface/integrals_kernel.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+/// Calls use(elements of the group, Bezier points in lanes) for the elements, eight of one degree at a time; a short group repeats its last.
+template <class Use>
+void each_group(const BezierMap& map, const Net& net, std::span<const int> elements, Use use) {
+  kernel::Lanes lanes;
+  std::vector<double> one(3 * kernel::most_bezier);
+  std::vector<int> group;
+  for (const Block& block : map.blocks().blocks) {
+    const int n = 3 * (block.degree + 1) * (block.degree + 1);
+    const auto flush = [&] {
+      for (int l = static_cast<int>(group.size()); l < kernel::lanes; ++l)
+        for (int k = 0; k < n; ++k) lanes.value[k * kernel::lanes + l] = lanes.value[k * kernel::lanes];
+      use(block.degree, std::span<const int>(group), lanes);
+      group.clear();
+    };
+    for (const int e : elements) {
+      if (map.degree(e) != block.degree) continue;
+      map.points(e, net, one.data());
+      for (int k = 0; k < n; ++k) lanes.value[k * kernel::lanes + static_cast<int>(group.size())] = one[k];
+      group.push_back(e);
+      if (group.size() == kernel::lanes) flush();
+    }
+    if (!group.empty()) flush();
+  }
+}
+
+/// The net about its own mean: integrals by the divergence theorem lose digits when the origin is far away.
+Net about_mean(const Net& net, Vec3& mean) {
+  mean = net.colwise().mean().transpose();
+  return net.rowwise() - mean.transpose();
+}
+
+}  // namespace
+
+Point point(const spline::Space& space, const Net& net, const spline::Site& site) {
+  const ElementPoints element(space, net, site.element);
+  const Jet at = jet(element.patch(), site.s, site.t);
+  Point result{at.x, at.s, at.t, at.s.cross(at.t), 0};
+  result.jacobian = result.n.norm();
+  result.n /= result.jacobian;
+  return result;
+}
+
+Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site) {
+  return place(ElementPoints(space, net, site.element).patch(), site.s, site.t);
+}
+
+double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site) {
+  return mean_curvature(jet(ElementPoints(space, net, site.element).patch(), site.s, site.t));
+}
+
+Geometry::Geometry(const spline::Space& space) : map_(space), all_(space.elements.size()) { std::iota(all_.begin(), all_.end(), 0); }
+
+double Geometry::volume(const Net& net) const {
+  Vec3 mean;
+  double sum = 0;
+  each_group(map_, about_mean(net, mean), all_, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+    double part[kernel::lanes];
+    kernel::volume(degree, points, part);
+    for (std::size_t l = 0; l < group.size(); ++l) sum += part[l];
+  });
+  return sum;
+}
+
+void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
+  b.setZero(map_.n_points(), 3);
+  kernel::Lanes gradient;
+  double one[3 * kernel::most_bezier];
+  each_group(map_, net, elements, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+    kernel::volume_gradient(degree, points, gradient);
+    const int n = 3 * (degree + 1) * (degree + 1);
+    for (int l = 0; l < static_cast<int>(group.size()); ++l) {
+      for (int k = 0; k < n; ++k) one[k] = gradient.value[k * kernel::lanes + l];
+      map_.add_transposed(group[l], one, b);
+    }
+  });
+}
+
+Net Geometry::volume_gradient(const Net& net) const {
+  Net b;
+  volume_gradient(net, all_, b);
+  return b;
+}
+
+Measures Geometry::measures(const Net& net) const {
+  Vec3 mean, first = Vec3::Zero();
+  Measures result;
+  double second[6] = {};
+  each_group(map_, about_mean(net, mean), all_, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+    kernel::Moments part;
+    kernel::moments(degree, points, part);
+    for (std::size_t l = 0; l < group.size(); ++l) {
+      result.area += part.area[l];
+      result.volume += part.volume[l];
+      for (int c = 0; c < 3; ++c) first[c] += part.first[c][l];
+      for (int k = 0; k < 6; ++k) second[k] += part.second[k][l];
+    }
+  });
+  const Vec3 centre = first / result.volume;
+  result.centroid = mean + centre;
+  result.second_moments << second[0], second[3], second[4], second[3], second[1], second[5], second[4], second[5], second[2];
+  result.second_moments -= result.volume * centre * centre.transpose();
+  return result;
+}
+
+Ellipsoid ellipsoid_of_inertia(const Measures& measures) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(measures.second_moments);
+  return {(5 / measures.volume * solver.eigenvalues().reverse()).cwiseSqrt(), solver.eigenvectors().rowwise().reverse()};
+}
+
+Deformation Geometry::deformation(const Net& net) const { return deformation(net, measures(net)); }
+
+Deformation Geometry::deformation(const Net& net, const Measures& measures) const {
+  Deformation result;
+  const Mat3& m = measures.second_moments;
+  const double mean = (m(0, 0) + m(2, 2)) / 2, difference = (m(0, 0) - m(2, 2)) / 2, radius = std::hypot(difference, m(0, 2));
+  const double longest = std::sqrt(mean + radius), shortest = std::sqrt(mean - radius);
+  result.taylor_inertia = (longest - shortest) / (longest + shortest);
+  result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
+
+  const Patches patches(map_, net);
+  const Range distance = section_distances(patches, measures.centroid);
+  result.taylor_surface = (distance.largest - distance.smallest) / (distance.largest + distance.smallest);
+  for (int c = 0; c < 3; ++c) {
+    const Range range = coordinate_range(patches, c);
+    result.lengths[c] = range.largest - range.smallest;
+  }
+  return result;
+}
+
+Measures measures(const spline::Space& space, const Net& net) { return Geometry(space).measures(net); }
+double volume(const spline::Space& space, const Net& net) { return Geometry(space).volume(net); }
+Net volume_gradient(const spline::Space& space, const Net& net) { return Geometry(space).volume_gradient(net); }
+Deformation deformation(const spline::Space& space, const Net& net) { return Geometry(space).deformation(net); }
+
+}  // namespace tanktread::surface

@@ -1,0 +1,163 @@
+#include "surface/integrals_kernel.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "quadrature/gauss.hpp"
+#include "spline/bernstein.hpp"
+
+namespace tanktread::surface::kernel {
+namespace {
+
+using Lane [[gnu::vector_size(sizeof(double) * lanes), gnu::may_alias]] = double;
+
+/// Bernstein values and derivatives at the Gauss points of one direction.
+template <int p, int n>
+struct Table {
+  double weight[n], value[n][p + 1], slope[n][p + 1];
+  Table() {
+    const quadrature::GaussRule& rule = quadrature::gauss(n);
+    for (int q = 0; q < n; ++q) {
+      weight[q] = rule.weights[q];
+      spline::bernstein(p, rule.nodes[q], value[q], slope[q], nullptr);
+    }
+  }
+};
+
+/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, x and the tangents as three lanes each: sums over s first, then over t.
+template <int p, int n, bool with_place, class Use>
+inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Use use) {
+  const auto* points = reinterpret_cast<const Lane*>(points_of_lanes.value);
+  for (int qs = 0; qs < n; ++qs) {
+    Lane value[3][p + 1], slope[3][p + 1];
+    for (int c = 0; c < 3; ++c) {
+      for (int j = 0; j <= p; ++j) {
+        const Lane* row = points + (c * (p + 1) + j) * (p + 1);
+        Lane v{}, d{};
+        for (int i = 0; i <= p; ++i) {
+          v += table.value[qs][i] * row[i];
+          d += table.slope[qs][i] * row[i];
+        }
+        value[c][j] = v;
+        slope[c][j] = d;
+      }
+    }
+    for (int qt = 0; qt < n; ++qt) {
+      Lane x[3]{}, a1[3]{}, a2[3]{};
+      for (int c = 0; c < 3; ++c) {
+        for (int j = 0; j <= p; ++j) {
+          if constexpr (with_place) x[c] += table.value[qt][j] * value[c][j];
+          a1[c] += table.value[qt][j] * slope[c][j];
+          a2[c] += table.slope[qt][j] * value[c][j];
+        }
+      }
+      use(qs, qt, x, a1, a2);
+    }
+  }
+}
+
+inline void cross(const Lane (&a)[3], const Lane (&b)[3], Lane (&c)[3]) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+inline void store(const Lane& from, double (&to)[lanes]) {
+  for (int l = 0; l < lanes; ++l) to[l] = from[l];
+}
+
+template <int p>
+struct Of {
+  static constexpr int n = quadrature::gauss_points_for_degree(3 * p - 1);
+  static constexpr int n_moments = quadrature::gauss_points_for_degree(5 * p - 1);
+
+  static void volume(const Lanes& points, double (&result)[lanes]) {
+    static const Table<p, n> table;
+    Lane sum{};
+    each_node<p, n, true>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
+      Lane normal[3];
+      cross(a1, a2, normal);
+      sum += (table.weight[qs] * table.weight[qt] / 3) * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
+    });
+    store(sum, result);
+  }
+
+  static void volume_gradient(const Lanes& points, Lanes& gradient) {
+    static const Table<p, n> table;
+    auto* result = reinterpret_cast<Lane*>(gradient.value);
+    for (int k = 0; k < 3 * (p + 1) * (p + 1); ++k) result[k] = Lane{};
+    Lane over_t[3][p + 1];
+    each_node<p, n, false>(table, points, [&](int qs, int qt, const Lane(&)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
+      Lane normal[3];
+      cross(a1, a2, normal);
+      const double weight = table.weight[qs] * table.weight[qt];
+      for (int c = 0; c < 3; ++c)
+        for (int j = 0; j <= p; ++j) {
+          const Lane term = (weight * table.value[qt][j]) * normal[c];
+          over_t[c][j] = qt == 0 ? term : over_t[c][j] + term;
+        }
+      if (qt + 1 < n) return;
+      for (int c = 0; c < 3; ++c)
+        for (int j = 0; j <= p; ++j)
+          for (int i = 0; i <= p; ++i) result[(c * (p + 1) + j) * (p + 1) + i] += table.value[qs][i] * over_t[c][j];
+    });
+  }
+
+  static void moments(const Lanes& points, Moments& result) {
+    static const Table<p, n_moments> table;
+    Lane area{}, volume_sum{}, first[3]{}, second[6]{};
+    each_node<p, n_moments, true>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
+      Lane normal[3];
+      cross(a1, a2, normal);
+      const double weight = table.weight[qs] * table.weight[qt];
+      const Lane square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+      Lane jacobian;
+      for (int l = 0; l < lanes; ++l) jacobian[l] = std::sqrt(square[l]);
+      area += weight * jacobian;
+      const Lane flux = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
+      volume_sum += flux;
+      for (int c = 0; c < 3; ++c) {
+        first[c] += flux * x[c];
+        second[c] += flux * x[c] * x[c];
+      }
+      second[3] += flux * x[0] * x[1];
+      second[4] += flux * x[0] * x[2];
+      second[5] += flux * x[1] * x[2];
+    });
+    store(area, result.area);
+    store(volume_sum / 3, result.volume);
+    for (int c = 0; c < 3; ++c) store(first[c] / 4, result.first[c]);
+    for (int k = 0; k < 6; ++k) store(second[k] / 5, result.second[k]);
+  }
+};
+
+/// Calls `use` with the degree as a compile-time constant.
+template <class Use>
+void with_degree(int degree, Use use) {
+  switch (degree) {
+    case 2: return use(std::integral_constant<int, 2>{});
+    case 3: return use(std::integral_constant<int, 3>{});
+    case 4: return use(std::integral_constant<int, 4>{});
+    case 5: return use(std::integral_constant<int, 5>{});
+    case 6: return use(std::integral_constant<int, 6>{});
+  }
+  throw std::logic_error("surface integrals have no rule for elements of degree " + std::to_string(degree));
+}
+
+}  // namespace
+
+void volume(int degree, const Lanes& x, double (&volume)[lanes]) {
+  with_degree(degree, [&](auto p) { Of<p>::volume(x, volume); });
+}
+
+void volume_gradient(int degree, const Lanes& x, Lanes& gradient) {
+  with_degree(degree, [&](auto p) { Of<p>::volume_gradient(x, gradient); });
+}
+
+void moments(int degree, const Lanes& x, Moments& result) {
+  with_degree(degree, [&](auto p) { Of<p>::moments(x, result); });
+}
+
+}  // namespace tanktread::surface::kernel

@@ -1,0 +1,77 @@
+#include "surface/patch.hpp"
+
+#include <Eigen/Geometry>
+
+#include "spline/bernstein.hpp"
+
+namespace tanktread::surface {
+
+using spline::max_degree;
+
+Jet jet(const Patch& patch, double s, double t) {
+  const int p = patch.degree;
+  double b[max_degree + 1], b1[max_degree + 1], b2[max_degree + 1], c[max_degree + 1], c1[max_degree + 1], c2[max_degree + 1];
+  spline::bernstein(p, s, b, b1, b2);
+  spline::bernstein(p, t, c, c1, c2);
+  Jet result{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  const double* row = patch.points;
+  for (int d = 0; d < 3; ++d) {
+    for (int j = 0; j <= p; ++j, row += p + 1) {
+      double value = 0, first = 0, second = 0;
+      for (int i = 0; i <= p; ++i) {
+        value += b[i] * row[i];
+        first += b1[i] * row[i];
+        second += b2[i] * row[i];
+      }
+      result.x[d] += c[j] * value;
+      result.s[d] += c[j] * first;
+      result.ss[d] += c[j] * second;
+      result.t[d] += c1[j] * value;
+      result.st[d] += c1[j] * first;
+      result.tt[d] += c2[j] * value;
+    }
+  }
+  return result;
+}
+
+Vec3 place(const Patch& patch, double s, double t) {
+  const int p = patch.degree;
+  double b[max_degree + 1], c[max_degree + 1];
+  spline::bernstein(p, s, b);
+  spline::bernstein(p, t, c);
+  Vec3 result = Vec3::Zero();
+  const double* row = patch.points;
+  for (int d = 0; d < 3; ++d)
+    for (int j = 0; j <= p; ++j, row += p + 1)
+      for (int i = 0; i <= p; ++i) result[d] += c[j] * b[i] * row[i];
+  return result;
+}
+
+double mean_curvature(const Jet& jet) {
+  const Vec3 n = jet.s.cross(jet.t).normalized();
+  const double e = jet.s.dot(jet.s), f = jet.s.dot(jet.t), g = jet.t.dot(jet.t);
+  return -(e * jet.tt.dot(n) - 2 * f * jet.st.dot(n) + g * jet.ss.dot(n)) / (2 * (e * g - f * f));
+}
+
+ElementPoints::ElementPoints(const spline::Space& space, const Net& net, int element) {
+  const spline::Element& from = space.elements[element];
+  degree_ = from.degree;
+  points_.assign(3 * from.extraction.cols(), 0.);
+  for (int b = 0; b < from.extraction.cols(); ++b)
+    for (int c = 0; c < 3; ++c)
+      for (int a = 0; a < from.extraction.rows(); ++a) points_[c * from.extraction.cols() + b] += from.extraction(a, b) * net(from.points[a], c);
+}
+
+Patches::Patches(const BezierMap& map, const Net& net) : patches_(map.n_elements()) {
+  std::size_t size = 0;
+  for (int e = 0; e < map.n_elements(); ++e) size += 3 * map.n_bezier(e);
+  points_.resize(size);
+  double* next = points_.data();
+  for (int e = 0; e < map.n_elements(); ++e) {
+    map.points(e, net, next);
+    patches_[e] = {map.degree(e), next};
+    next += 3 * map.n_bezier(e);
+  }
+}
+
+}  // namespace tanktread::surface

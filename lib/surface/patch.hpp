@@ -1,0 +1,55 @@
+#pragma once
+// One Bezier element with its points in space.
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "surface/bezier_points.hpp"
+
+namespace tanktread::surface {
+
+/// A view of the Bezier points of one element, shape (3, (p+1)^2): all of x1, then x2, then x3, s fastest.
+struct Patch {
+  int degree = 3;
+  const double* points = nullptr;
+
+  int n_bezier() const { return (degree + 1) * (degree + 1); }
+  double coordinate(int c, int b) const { return points[c * n_bezier() + b]; }
+};
+
+/// Place and derivatives up to the second with respect to the local coordinates.
+struct Jet {
+  Vec3 x, s, t, ss, st, tt;
+};
+Jet jet(const Patch& patch, double s, double t);
+
+/// Place alone.
+Vec3 place(const Patch& patch, double s, double t);
+
+/// Mean curvature chi = 1/2 div n, positive on a sphere.
+double mean_curvature(const Jet& jet);
+
+/// The Bezier points of one element of a surface.
+class ElementPoints {
+ public:
+  ElementPoints(const spline::Space& space, const Net& net, int element);
+  Patch patch() const { return {degree_, points_.data()}; }
+
+ private:
+  int degree_;
+  std::vector<double> points_;
+};
+
+/// The Bezier points of all elements of a surface.
+class Patches {
+ public:
+  Patches(const BezierMap& map, const Net& net);
+  int size() const { return static_cast<int>(patches_.size()); }
+  const Patch& operator[](int element) const { return patches_[element]; }
+
+ private:
+  std::vector<double> points_;
+  std::vector<Patch> patches_;
+};
+
+}  // namespace tanktread::surface

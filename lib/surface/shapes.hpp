@@ -1,0 +1,23 @@
+#pragma once
+// Control nets of resting shapes, fitted to the order of the space.
+
+#include "base/types.hpp"
+#include "spline/space.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/fit.hpp"
+#include "surface/options.hpp"
+
+namespace tanktread::surface {
+
+/// Unit sphere: a fit to the smooth cube sphere, then `fits` fits to the radial image of what the last one gave (splines.md, I.1). The error
+/// in the radius falls with h^4, in the normal with h^2.7 (C.11).
+Net unit_sphere(const spline::Space& space, const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 8);
+
+/// The biconcave disc of a red cell with unit radius and axis x3, as an image of the unit sphere:
+///   (x1, x2, x3) -> (x1, x2, x3/2 (0.21 + 2.0 r^2 - 1.12 r^4)),  r^2 = x1^2 + x2^2        (reference.md; Evans & Fung 1972)
+Vec3 red_cell(const Vec3& on_unit_sphere);
+
+/// The resting shape of a deck, in place. Nothing is scaled after the fit, so the volume errs as the fit does; lengths refer to the deck's radius.
+Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
+
+}  // namespace tanktread::surface
