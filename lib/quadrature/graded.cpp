@@ -1,0 +1,91 @@
+#include "quadrature/graded.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quadrature/ellipse.hpp"
+#include "quadrature/gauss.hpp"
+#include "spline/bernstein.hpp"
+
+namespace tanktread::quadrature {
+namespace {
+
+struct Part {
+  double s, t, width, height;
+};
+
+struct Bezier {
+  std::span<const double> points;
+  int degree;
+
+  /// x, x_,s, x_,t
+  std::array<Vec3, 3> at(double s, double t) const {
+    constexpr int size = spline::max_degree + 1;
+    double bs[size], bt[size], ds[size], dt[size];
+    spline::bernstein(degree, s, bs, ds, nullptr);
+    spline::bernstein(degree, t, bt, dt, nullptr);
+    const int n = degree + 1;
+    std::array<Vec3, 3> value{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const double* q = points.data() + j * n + i;
+        const Vec3 p(q[0], q[n * n], q[2 * n * n]);
+        value[0] += bs[i] * bt[j] * p, value[1] += ds[i] * bt[j] * p, value[2] += bs[i] * dt[j] * p;
+      }
+    return value;
+  }
+
+  /// The part's flat picture, and how far its corners are from it.
+  std::pair<Patch, double> patch(const Part& p) const {
+    const auto [x, xs, xt] = at(p.s + p.width / 2, p.t + p.height / 2);
+    const Patch flat{x, xs * p.width / 2, xt * p.height / 2};
+    double bulge = 0;
+    for (const int a : {-1, 1})
+      for (const int b : {-1, 1}) {
+        const Vec3 corner = at(p.s + (1 + a) * p.width / 2, p.t + (1 + b) * p.height / 2)[0];
+        bulge = std::max(bulge, (corner - flat.centre - a * flat.u - b * flat.v).norm());
+      }
+    return {flat, bulge};
+  }
+};
+
+void add(const Part& p, int n_s, int n_t, Rule& rule) {
+  const GaussRule &gs = gauss(n_s), &gt = gauss(n_t);
+  for (int j = 0; j < n_t; ++j)
+    for (int i = 0; i < n_s; ++i)
+      rule.add(p.s + p.width * gs.nodes[i], p.t + p.height * gt.nodes[j], p.width * p.height * gs.weights[i] * gt.weights[j]);
+}
+
+/// Parts below this share of the element's side are not cut again: the target is as good as on the element.
+constexpr double smallest = 1e-8;
+
+}  // namespace
+
+void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
+  const Bezier element{bezier, degree};
+  const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
+  const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
+  std::vector<Part> parts{{0, 0, 1, 1}};
+  while (!parts.empty()) {
+    const Part p = parts.back();
+    parts.pop_back();
+    const auto [flat, bulge] = element.patch(p);
+    const Sight seen = sight(flat, target);
+    const double error = demand.allowed * std::max(seen.distance, smallest) / flat.area();
+    const int n_s = std::max(order_for(error, seen.rho_u), order_for(demand.tolerance, rho_smooth / p.width));
+    const int n_t = std::max(order_for(error, seen.rho_v), order_for(demand.tolerance, rho_smooth / p.height));
+    const bool enough = std::max(n_s, n_t) <= largest && bulge <= 0.25 * seen.distance;
+    const bool wide = flat.u.squaredNorm() > flat.v.squaredNorm();
+    if (enough || std::max(p.width, p.height) < smallest) {
+      add(p, std::min(n_s, largest), std::min(n_t, largest), rule);
+    } else if (wide) {
+      parts.push_back({p.s + p.width / 2, p.t, p.width / 2, p.height});
+      parts.push_back({p.s, p.t, p.width / 2, p.height});
+    } else {
+      parts.push_back({p.s, p.t + p.height / 2, p.width, p.height / 2});
+      parts.push_back({p.s, p.t, p.width, p.height / 2});
+    }
+  }
+}
+
+}  // namespace tanktread::quadrature
