@@ -1,0 +1,86 @@
+#include "stokes/assembly_kernel.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace tanktread::stokes {
+namespace {
+
+template <class Real>
+struct Block {
+  static constexpr int lanes = 64 / sizeof(Real), packs = assembly_block / lanes;
+  using Pack __attribute__((vector_size(64))) = Real;
+
+  static Pack load(const Real* a) {
+    Pack p;
+    std::memcpy(&p, a, sizeof p);
+    return p;
+  }
+  static void store(const Pack& p, Real* a) { std::memcpy(a, &p, sizeof p); }
+};
+
+// g[block (6 k + c) + l]
+template <class Real>
+void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
+  constexpr int n = assembly_block;
+  Real use[n];
+  for (int l = 0; l < n; ++l) use[l] = skip >> l & 1 ? 0 : 1;
+  for (int k = 0; k < panel.n_nodes; ++k, g += 6 * n) {
+    const double x = panel.x[k], y = panel.y[k], z = panel.z[k];
+    const Real weight = static_cast<Real>(panel.weight[k]);
+    for (int l = 0; l < n; ++l) {
+      const Real rx = static_cast<Real>(x - target[l]), ry = static_cast<Real>(y - target[n + l]),
+                 rz = static_cast<Real>(z - target[2 * n + l]);
+      const Real square = rx * rx + ry * ry + rz * rz;
+      const Real inverse = square > 0 ? 1 / std::sqrt(square) : 0;
+      const Real weighted = use[l] * weight * inverse, cube = weighted * inverse * inverse;
+      g[l] = weighted + cube * rx * rx;
+      g[n + l] = cube * rx * ry;
+      g[2 * n + l] = cube * rx * rz;
+      g[3 * n + l] = weighted + cube * ry * ry;
+      g[4 * n + l] = cube * ry * rz;
+      g[5 * n + l] = weighted + cube * rz * rz;
+    }
+  }
+}
+
+// Four functions and six kernel entries at a time: 24 packs of sums in registers.
+template <class Real>
+void add_products(const PanelNodes<Real>& panel, const Real* g, int part, Real* sums) {
+  using B = Block<Real>;
+  using Pack = typename B::Pack;
+  for (int a = 0; a < panel.functions; a += assembly_tile) {
+    const Real* basis = panel.basis + static_cast<std::ptrdiff_t>(panel.n_nodes) * a;
+    Pack total[assembly_tile][6] = {};
+    for (int k = 0; k < panel.n_nodes; ++k) {
+      Pack row[6];
+#pragma GCC unroll 6
+      for (int c = 0; c < 6; ++c) row[c] = B::load(g + assembly_block * (6 * k + c) + B::lanes * part);
+#pragma GCC unroll 4
+      for (int t = 0; t < assembly_tile; ++t) {
+        const Real value = basis[panel.n_nodes * t + k];
+#pragma GCC unroll 6
+        for (int c = 0; c < 6; ++c) total[t][c] += value * row[c];
+      }
+    }
+#pragma GCC unroll 4
+    for (int t = 0; t < assembly_tile; ++t) {
+      Real* to = sums + static_cast<std::ptrdiff_t>(6 * assembly_block) * panel.rows[a + t] + B::lanes * part;
+#pragma GCC unroll 6
+      for (int c = 0; c < 6; ++c) B::store(B::load(to + assembly_block * c) + total[t][c], to + assembly_block * c);
+    }
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums) {
+  kernel_values(panel, target, skip, scratch);
+  for (int part = 0; part < Block<Real>::packs; ++part) add_products(panel, scratch, part, sums);
+}
+
+template void add_far_moments<float>(const PanelNodes<float>&, const double*, std::uint32_t, float*, float*);
+template void add_far_moments<double>(const PanelNodes<double>&, const double*, std::uint32_t, double*, double*);
+
+}  // namespace tanktread::stokes

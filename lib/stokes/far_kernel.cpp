@@ -1,0 +1,62 @@
+#include "stokes/far_kernel.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "stokes/pack.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+constexpr int packs = far_block / lanes;
+
+Pack load(const double* a) {
+  Pack p;
+  std::memcpy(&p, a, sizeof p);
+  return p;
+}
+
+void store(const Pack& p, double* a) { std::memcpy(a, &p, sizeof p); }
+
+}  // namespace
+
+void far_sum(const PointForces& forces, const double* target, double* u) {
+  Pack x0[packs], y0[packs], z0[packs], ux[packs] = {}, uy[packs] = {}, uz[packs] = {};
+  for (int p = 0; p < packs; ++p) {
+    x0[p] = load(target + lanes * p);
+    y0[p] = load(target + far_block + lanes * p);
+    z0[p] = load(target + 2 * far_block + lanes * p);
+  }
+  for (int k = 0; k < forces.n; ++k) {
+    const double x = forces.x[k], y = forces.y[k], z = forces.z[k], fx = forces.fx[k], fy = forces.fy[k], fz = forces.fz[k];
+#pragma GCC unroll 8
+    for (int p = 0; p < packs; ++p) {
+      const Pack rx = x - x0[p], ry = y - y0[p], rz = z - z0[p];
+      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz);
+      const Pack along = (rx * fx + ry * fy + rz * fz) * (inverse * inverse);
+      ux[p] += inverse * (fx + rx * along);
+      uy[p] += inverse * (fy + ry * along);
+      uz[p] += inverse * (fz + rz * along);
+    }
+  }
+  for (int p = 0; p < packs; ++p) {
+    store(ux[p], u + lanes * p);
+    store(uy[p], u + far_block + lanes * p);
+    store(uz[p], u + 2 * far_block + lanes * p);
+  }
+}
+
+void node_sum(const PointForces& forces, int first, int count, const double* x0, double* u) {
+  double ux = 0, uy = 0, uz = 0;
+  for (int k = first; k < first + count; ++k) {
+    const double rx = forces.x[k] - x0[0], ry = forces.y[k] - x0[1], rz = forces.z[k] - x0[2];
+    const double square = rx * rx + ry * ry + rz * rz, inverse = square > 0 ? 1 / std::sqrt(square) : 0;
+    const double along = (rx * forces.fx[k] + ry * forces.fy[k] + rz * forces.fz[k]) * (inverse * inverse);
+    ux += inverse * (forces.fx[k] + rx * along);
+    uy += inverse * (forces.fy[k] + ry * along);
+    uz += inverse * (forces.fz[k] + rz * along);
+  }
+  u[0] = ux, u[1] = uy, u[2] = uz;
+}
+
+}  // namespace tanktread::stokes

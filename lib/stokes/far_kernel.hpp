@@ -1,0 +1,22 @@
+#pragma once
+// The bare sums: every target against every node, on plain arrays.
+
+namespace tanktread::stokes {
+
+/// Point forces: positions and strengths (weight times density), n of each.
+struct PointForces {
+  int n = 0;
+  const double *x = nullptr, *y = nullptr, *z = nullptr, *fx = nullptr, *fy = nullptr, *fz = nullptr;
+};
+
+/// Targets that share one pass over the nodes.
+constexpr int far_block = 16;
+
+/// u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
+/// target[2 far_block + l]; u alike. Each target's sum runs over the nodes in their order. A node at the target counts as nothing.
+void far_sum(const PointForces& forces, const double* target, double* u);
+
+/// u[3] = sum over the nodes first .. first + count - 1 of the same, for one target x0[3]. What a pair with a better rule takes back.
+void node_sum(const PointForces& forces, int first, int count, const double* x0, double* u);
+
+}  // namespace tanktread::stokes

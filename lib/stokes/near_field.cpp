@@ -1,0 +1,115 @@
+#include "stokes/near_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "quadrature/gauss.hpp"
+#include "stokes/panel_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// The share of the tolerance that one panel may use up: several panels around a target err at a time.
+constexpr double share = 0.1;
+
+Vec3 point(const double* bezier, int n_b, int b) { return {bezier[b], bezier[n_b + b], bezier[2 * n_b + b]}; }
+
+quadrature::Patch flat_picture(const double* bezier, int degree) {
+  const int n = degree + 1, n_b = n * n;
+  const Vec3 a = point(bezier, n_b, 0), b = point(bezier, n_b, degree), c = point(bezier, n_b, n_b - 1), d = point(bezier, n_b, n_b - n);
+  return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
+}
+
+/// Distance from the panel beyond which `order` points a direction leave less than `error` of int dG / r, wherever the target is.
+double clearance(double area, double longest, double error, int order) {
+  double d = longest;
+  for (int k = 0; k < 6; ++k) {
+    const double rho = std::max(1., std::pow(area / (d * error), 0.5 / order));
+    d = std::max((rho - 1 / rho) / 2, 1e-3) * longest;
+  }
+  return d;
+}
+
+}  // namespace
+
+NearField::NearField(const Panels& panels, double tolerance, int smooth_order)
+    : panels_(panels),
+      tolerance_(tolerance),
+      smooth_order_(smooth_order),
+      largest_order_(1 + quadrature::order_for(tolerance, quadrature::ellipse(0, 1))),
+      views_(panels.size()),
+      reach_(panels.size()),
+      suspect_((panels.size() + 7) / 8 * 8) {
+  for (auto& c : centre_) c.resize(panels.size());
+}
+
+void NearField::update(const std::vector<double>& bezier) {
+  bezier_ = &bezier;
+  double total = 0;
+  for (int e = 0; e < panels_.size(); ++e) {
+    const NodeTable& t = *panels_[e].table;
+    View& view = views_[e];
+    view.flat = flat_picture(&bezier[panels_[e].first_bezier], t.degree);
+    total += view.area = view.flat.area();
+  }
+  allowed_ = share * tolerance_ * std::sqrt(4 * std::numbers::pi * total);
+  for (int e = 0; e < panels_.size(); ++e) {
+    const NodeTable& t = *panels_[e].table;
+    const double* points = &bezier[panels_[e].first_bezier];
+    View& view = views_[e];
+    const auto& [centre, u, v] = view.flat;
+    double radius = 0;
+    for (int b = 0; b < t.n_bernstein; ++b) radius = std::max(radius, (point(points, t.n_bernstein, b) - centre).squaredNorm());
+    radius = std::sqrt(radius);
+    const int middle = t.n_bernstein / 2 + (t.degree % 2 ? (t.degree + 1) / 2 : 0);
+    view.bulge = std::max((point(points, t.n_bernstein, 0) - centre + u + v).norm(),
+                          std::abs((point(points, t.n_bernstein, middle) - centre).dot(u.cross(v).normalized())));
+    const double reach = radius + clearance(view.area, std::max(u.norm(), v.norm()), allowed_, t.order);
+    reach_[e] = reach * reach;
+    for (int c = 0; c < 3; ++c) centre_[c][e] = centre[c];
+  }
+}
+
+int NearField::needed_order(const View& view, const quadrature::Sight& seen) const {
+  const double error = allowed_ * seen.distance / view.area;
+  return std::max(quadrature::order_for(error, seen.rho_u), quadrature::order_for(error, seen.rho_v));
+}
+
+void NearField::list(const Vec3& target, std::vector<int>& near) {
+  near.clear();
+  mark_within(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data(), target.data(), suspect_.data());
+  for (int first = 0; first < panels_.size(); first += 8) {
+    std::uint64_t any;
+    std::memcpy(&any, &suspect_[first], 8);
+    if (!any) continue;
+    for (int e = first; e < first + 8; ++e)
+      if (suspect_[e] && needed_order(views_[e], quadrature::sight(views_[e].flat, target)) > panels_[e].table->order) near.push_back(e);
+  }
+}
+
+const PointTable& NearField::rule(int panel, const Vec3& target) {
+  const NodeTable& t = *panels_[panel].table;
+  const View& view = views_[panel];
+  const quadrature::Sight seen = quadrature::sight(view.flat, target);
+  const int order = std::max(needed_order(view, seen), t.order + 1);
+  if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
+    const auto [at, is_new] = whole_.try_emplace({t.degree, order});
+    if (is_new) {
+      const auto& gauss = quadrature::tensor_gauss(order);
+      tabulate({{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}}, t.degree,
+               at->second);
+    }
+    return at->second;
+  }
+  points_.clear();
+  const std::span<const double> bezier(bezier_->data() + panels_[panel].first_bezier, static_cast<std::size_t>(3) * t.n_bernstein);
+  quadrature::graded(bezier, t.degree, target, {allowed_, tolerance_, smooth_order_}, points_);
+  tabulate(points_, t.degree, parts_);
+  return parts_;
+}
+
+}  // namespace tanktread::stokes

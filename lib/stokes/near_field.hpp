@@ -1,0 +1,50 @@
+#pragma once
+// Which panels a target is too close to for their far rule, and what rule they need.
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "quadrature/ellipse.hpp"
+#include "quadrature/graded.hpp"
+#include "stokes/panels.hpp"
+#include "stokes/point_table.hpp"
+
+namespace tanktread::stokes {
+
+/// Near rules by tolerance (method.md, section 2; splines.md, F.2). A pure function of the present shape: no memory of earlier ones.
+class NearField {
+ public:
+  /// `tolerance`: accuracy relative to int dG / r over the whole surface, about sqrt(4 pi area).
+  NearField(const Panels& panels, double tolerance, int smooth_order);
+
+  /// Takes the shape from the Bezier points of all panels; they must outlive the calls below.
+  void update(const std::vector<double>& bezier);
+
+  /// Panels whose far rule misses the tolerance at the target, ascending.
+  void list(const Vec3& target, std::vector<int>& near);
+
+  /// The rule for one of them, as a table that stays valid until the next call.
+  const PointTable& rule(int panel, const Vec3& target);
+
+ private:
+  struct View {
+    quadrature::Patch flat;
+    double area = 0, bulge = 0;
+  };
+  int needed_order(const View& view, const quadrature::Sight& seen) const;
+
+  const Panels& panels_;
+  double tolerance_, allowed_ = 0;
+  int smooth_order_, largest_order_;
+  const std::vector<double>* bezier_ = nullptr;
+  std::vector<View> views_;
+  std::vector<double> centre_[3], reach_;  ///< squared distance from the centre beyond which the far rule is enough
+  std::vector<char> suspect_;
+  std::map<std::pair<int, int>, PointTable> whole_;  ///< (degree, order) -> tensor Gauss on the whole panel
+  PointTable parts_;
+  quadrature::Rule points_;
+};
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,118 @@
+#include "stokes/pair_kernel.hpp"
+
+#include <cmath>
+
+namespace tanktread::stokes {
+namespace {
+
+// One pack of points of a table. The degree is a template argument where it is usual, 0 where it is known at run time only.
+template <int Degree>
+struct Points {
+  const int n;
+  const Pack *bs, *bt, *ds, *dt;
+  Points(const PointTable& table, int k) : n(Degree ? Degree + 1 : table.degree + 1) {
+    bs = table.bernstein.data() + static_cast<std::ptrdiff_t>(4) * n * k;
+    bt = bs + n, ds = bt + n, dt = ds + n;
+  }
+
+  Pack value(const double* q) const {
+    Pack total{};
+    for (int j = 0; j < n; ++j) {
+      Pack row{};
+      for (int i = 0; i < n; ++i) row += bs[i] * q[n * j + i];
+      total += bt[j] * row;
+    }
+    return total;
+  }
+
+  void gradient(const double* q, Pack& along_s, Pack& along_t) const {
+    along_s = along_t = Pack{};
+    for (int j = 0; j < n; ++j) {
+      Pack row{}, slope{};
+      for (int i = 0; i < n; ++i) row += bs[i] * q[n * j + i], slope += ds[i] * q[n * j + i];
+      along_s += bt[j] * slope;
+      along_t += dt[j] * row;
+    }
+  }
+};
+
+Pack root(const Pack& a) {
+  Pack value;
+  for (int l = 0; l < lanes; ++l) value[l] = std::sqrt(a[l]);
+  return value;
+}
+
+template <int Degree>
+struct Sums {
+  static void area_weights(const PointTable& table, const double* bezier, Pack* weight) {
+    const int n_b = (table.degree + 1) * (table.degree + 1);
+    for (int k = 0; k < table.packs(); ++k) {
+      const Points<Degree> points(table, k);
+      Pack a[3], b[3];
+      for (int c = 0; c < 3; ++c) points.gradient(bezier + n_b * c, a[c], b[c]);
+      const Pack nx = a[1] * b[2] - a[2] * b[1], ny = a[2] * b[0] - a[0] * b[2], nz = a[0] * b[1] - a[1] * b[0];
+      weight[k] = table.weights[k] * root(nx * nx + ny * ny + nz * nz);
+    }
+  }
+
+  static void single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
+    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    Pack ux{}, uy{}, uz{};
+    for (int k = 0; k < table.packs(); ++k) {
+      const Points<Degree> points(table, k);
+      const Pack rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
+      const Pack fx = points.value(f), fy = points.value(f + n_b), fz = points.value(f + 2 * n_b);
+      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), weighted = inverse * weight[k];
+      const Pack along = (rx * fx + ry * fy + rz * fz) * (inverse * inverse);
+      ux += weighted * (fx + rx * along);
+      uy += weighted * (fy + ry * along);
+      uz += weighted * (fz + rz * along);
+    }
+    u[0] = sum(ux), u[1] = sum(uy), u[2] = sum(uz);
+  }
+
+  static void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* g, double* moment) {
+    const int n = Degree ? Degree + 1 : table.degree + 1, n_b = n * n;
+    for (int k = 0; k < table.packs(); ++k) {
+      const Points<Degree> points(table, k);
+      const Pack rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
+      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), weighted = inverse * weight[k];
+      const Pack cube = weighted * inverse * inverse;
+      g[6 * k] = weighted + cube * rx * rx, g[6 * k + 1] = cube * rx * ry, g[6 * k + 2] = cube * rx * rz;
+      g[6 * k + 3] = weighted + cube * ry * ry, g[6 * k + 4] = cube * ry * rz, g[6 * k + 5] = weighted + cube * rz * rz;
+    }
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        Pack total[6] = {};
+        for (int k = 0; k < table.packs(); ++k) {
+          const Points<Degree> points(table, k);
+          const Pack b = points.bs[i] * points.bt[j];
+          for (int c = 0; c < 6; ++c) total[c] += g[6 * k + c] * b;
+        }
+        for (int c = 0; c < 6; ++c) moment[6 * (n * j + i) + c] = sum(total[c]);
+      }
+  }
+};
+
+template <class Use>
+void with_degree(int degree, const Use& use) {
+  if (degree == 3) return use(Sums<3>());
+  if (degree == 4) return use(Sums<4>());
+  use(Sums<0>());
+}
+
+}  // namespace
+
+void area_weights(const PointTable& table, const double* bezier, Pack* weight) {
+  with_degree(table.degree, [&](auto sums) { sums.area_weights(table, bezier, weight); });
+}
+
+void single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
+  with_degree(table.degree, [&](auto sums) { sums.single_sum(table, x, f, weight, x0, u); });
+}
+
+void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment) {
+  with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, weight, x0, scratch, moment); });
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,81 @@
+#include "stokes/panels.hpp"
+
+#include <algorithm>
+
+#include "quadrature/gauss.hpp"
+#include "spline/bernstein.hpp"
+#include "stokes/panel_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+NodeTable table(int degree, int order) {
+  const auto& rule = quadrature::tensor_gauss(order);
+  const int n = degree + 1, n_nodes = rule.size();
+  NodeTable t{degree, order, n * n, n_nodes, {}, {}, {}, {rule.weights.begin(), rule.weights.end()}};
+  for (auto* values : {&t.value, &t.along_s, &t.along_t}) values->resize(static_cast<std::size_t>(n) * n * n_nodes);
+  double bs[spline::max_degree + 1], bt[spline::max_degree + 1], ds[spline::max_degree + 1], dt[spline::max_degree + 1];
+  for (int k = 0; k < n_nodes; ++k) {
+    spline::bernstein(degree, rule.s[k], bs, ds, nullptr);
+    spline::bernstein(degree, rule.t[k], bt, dt, nullptr);
+    for (int b = 0; b < n * n; ++b) {
+      const int i = b % n, j = b / n, at = n_nodes * b + k;
+      t.value[at] = bs[i] * bt[j], t.along_s[at] = ds[i] * bt[j], t.along_t[at] = bs[i] * dt[j];
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
+Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const spline::Element& element = space.elements[e];
+    auto found = std::find_if(tables_.begin(), tables_.end(),
+                              [&](const NodeTable& t) { return t.degree == element.degree && t.order == orders[e]; });
+    if (found == tables_.end()) found = tables_.insert(tables_.end(), table(element.degree, orders[e]));
+    const int m = static_cast<int>(element.points.size());
+    panels_.push_back({&*found, m, points_.size(), extraction_.size(), bezier_size_, n_nodes_});
+    points_.insert(points_.end(), element.points.begin(), element.points.end());
+    for (int a = 0; a < m; ++a)
+      for (int b = 0; b < found->n_bernstein; ++b) extraction_.push_back(element.extraction(a, b));
+    n_nodes_ += found->n_nodes;
+    bezier_size_ += static_cast<std::size_t>(3) * found->n_bernstein;
+  }
+}
+
+void Panels::bezier(const Net& net, std::vector<double>& points) const {
+  points.resize(bezier_size_);
+  for (int e = 0; e < size(); ++e) {
+    const Panel& p = panels_[e];
+    extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
+  }
+}
+
+void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
+  for (int c = 0; c < 3; ++c) {
+    value[c].resize(panels.n_nodes());
+    for (int e = 0; e < panels.size(); ++e) {
+      const NodeTable& t = *panels[e].table;
+      combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein],
+              &value[c][panels[e].first_node]);
+    }
+  }
+}
+
+void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight) {
+  weight.resize(panels.n_nodes());
+  std::vector<double> tangents;
+  for (int e = 0; e < panels.size(); ++e) {
+    const NodeTable& t = *panels[e].table;
+    tangents.resize(static_cast<std::size_t>(6) * t.n_nodes);
+    for (int c = 0; c < 3; ++c) {
+      const double* points = &bezier[panels[e].first_bezier + c * t.n_bernstein];
+      combine(t.n_bernstein, t.n_nodes, t.along_s.data(), points, &tangents[c * t.n_nodes]);
+      combine(t.n_bernstein, t.n_nodes, t.along_t.data(), points, &tangents[(3 + c) * t.n_nodes]);
+    }
+    weigh_areas(t.n_nodes, tangents.data(), t.weights.data(), &weight[panels[e].first_node]);
+  }
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,21 @@
+#pragma once
+// Bernstein polynomials at the points of any rule, eight points side by side: what a target with its own rule evaluates.
+
+#include <vector>
+
+#include "quadrature/rule.hpp"
+#include "stokes/pack.hpp"
+
+namespace tanktread::stokes {
+
+/// For pack k of eight points: B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each. The last pack is filled up with weights 0.
+struct PointTable {
+  int degree = 3, points = 0;
+  std::vector<Pack> bernstein, weights;
+
+  int packs() const { return static_cast<int>(weights.size()); }
+};
+
+void tabulate(const quadrature::Rule& rule, int degree, PointTable& table);
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,57 @@
+#pragma once
+// The rules of the panels that a collocation point lies on.
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "quadrature/options.hpp"
+#include "quadrature/polar.hpp"
+#include "spline/space.hpp"
+#include "stokes/panels.hpp"
+#include "stokes/point_table.hpp"
+
+namespace tanktread::stokes {
+
+/// A collocation point on one of its panels.
+struct SelfPair {
+  int panel = 0;
+  quadrature::Shear shear;  ///< the bin that its rule is made for; ratio 0: none yet
+  const PointTable* table = nullptr;
+  std::vector<Pack> weights;      ///< rule weights times the area of the unstressed surface
+  std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the collocation point
+  double s = 0, t = 0;
+};
+
+/// All such pairs of a space, and the polar rules they share: one for each place on a panel, degree and bin of the metric.
+class SelfField {
+ public:
+  SelfField(const spline::Space& space, const quadrature::Options& options);
+
+  /// The pairs of collocation point i, first .. last - 1.
+  SelfPair* begin(int i) { return &pairs_[first_[i]]; }
+  SelfPair* end(int i) { return begin(i) + (first_[i + 1] - first_[i]); }
+
+  /// Gives the pair the rule for the panel's present metric. True when the rule is another one than before.
+  bool choose(SelfPair& pair, int degree, const double* bezier);
+
+  /// The collocation point itself, from its first panel.
+  Vec3 point(int i, const Panels& panels, const std::vector<double>& bezier) const;
+
+ private:
+  const PointTable& made(const SelfPair& pair, int degree, const quadrature::Shear& shear);
+
+  quadrature::Options options_;
+  int radial_;
+  std::vector<std::size_t> first_;
+  std::vector<SelfPair> pairs_;
+  struct Key {
+    int degree;
+    double s, t;
+    quadrature::Shear shear;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::map<Key, std::unique_ptr<PointTable>> tables_;
+};
+
+}  // namespace tanktread::stokes
