@@ -45,7 +45,8 @@ std::string last_line(const std::string& text) {
 }
 
 bool same_pattern(const RowMajor& a, const RowMajor& b) {
-  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() && std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.rows() + 1, b.outerIndexPtr()) &&
+  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.rows() + 1, b.outerIndexPtr()) &&
          std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
 }
 
@@ -106,7 +107,8 @@ DirectSolver::DirectSolver(const DirectSolverOptions& options) : impl_(std::make
   start_kokkos();
   impl_->options = options;
   if (!Amesos2::query(options.name))
-    throw UserError("Solvers/direct solver: this build's Amesos2 has no solver '" + options.name + "'; it has " + solvers_of_this_build() + ".");
+    throw UserError("Solvers/direct solver: this build's Amesos2 has no solver '" + options.name + "'; it has " + solvers_of_this_build() +
+                    ".");
 }
 DirectSolver::~DirectSolver() = default;
 DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
@@ -134,7 +136,8 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   if (trouble.empty()) return;
   impl_->solver = Teuchos::null;
   if (impl_->options.name != "KLU2")
-    throw UserError("Solvers/direct solver: " + impl_->options.name + " does not suit a sparse system of this run (" + trouble + "); KLU2 does.");
+    throw UserError("Solvers/direct solver: " + impl_->options.name + " does not suit a sparse system of this run (" + trouble +
+                    "); KLU2 does.");
   throw RunFailure("A sparse system of " + std::to_string(a.rows()) + " unknowns could not be factored by KLU2: " + trouble + ".");
 }
 

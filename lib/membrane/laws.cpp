@@ -15,12 +15,13 @@ double modulus(const Law& law) {
 }
 
 double energy(const Law& law, double stretch1, double stretch2) {
-  return std::visit([&](const auto& l) { return l.energy(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); }, law);
+  return std::visit([&](const auto& l) { return l.energy(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); },
+                    law);
 }
 
 std::array<double, 2> principal_tensions(const Law& law, double stretch1, double stretch2) {
-  const auto r = std::visit(
-      [&](const auto& l) { return l.response(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); }, law);
+  const auto r =
+      std::visit([&](const auto& l) { return l.response(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); }, law);
   const double area_ratio = stretch1 * stretch2;
   const auto tension = [&](double stretch) { return 2 / area_ratio * r.psi1 * stretch * stretch + 2 * area_ratio * r.psi2; };
   return {tension(stretch1), tension(stretch2)};

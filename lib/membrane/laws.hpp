@@ -31,7 +31,8 @@ struct NeoHookean {
   Response<Number> response(const Number&, const Number& i2) const {
     const Number inverse = 1.0 / (i2 + 1.0);
     const Number zero = 0.0 * i2;
-    return {zero + 0.5 * shear_modulus, (-0.5 * shear_modulus) * inverse * inverse, zero, zero, shear_modulus * inverse * inverse * inverse};
+    return {zero + 0.5 * shear_modulus, (-0.5 * shear_modulus) * inverse * inverse, zero, zero,
+            shear_modulus * inverse * inverse * inverse};
   }
   double modulus() const { return shear_modulus; }
 };

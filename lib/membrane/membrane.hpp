@@ -45,8 +45,11 @@ class Membrane {
   /// Principal tensions, smaller first, over the modulus, at the given sites. Shape (sites, 2).
   Eigen::MatrixX2d tensions(const Net& x, std::span<const spline::Site> sites) const;
 
-  /// The strong form t = -div_s tau at collocation sites `targets` (rows of t; others are untouched), mean over the incident elements.
-  /// Force per current area. P-3; the paper and `tests/stability` show where it fails.
+  /// The strong form t = -div_s tau at a site, with second derivatives of both nets. Force per current area. P-3
+  Vec3 strong_load(const Net& x, const spline::Site& site) const;
+
+  /// The same at the collocation sites `targets` (rows of t; others are untouched), mean over the incident elements. The paper and
+  /// `tests/stability` show where this fails.
   void strong_load(const Net& x, std::span<const int> targets, Net& t) const;
 
   const spline::Space& space() const { return *space_; }

@@ -1,5 +1,5 @@
 #pragma once
-// Elements packed as many as a register has lanes, for the hot loops of the membrane: extraction matrices, control-point ids and Gauss tables side by side.
+// Elements side by side for the hot loops of the membrane, one in each lane of a register: extraction matrices, control-point ids, Gauss tables.
 
 #include <array>
 #include <span>

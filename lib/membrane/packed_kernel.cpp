@@ -61,8 +61,7 @@ struct Rule {
   static constexpr int max_p = Degree ? Degree : max_degree, max_q = Order ? Order : max_order;
   const int p, q;
   const double *value, *slope;
-  explicit Rule(const Group& g)
-      : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), value(g.value.data()), slope(g.slope.data()) {}
+  explicit Rule(const Group& g) : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), value(g.value.data()), slope(g.slope.data()) {}
 
   // a = (B_s' B_t, B_s B_t') applied to Bezier points, s first
   void evaluate(const Pack* bezier, Pack* a) const {
@@ -106,8 +105,7 @@ struct Rule {
       for (int i = 0; i <= p; ++i) {
         Pack sum[3] = {};
         for (int k = 0; k < q; ++k)
-          for (int c = 0; c < 3; ++c)
-            sum[c] += slope[k * (p + 1) + i] * along[j][k][c] + value[k * (p + 1) + i] * along[j][k][3 + c];
+          for (int c = 0; c < 3; ++c) sum[c] += slope[k * (p + 1) + i] * along[j][k][c] + value[k * (p + 1) + i] * along[j][k][3 + c];
         for (int c = 0; c < 3; ++c) bezier[3 * ((p + 1) * j + i) + c] = sum[c];
       }
   }

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "membrane/membrane.hpp"
 #include "surface/patch.hpp"
 
@@ -47,31 +49,30 @@ Vector flux(const AnyLaw& law, const std::array<Vector, 2>& r, const std::array<
   return sum;
 }
 
+}  // namespace
+
 // -1/sqrt(g) (sqrt(g) tau^ab g_b),a
-Vec3 strong_load(const Law& law, const surface::Jet& reference, const surface::Jet& x) {
+Vec3 Membrane::strong_load(const Net& x, const spline::Site& site) const {
+  const surface::Jet before = surface::jet(surface::ElementPoints(*space_, unstressed_, site.element).patch(), site.s, site.t);
+  const surface::Jet now = surface::jet(surface::ElementPoints(*space_, x, site.element).patch(), site.s, site.t);
   return std::visit(
       [&](const auto& l) {
-        const Vector by_s = flux(l, {with_slope(reference.s, reference.ss), with_slope(reference.t, reference.st)},
-                                 {with_slope(x.s, x.ss), with_slope(x.t, x.st)}, 0);
-        const Vector by_t = flux(l, {with_slope(reference.s, reference.st), with_slope(reference.t, reference.tt)},
-                                 {with_slope(x.s, x.st), with_slope(x.t, x.tt)}, 1);
+        const Vector by_s = flux(l, {with_slope(before.s, before.ss), with_slope(before.t, before.st)},
+                                 {with_slope(now.s, now.ss), with_slope(now.t, now.st)}, 0);
+        const Vector by_t = flux(l, {with_slope(before.s, before.st), with_slope(before.t, before.tt)},
+                                 {with_slope(now.s, now.st), with_slope(now.t, now.tt)}, 1);
         Vec3 t;
         for (int c = 0; c < 3; ++c) t[c] = -(by_s[c].slope + by_t[c].slope);
-        return Vec3(t / x.s.cross(x.t).norm());
+        return Vec3(t / now.s.cross(now.t).norm());
       },
-      law);
+      law_);
 }
-
-}  // namespace
 
 void Membrane::strong_load(const Net& x, std::span<const int> targets, Net& t) const {
   for (int target : targets) {
     const std::vector<spline::Site>& sites = space_->collocation[target];
     Vec3 sum = Vec3::Zero();
-    for (const spline::Site& site : sites) {
-      const surface::ElementPoints before(*space_, unstressed_, site.element), now(*space_, x, site.element);
-      sum += membrane::strong_load(law_, surface::jet(before.patch(), site.s, site.t), surface::jet(now.patch(), site.s, site.t));
-    }
+    for (const spline::Site& site : sites) sum += strong_load(x, site);
     t.row(target) = sum.transpose() / static_cast<double>(sites.size());
   }
 }

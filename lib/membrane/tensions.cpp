@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 
 #include "membrane/membrane.hpp"
 #include "membrane/part.hpp"
@@ -13,10 +13,18 @@ namespace {
 
 constexpr double compressed_below = -1e-9;  // of the modulus: a membrane at rest is not compressed by round-off
 
-// Principal tensions, smaller first, from tr(G^-1 g) = l1^2 + l2^2 and det(G^-1 g) = l1^2 l2^2.
-std::array<double, 2> tensions_of(const Law& law, double trace, double det) {
-  const double middle = trace / 2, spread = std::sqrt(std::max(0., middle * middle - det));
-  const auto t = principal_tensions(law, std::sqrt(middle + spread), std::sqrt(det / (middle + spread)));
+struct Metric {
+  double s, st, t;  // covariant components
+};
+
+// Principal tensions, smaller first. The stretch tensor in the orthonormal frame that starts with X_,s: so written, equal stretches stay
+// equal to round-off.
+std::array<double, 2> tensions_of(const Law& law, const Metric& before, const Metric& now) {
+  const double det = before.s * before.t - before.st * before.st, turn = before.st / before.s;
+  const double h11 = now.s / before.s, h12 = (now.st - turn * now.s) / std::sqrt(det);
+  const double h22 = (now.t - 2 * turn * now.st + turn * turn * now.s) * before.s / det;
+  const double middle = (h11 + h22) / 2, spread = std::hypot((h11 - h22) / 2, h12), larger = middle + spread;
+  const auto t = principal_tensions(law, std::sqrt(larger), std::sqrt((h11 * h22 - h12 * h12) / larger));
   return {std::min(t[0], t[1]), std::max(t[0], t[1])};
 }
 
@@ -33,9 +41,10 @@ TensionSummary Membrane::tension_summary(const Net& x) const {
         Vec3 a1, a2;
         for (int c = 0; c < 3; ++c) a1[c] = a[6 * q + c][l], a2[c] = a[6 * q + 3 + c][l];
         const ReferencePoint& r = reference[q];
-        const double trace = r.g11[l] * a1.dot(a1) + 2 * r.g12[l] * a1.dot(a2) + r.g22[l] * a2.dot(a2);
-        const double det = a1.cross(a2).squaredNorm() * r.inverse_det[l];
-        const double tension = tensions_of(law_, trace, det)[0] / unit, share = r.area[l] * std::sqrt(det);
+        const double det = 1 / r.inverse_det[l];
+        const Metric before{r.g22[l] * det, -r.g12[l] * det, r.g11[l] * det}, now{a1.dot(a1), a1.dot(a2), a2.dot(a2)};
+        const double tension = tensions_of(law_, before, now)[0] / unit;
+        const double share = r.area[l] * a1.cross(a2).norm() * std::sqrt(r.inverse_det[l]);
         smallest = std::min(smallest, tension);
         area += share;
         if (tension < compressed_below) compressed += share;
@@ -50,10 +59,8 @@ Eigen::MatrixX2d Membrane::tensions(const Net& x, std::span<const spline::Site> 
     const auto [element, s, t] = sites[i];
     const surface::Jet before = surface::jet(surface::ElementPoints(*space_, unstressed_, element).patch(), s, t);
     const surface::Jet now = surface::jet(surface::ElementPoints(*space_, x, element).patch(), s, t);
-    Eigen::Matrix2d r, g;
-    r << before.s.dot(before.s), before.s.dot(before.t), before.s.dot(before.t), before.t.dot(before.t);
-    g << now.s.dot(now.s), now.s.dot(now.t), now.s.dot(now.t), now.t.dot(now.t);
-    const auto tension = tensions_of(law_, r.inverse().cwiseProduct(g).sum(), g.determinant() / r.determinant());
+    const auto metric = [](const surface::Jet& a) { return Metric{a.s.dot(a.s), a.s.dot(a.t), a.t.dot(a.t)}; };
+    const auto tension = tensions_of(law_, metric(before), metric(now));
     result.row(i) << tension[0] / modulus(law_), tension[1] / modulus(law_);
   }
   return result;

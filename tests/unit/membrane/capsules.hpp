@@ -1,0 +1,54 @@
+#pragma once
+// Spheres and smoothly deformed capsules, shared by the tests of this room.
+
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "base/types.hpp"
+#include "spline/extraction.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::membrane {
+
+/// A unit sphere on the cube mesh of n x n elements a face; spheres are kept, since fits take time.
+struct Sphere {
+  spline::Space space;
+  Net net;
+  std::vector<int> elements;  ///< all of them
+};
+
+inline const Sphere& sphere(int n) {
+  static std::map<int, Sphere> kept;
+  const auto found = kept.find(n);
+  if (found != kept.end()) return found->second;
+  Sphere& made = kept[n];
+  const spline::TMesh mesh = spline::cube(n);
+  made.space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  made.net = surface::unit_sphere(made.space, mesh, surface::LeastSquaresFit(made.space));
+  made.elements.resize(made.space.elements.size());
+  std::iota(made.elements.begin(), made.elements.end(), 0);
+  return made;
+}
+
+/// A smooth, strongly stretched, bent and sheared image of a net, without any symmetry.
+inline Net deformed(const Net& net) {
+  Net out = net;
+  for (Eigen::Index i = 0; i < net.rows(); ++i) {
+    const double x = net(i, 0), y = net(i, 1), z = net(i, 2);
+    out.row(i) << 1.3 * x + 0.4 * z + 0.1 * y * y, 0.85 * y + 0.1 * std::sin(2 * x), 0.9 * z + 0.15 * x * y + 0.05 * std::cos(2 * z);
+  }
+  return out;
+}
+
+inline Net random_net(Eigen::Index n, unsigned seed) {
+  std::mt19937 generator(seed);
+  Net net(n, 3);
+  for (Eigen::Index i = 0; i < net.size(); ++i) net.data()[i] = 2.0 * generator() / std::mt19937::max() - 1;
+  return net;
+}
+
+inline double inner(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+
+}  // namespace tanktread::membrane

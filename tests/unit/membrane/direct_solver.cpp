@@ -1,0 +1,92 @@
+#include "membrane/direct_solver.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <Eigen/SparseLU>
+#include <Teuchos_ParameterList.hpp>
+
+#include "base/errors.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+/// A banded matrix, symmetric positive definite for skew = 0.
+Eigen::SparseMatrix<double> banded(int n, double diagonal, double skew) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n; ++i)
+    for (int j = std::max(0, i - 4); j <= std::min(n - 1, i + 4); ++j)
+      entries.emplace_back(i, j, i == j ? diagonal : 1 / (1. + std::abs(i - j)) + skew * (i - j));
+  Eigen::SparseMatrix<double> a(n, n);
+  a.setFromTriplets(entries.begin(), entries.end());
+  return a;
+}
+
+Net right_hand_side(int n) {
+  Net b(n, 3);
+  for (int i = 0; i < b.size(); ++i) b.data()[i] = std::cos(3. * i);
+  return b;
+}
+
+DirectSolverOptions named(const std::string& name) {
+  DirectSolverOptions options;
+  options.name = name;
+  return options;
+}
+
+TEST(DirectSolver, AgreesWithEigenOnSymmetricAndOtherMatrices) {
+  for (double skew : {0., 0.3}) {
+    const auto a = banded(100, 5, skew);
+    const Net b = right_hand_side(100);
+    DirectSolver solver;
+    solver.factor(a);
+    const Eigen::MatrixXd expected = Eigen::SparseLU<Eigen::SparseMatrix<double>>(a).solve(Eigen::MatrixXd(b));
+    EXPECT_LT((solver.solve(b) - expected).norm(), 1e-12);  // round-off
+  }
+}
+
+TEST(DirectSolver, FactorsAgainWithNewEntriesAndWithANewPattern) {
+  DirectSolver solver;
+  const Net b = right_hand_side(80);
+  for (const auto& a :
+       {banded(80, 5, 0), banded(80, 7, 0.1), Eigen::SparseMatrix<double>(banded(80, 6, 0).triangularView<Eigen::Upper>())}) {
+    solver.factor(a);
+    EXPECT_LT((a * solver.solve(b) - b).norm(), 1e-12);  // round-off
+  }
+}
+
+TEST(DirectSolver, TachoSolvesSymmetricSystemsAndIsRefusedForOthers) {
+  DirectSolver solver(named("Tacho"));
+  solver.factor(banded(60, 6, 0));
+  const Net b = right_hand_side(60);
+  EXPECT_LT((banded(60, 6, 0) * solver.solve(b) - b).norm(), 1e-12);  // round-off
+  EXPECT_THROW(solver.factor(banded(60, 6, 0.4)), UserError);
+}
+
+TEST(DirectSolver, NamesWhatItHasWhenAskedForWhatItHasNot) {
+  try {
+    DirectSolver solver(named("Kaiser"));
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("'Kaiser'"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("KLU2"), std::string::npos);
+  }
+}
+
+TEST(DirectSolver, StopsAtASingularMatrix) {
+  Eigen::SparseMatrix<double> a = banded(30, 5, 0);
+  a.col(7) *= 0;
+  DirectSolver solver;
+  EXPECT_THROW(solver.factor(a), RunFailure);
+}
+
+TEST(DirectSolver, RefusesAListThatAmesos2DoesNotKnow) {
+  DirectSolverOptions options;
+  options.amesos2 = std::make_shared<Teuchos::ParameterList>();
+  options.amesos2->sublist("KLU2").set("Transposee", true);
+  DirectSolver solver(options);
+  EXPECT_THROW(solver.factor(banded(30, 5, 0)), UserError);
+}
+
+}  // namespace
+}  // namespace tanktread::membrane
