@@ -41,10 +41,16 @@ struct FaceNet {
   Vec3 centre_of_cell(int i, int j) const { return (at(i, j) + at(i + 1, j) + at(i, j + 1) + at(i + 1, j + 1)) / 4; }
 };
 
-FaceNet projected_cube(int n) {
-  FaceNet net(n);
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) net.set(i, j, Vec3(2. * i / n - 1, 2. * j / n - 1, 1).normalized());
+FaceNet coarse_net() {
+  constexpr double edge = 1. / 3, inner = 0.26;
+  FaceNet net(3);
+  for (int j = 0; j <= 3; ++j) {
+    for (int i = 0; i <= 3; ++i) {
+      const double near = i % 3 == 0 || j % 3 == 0 ? edge : inner;
+      const double place[] = {-1, -near, near, 1};
+      net.set(i, j, Vec3(place[i], place[j], 1).normalized());
+    }
+  }
   net.mirror();
   return net;
 }
@@ -88,36 +94,47 @@ void uniform_b_spline(double x, double (&value)[4]) {
   value[3] = x * x * x / 6;
 }
 
+/// Weighted mean of the 4 x 4 vertices around the cell of a point on the cube. Permuting two axes and turning a sign carries its face onto x3 = 1
+/// and the result back.
+template <class Weights>
+Vec3 radial_mean(const Vec3& on_cube, int n, const Net& net, Weights weights) {
+  int axis;
+  on_cube.cwiseAbs().maxCoeff(&axis);
+  const double sign = on_cube[axis] < 0 ? -1 : 1;
+  Vec3 turned = on_cube;
+  std::swap(turned[axis], turned[2]);
+
+  double weight[2][4];
+  int cell[2];
+  for (int d = 0; d < 2; ++d) {
+    const double u = std::clamp((turned[d] + 1) / 2 * n, 0., double(n));
+    cell[d] = std::min(static_cast<int>(u), n - 1);
+    weights(u - cell[d], weight[d]);
+  }
+  Vec3 result = Vec3::Zero();
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) result += weight[0][i] * weight[1][j] * net.row((cell[1] + j) * (n + 3) + cell[0] + i).transpose();
+  result[2] *= sign;
+  std::swap(result[axis], result[2]);
+  return result.normalized();
+}
+
+void linear(double x, double (&value)[4]) {
+  value[0] = value[3] = 0;
+  value[1] = 1 - x;
+  value[2] = x;
+}
+
 }  // namespace
 
 CubeSphere::CubeSphere(int levels) {
-  FaceNet net = projected_cube(3);
+  FaceNet net = coarse_net();
   for (int level = 0; level < levels; ++level) net = subdivided(net);
   n_ = net.n;
   net_ = std::move(net.points);
 }
 
-Vec3 CubeSphere::operator()(const Vec3& on_cube) const {
-  int axis;
-  on_cube.cwiseAbs().maxCoeff(&axis);
-  // Permuting two axes and turning the sign carries the face onto x3 = 1 and back.
-  const double sign = on_cube[axis] < 0 ? -1 : 1;
-  Vec3 turned = on_cube;
-  std::swap(turned[axis], turned[2]);
-
-  double u[2], weight[2][4];
-  int cell[2];
-  for (int d = 0; d < 2; ++d) {
-    u[d] = std::clamp((turned[d] + 1) / 2 * n_, 0., double(n_));
-    cell[d] = std::min(static_cast<int>(u[d]), n_ - 1);
-    uniform_b_spline(u[d] - cell[d], weight[d]);
-  }
-  Vec3 result = Vec3::Zero();
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i) result += weight[0][i] * weight[1][j] * net_.row((cell[1] + j) * (n_ + 3) + cell[0] + i).transpose();
-  result[2] *= sign;
-  std::swap(result[axis], result[2]);
-  return result.normalized();
-}
+Vec3 CubeSphere::net_point(const Vec3& on_cube) const { return radial_mean(on_cube, n_, net_, linear); }
+Vec3 CubeSphere::limit_point(const Vec3& on_cube) const { return radial_mean(on_cube, n_, net_, uniform_b_spline); }
 
 }  // namespace tanktread::surface

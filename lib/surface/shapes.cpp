@@ -1,16 +1,36 @@
 #include "surface/shapes.hpp"
 
-#include <array>
 #include <vector>
 
 #include "surface/cube_sphere.hpp"
 
 namespace tanktread::surface {
-Net unit_sphere(const spline::Space& space, const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits) {
-  const CubeSphere sphere;
+namespace {
+
+/// The k for which the mesh is the uniform one of 3 * 2^k elements a side, or -1.
+int subdivisions(const spline::TMesh& mesh, int n_points) {
+  int level = 0, n = 3;
+  while (6 * n * n + 2 < n_points) n *= 2, ++level;
+  return 6 * n * n + 2 == n_points && mesh.lattice->units % n == 0 ? level : -1;
+}
+
+/// Control points to start from: the subdivided net itself where the mesh is one, elsewhere points of its limit surface.
+Net smooth_start(const spline::TMesh& mesh) {
   const std::vector<int> vertices = spline::anchors(mesh);
-  Net net(space.n_points, 3);
-  for (int i = 0; i < space.n_points; ++i) net.row(i) = sphere(mesh.lattice->position[vertices[i]]).transpose();
+  const int level = subdivisions(mesh, static_cast<int>(vertices.size()));
+  const CubeSphere sphere(level < 0 ? 5 : level);
+  Net net(vertices.size(), 3);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3& on_cube = mesh.lattice->position[vertices[i]];
+    net.row(i) = (level < 0 ? sphere.limit_point(on_cube) : sphere.net_point(on_cube)).transpose();
+  }
+  return net;
+}
+
+}  // namespace
+
+Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits) {
+  Net net = smooth_start(mesh);
   for (int k = 0; k < fits; ++k) net = fit.fit_image(net, [](const Vec3& x) -> Vec3 { return x.normalized(); });
   return net;
 }
@@ -22,7 +42,7 @@ Vec3 red_cell(const Vec3& x) {
 
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {
   const LeastSquaresFit fit(space);
-  Net net = unit_sphere(space, mesh, fit);
+  Net net = unit_sphere(mesh, fit);
   if (shape.shape == "red cell") net = fit.fit_image(net, [](const Vec3& x) { return red_cell(x.normalized()); });
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
   const Mat3 map = shape.rotation() * semi_axes.asDiagonal();

@@ -9,9 +9,9 @@
 
 namespace tanktread::surface {
 
-/// Unit sphere: a fit to the smooth cube sphere, then `fits` fits to the radial image of what the last one gave (splines.md, I.1). The error
-/// in the radius falls with h^4, in the normal with h^2.7 (C.11).
-Net unit_sphere(const spline::Space& space, const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 8);
+/// Unit sphere: the control points of a smooth cube sphere, then `fits` least-squares fits of the surface to its own radial image. The error in
+/// the radius falls with h^4, in the normal with h^2.7; both are 10 to 40 per cent below those of a start from the projected cube.
+Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// The biconcave disc of a red cell with unit radius and axis x3, as an image of the unit sphere:
 ///   (x1, x2, x3) -> (x1, x2, x3/2 (0.21 + 2.0 r^2 - 1.12 r^4)),  r^2 = x1^2 + x2^2        (reference.md; Evans & Fung 1972)
