@@ -1,6 +1,7 @@
 #include "deck/record.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include <Teuchos_ParameterList.hpp>
 
@@ -64,7 +65,7 @@ std::string yaml_text(const List& list, int depth) {
 
 std::string markdown_text(const List& list) {
   const auto cell = [](std::string text) {
-    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
     return text;
   };
   std::string out;

@@ -18,7 +18,26 @@ namespace tanktread::deck {
 
 namespace {
 
-std::shared_ptr<Teuchos::ParameterList> shared(const Teuchos::ParameterList& list) { return std::make_shared<Teuchos::ParameterList>(list); }
+/// A copy with every name and text as the user wrote it.
+Teuchos::ParameterList decoded_list(const Teuchos::ParameterList& list) {
+  Teuchos::ParameterList out(list.name());
+  for (const auto& item : list) {
+    const std::string name = decoded(item.first);
+    const Teuchos::ParameterEntry& entry = item.second;
+    if (entry.isList()) {
+      out.sublist(name) = decoded_list(Teuchos::getValue<Teuchos::ParameterList>(entry));
+    } else if (entry.isType<std::string>()) {
+      out.set(name, decoded(Teuchos::getValue<std::string>(entry)));
+    } else if (entry.isType<Teuchos::Array<std::string>>()) {
+      auto texts = Teuchos::getValue<Teuchos::Array<std::string>>(entry);
+      for (std::string& text : texts) text = decoded(text);
+      out.set(name, texts);
+    } else {
+      out.setEntry(name, entry);
+    }
+  }
+  return out;
+}
 
 /// The one thing to know from the several lines that Teuchos throws: where it stopped, and the line that stands there.
 std::string reduced(const std::string& error, const std::vector<std::string>& lines) {
@@ -26,8 +45,9 @@ std::string reduced(const std::string& error, const std::vector<std::string>& li
   if (std::regex_search(error, match, std::regex("Parameter \"([^\"]*)\" already exists"))) return ": " + match[1].str() + " is given twice";
   if (!std::regex_search(error, match, std::regex("line (\\d+)")) || lines.empty()) return " is not YAML";
   std::size_t number = std::min(static_cast<std::size_t>(std::stoul(match[1].str())), lines.size());
+  if (error.find("Got: NEWLINE") != std::string::npos && number > 1) --number;  // it stopped at the end of the line before
   while (number > 1 && lines[number - 1].empty()) --number;
-  std::string line = lines[number - 1];
+  std::string line = decoded(lines[number - 1]);
   line.erase(0, line.find_first_not_of(" \t"));
   if (line.size() > 80) line = line.substr(0, 77) + "...";
   return ", line " + std::to_string(number) + ": this is not YAML that can be read: `" + line + "`";
@@ -45,7 +65,7 @@ std::shared_ptr<Teuchos::ParameterList> parsed(const std::vector<std::string>& l
   std::string text;
   for (const std::string& line : lines) text += line + "\n";
   try {
-    return shared(*Teuchos::getParametersFromYamlString(text));
+    return std::make_shared<Teuchos::ParameterList>(decoded_list(*Teuchos::getParametersFromYamlString(text)));
   } catch (const std::exception& error) {
     throw UserError(origin + reduced(error.what(), lines) + ".");
   }
@@ -76,14 +96,17 @@ std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const
 }
 
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin) {
-  Teuchos::RCP<Teuchos::ParameterList> list;
+  std::smatch root;  // the reader forgets the name of the outermost list
+  std::regex_search(text, root, std::regex("<ParameterList\\s+name=\"([^\"]*)\""));
   try {
-    list = Teuchos::getParametersFromXmlString(text);
+    auto list = std::make_shared<Teuchos::ParameterList>(*Teuchos::getParametersFromXmlString(text));
+    check_root({root.empty() ? std::string() : root[1].str()}, origin);
+    return list;
+  } catch (const UserError&) {
+    throw;
   } catch (const std::exception&) {
     throw UserError(origin + " is not XML of the kind that Teuchos reads.");
   }
-  check_root({list->name()}, origin);
-  return shared(*list);
 }
 
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {

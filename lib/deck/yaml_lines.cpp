@@ -1,5 +1,6 @@
 #include "deck/yaml_lines.hpp"
 
+#include <cctype>
 #include <map>
 #include <sstream>
 
@@ -13,23 +14,33 @@ namespace {
   throw UserError(origin + ", line " + std::to_string(line + 1) + ": " + what + ".");
 }
 
-/// The line up to its comment: a `#` after white space or at the start, outside of quotes.
+std::string encoded(char c) {
+  constexpr const char* digits = "0123456789ABCDEF";
+  const auto byte = static_cast<unsigned char>(c);
+  return {'~', digits[byte / 16], digits[byte % 16]};
+}
+
+/// The line up to its comment (a `#` after white space or at the start, outside of quotes), in the reader's alphabet.
 std::string without_comment(const std::string& line) {
+  std::string out;
   char quote = 0, before = ' ', last_mark = ':';
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
-    if (quote) {
-      if (c == '\\' && quote == '"') ++i;
-      else if (c == quote) quote = 0;
-    } else if ((c == '"' || c == '\'') && std::string(":,[{-").find(last_mark) != std::string::npos) {
+    const bool blank = c == ' ' || c == '\t';
+    if (!quote && c == '#' && (before == ' ' || before == '\t')) break;
+    out += c == '~' || static_cast<unsigned char>(c) >= 0x80 || (quote && c == '#') ? encoded(c) : std::string(1, c);
+    const bool escapes = quote && i + 1 < line.size() && ((quote == '"' && c == '\\') || (quote == '\'' && c == '\'' && line[i + 1] == '\''));
+    if (escapes) {
+      out += line[++i];
+    } else if (quote && c == quote) {
+      quote = 0;
+    } else if (!quote && (c == '"' || c == '\'') && std::string(":,[{-").find(last_mark) != std::string::npos) {
       quote = c;
-    } else if (c == '#' && (before == ' ' || before == '\t')) {
-      return line.substr(0, i);
     }
     before = c;
-    if (c != ' ' && c != '\t') last_mark = c;
+    if (!blank) last_mark = c;
   }
-  return line;
+  return out;
 }
 
 /// The key that a line begins with, without quotes; empty: none.
@@ -50,9 +61,7 @@ std::string key_of(const std::string& line) {
 
 void check_characters(const std::string& line, const std::string& origin, std::size_t number) {
   for (const char c : line) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x80) refuse(origin, number, "a character that is not ASCII may stand in comments only");
-    if (byte < 0x20 && c != '\t') refuse(origin, number, "this is not text, so no deck");
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\t') refuse(origin, number, "this is not text, so no deck");
   }
 }
 
@@ -101,6 +110,17 @@ std::vector<std::string> clean_lines(const std::string& text, const std::string&
     outline.add(line, origin, number);
   }
   return lines;
+}
+
+std::string decoded(const std::string& text) {
+  const auto hexadecimal = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool code = text[i] == '~' && i + 2 < text.size() && hexadecimal(text[i + 1]) && hexadecimal(text[i + 2]);
+    out += code ? static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16)) : text[i];
+    if (code) i += 2;
+  }
+  return out;
 }
 
 std::vector<std::string> outermost_keys(const std::vector<std::string>& lines) {

@@ -1,0 +1,193 @@
+#include "deck/document.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <Teuchos_ParameterList.hpp>
+#include <Teuchos_XMLParameterListCoreHelpers.hpp>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "options.hpp"
+
+namespace tanktread::deck {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A directory of decks that lives as long as the test.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("tanktread_deck_" + std::to_string(::getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name) << text;
+    return path / name;
+  }
+};
+
+Sample sample(const std::vector<std::string>& files, const std::vector<std::string>& settings = {}, const std::string& stored = {}) {
+  Sample out;
+  Document document = read(files, settings, stored);
+  document.declare(out);
+  return out;
+}
+
+std::string refused(const std::vector<std::string>& files, const std::vector<std::string>& settings = {}) {
+  try {
+    sample(files, settings);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Overlays, ReplaceKeyByKeyAndLeaveTheRest) {
+  const Folder folder;
+  const auto base = folder.file("base.yaml", "Tanktread:\n  Kinds:\n    count: 4\n    law: hard\n    Inner: {depth: 0.1}\n    Belos: {a: 1, b: {c: 2}}\n");
+  const auto over = folder.file("over.yaml", "Tanktread:\n  Kinds:\n    law: soft\n    Inner: {depth: 0.2}\n    Belos: {b: {d: 3}}\n");
+  const Sample s = sample({base, over});
+  EXPECT_EQ(s.kinds.count, 4);
+  EXPECT_EQ(s.kinds.law, "soft");
+  EXPECT_EQ(s.kinds.inner.depth, 0.2);
+  EXPECT_EQ(s.kinds.belos->get<int>("a"), 1);
+  EXPECT_EQ(s.kinds.belos->sublist("b").get<int>("c"), 2);
+  EXPECT_EQ(s.kinds.belos->sublist("b").get<int>("d"), 3);
+}
+
+TEST(Overlays, MayChangeTheTypeOfAValue) {
+  const Folder folder;
+  const auto base = folder.file("base.yaml", "Tanktread:\n  Kinds:\n    shear rate: 4\n    center: [1, 2, 3]\n");
+  const auto over = folder.file("over.yaml", "Tanktread:\n  Kinds:\n    shear rate: 0.5\n    center: [1., 2., 4.]\n");
+  const Sample s = sample({base, over});
+  EXPECT_EQ(s.kinds.rate, 0.5);
+  EXPECT_EQ(s.kinds.center[2], 4.0);
+}
+
+TEST(Settings, GoOverAllDecksAndAreReadAsYaml) {
+  const Folder folder;
+  const auto base = folder.file("base.yaml", "Tanktread:\n  Kinds:\n    count: 4\n");
+  const Sample s = sample({base}, {"Kinds/count=5", "Kinds/law=very hard", "Kinds/center=[1, 2., 3]", "Kinds/Inner/depth=1e-1", "Kinds/note=\"x=y\"",
+                                   "Kinds/enabled=true", "Kinds/Belos/Maximum Iterations=12", "Tanktread/Kinds/shear rate=3"});
+  EXPECT_EQ(s.kinds.count, 5);
+  EXPECT_EQ(s.kinds.law, "very hard");
+  EXPECT_EQ(s.kinds.center, Vec3(1, 2, 3));
+  EXPECT_EQ(s.kinds.inner.depth, 0.1);
+  EXPECT_EQ(s.kinds.note, "x=y");
+  EXPECT_TRUE(s.kinds.enabled);
+  EXPECT_EQ(s.kinds.belos->get<int>("Maximum Iterations"), 12);
+  EXPECT_EQ(s.kinds.rate, 3.0);
+}
+
+TEST(Settings, ThatAreNoSettingsAreRefused) {
+  for (const char* setting : {"Kinds/count", "Kinds/count=", "=3", "count=3", "/count=3", "Kinds//count=3"})
+    EXPECT_EQ(refused({}, {setting}), std::string("--set '") + setting + "' must be of the form Section/key=value.");
+  EXPECT_EQ(refused({}, {"Kinds/count=[1, 2"}), "--set 'Kinds/count=[1, 2': the value is not YAML that can be read.");
+  EXPECT_EQ(refused({}, {"Kinds/cuont=3"}), "Kinds/cuont is not a key of the deck; was Kinds/count meant?");
+}
+
+TEST(StoredDecks, LieUnderAllOthers) {
+  const Sample s = sample({}, {"Kinds/count=5"}, "Tanktread:\n  Kinds:\n    count: 4\n    law: hard\n");
+  EXPECT_EQ(s.kinds.count, 5);
+  EXPECT_EQ(s.kinds.law, "hard");
+}
+
+TEST(Xml, IsReadByExtension) {
+  const Folder folder;
+  const auto file = folder.file("deck.xml",
+                                "<ParameterList name=\"Tanktread\"><ParameterList name=\"Kinds\">\n"
+                                "<Parameter name=\"count\" type=\"int\" value=\"6\"/><Parameter name=\"law\" type=\"string\" value=\"hard\"/>\n"
+                                "<Parameter name=\"center\" type=\"Array(double)\" value=\"{1, 2, 3}\"/></ParameterList></ParameterList>\n");
+  const Sample s = sample({file});
+  EXPECT_EQ(s.kinds.count, 6);
+  EXPECT_EQ(s.kinds.law, "hard");
+  EXPECT_EQ(s.kinds.center[1], 2.0);
+  EXPECT_EQ(refused({folder.file("bad.xml", "<ParameterList")}), (folder.path / "bad.xml").string() + " is not XML of the kind that Teuchos reads.");
+}
+
+TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
+  const Folder folder;
+  const std::string missing = folder.path / "missing.yaml";
+  EXPECT_EQ(refused({missing}), "The deck " + missing + " does not exist.");
+  EXPECT_EQ(refused({folder.path}), folder.path.string() + " is a directory, not a deck.");
+  const auto empty = folder.file("empty.yaml", "# nothing\n\n");
+  EXPECT_EQ(refused({empty}), empty + " is empty; a deck holds one list named `Tanktread`.");
+  const auto text = folder.file("text.yaml", "To whom it may concern\n");
+  EXPECT_EQ(refused({text}), text + ", line 1: this is not YAML that can be read: `To whom it may concern`.");
+  const auto binary = folder.file("binary.yaml", std::string("\x89HDF\r\n\x1a\n\0\0", 10));
+  EXPECT_EQ(refused({binary}), binary + ", line 2: this is not text, so no deck.");
+}
+
+TEST(EffectiveDecks, StateEveryKeyThatIsSet) {
+  Sample s;
+  Document document = read_text("Tanktread:\n  Kinds:\n    law: very hard\n    Belos: {tolerance: 1e-8, solver: \"Block GMRES\", verbose: false}\n");
+  document.declare(s);
+  EXPECT_EQ(document.effective(),
+            "Tanktread:\n  Kinds:\n    shear rate: 1.0\n    count: 3\n    enabled: false\n    law: very hard\n    note: none\n"
+            "    center: [0.0, 0.0, 0.0]\n    gradient: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]\n    Inner:\n      depth: 0.5\n"
+            "    Belos:\n      tolerance: 1.0e-08\n      solver: Block GMRES\n      verbose: false\n");
+  EXPECT_EQ(document.values().at("Kinds/Inner/depth"), "0.5");
+}
+
+TEST(EffectiveDecks, ReadAgainGiveTheSameSceneToTheLastBit) {
+  std::mt19937_64 random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto any_double = [&] { return std::ldexp(static_cast<double>(random()) + 1.0, static_cast<int>(random() % 400) - 260); };
+    Sample s, again;
+    s.kinds.rate = any_double();
+    s.kinds.modulus = any_double();
+    s.kinds.center = Vec3(any_double(), -any_double(), 0.1);
+    for (double& value : s.kinds.gradient.reshaped()) value = -any_double();
+    s.kinds.note = "it's \"quoted\" \\ and: # odd \xc3\xa9 ~23";
+    Document first = read_text("Tanktread: {}\n");
+    first.declare(s);
+    Document second = read_text(first.effective());
+    second.declare(again);
+    EXPECT_EQ(s.kinds.rate, again.kinds.rate);
+    EXPECT_EQ(s.kinds.modulus, again.kinds.modulus);
+    EXPECT_EQ(s.kinds.center, again.kinds.center);
+    EXPECT_EQ(s.kinds.gradient, again.kinds.gradient);
+    EXPECT_EQ(s.kinds.note, again.kinds.note);
+    EXPECT_EQ(first.effective(), second.effective());
+  }
+}
+
+TEST(EffectiveDecks, KeepForeignListsWithTheirTypes) {
+  Sample s, again;
+  Document first = read_text(
+      "Tanktread:\n  Kinds:\n    Belos:\n      real: 3.\n      whole: 3\n      yes it is: true\n      text: \"3\"\n      reals: [1., 2.]\n      wholes: [1, 2]\n"
+      "      texts: [a, \"b c\"]\n      Inner: {real: 1e-10}\n");
+  first.declare(s);
+  Document second = read_text(first.effective());
+  second.declare(again);
+  EXPECT_TRUE(Teuchos::haveSameValues(*s.kinds.belos, *again.kinds.belos));
+  EXPECT_EQ(again.kinds.belos->get<double>("real"), 3.0);
+  EXPECT_EQ(again.kinds.belos->get<std::string>("text"), "3");
+}
+
+TEST(ForeignLists, LieOverTheDefaultsOfTheirOwner) {
+  Sample s;
+  s.kinds.belos = std::make_shared<Teuchos::ParameterList>();
+  s.kinds.belos->set("tolerance", 1e-6).set("iterations", 10);
+  const auto defaults = s.kinds.belos;
+  Document document = read_text("Tanktread:\n  Kinds:\n    Belos: {iterations: 20}\n");
+  document.declare(s);
+  EXPECT_EQ(s.kinds.belos->get<double>("tolerance"), 1e-6);
+  EXPECT_EQ(s.kinds.belos->get<int>("iterations"), 20);
+  EXPECT_EQ(defaults->get<int>("iterations"), 10) << "the defaults themselves stay";
+}
+
+TEST(Manual, HasOneRowAKey) {
+  const std::string text = manual(Sample{});
+  EXPECT_NE(text.find("## Kinds\n\nOne key of each type.\n"), std::string::npos);
+  EXPECT_NE(text.find("| `shear rate` | `1.0` | positive | 1/time | rate of the flow |"), std::string::npos);
+  EXPECT_NE(text.find("| `modulus` |  | positive | force/length | stiffness |"), std::string::npos);
+  EXPECT_NE(text.find("| `law` | `soft` | `soft`, `hard`, `very hard` |  | which \\| law |"), std::string::npos);
+  EXPECT_NE(text.find("## Kinds/Inner"), std::string::npos);
+  EXPECT_NE(text.find("## `Expect/<name>`"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tanktread::deck

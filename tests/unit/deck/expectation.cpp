@@ -1,0 +1,84 @@
+#include "deck/expectation.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "options.hpp"
+
+namespace tanktread::deck {
+namespace {
+
+std::vector<Expectation> expectations(const std::string& lines) {
+  Sample sample;
+  Document document = read_text("Tanktread:\n  Expect:\n" + lines);
+  document.declare(sample);
+  return sample.expect.all;
+}
+
+const SeriesTable cubic = [] {
+  SeriesTable table;
+  for (const double t : {0.0, 0.1, 0.4, 0.5, 0.9, 1.5, 2.0}) {
+    table["time"].push_back(t);
+    table["volume"].push_back(1 + t - t * t + 0.5 * t * t * t);
+  }
+  return table;
+}();
+
+TEST(Expectations, AreReadByName) {
+  const auto all = expectations("    volume: {value: 4.19, tolerance: 1e-3, kind: relative, at: 7.5, source: \"sphere, exact\"}\n    energy: {value: 1, tolerance: 0.1}\n");
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].name, "volume");
+  EXPECT_EQ(all[0].series, "volume");
+  EXPECT_EQ(all[0].value, 4.19);
+  EXPECT_EQ(all[0].kind, "relative");
+  EXPECT_EQ(all[0].at, 7.5);
+  EXPECT_FALSE(all[1].at.has_value());
+}
+
+TEST(Expectations, NeedValueAndTolerance) {
+  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1}\n"),
+            "Expect/volume/tolerance is missing; an expectation needs `value` and `tolerance`.");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: 1\n"), "Expect/volume must be a list of keys, but is 1.");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1, tolerance: 1, tol: 2}\n"), "Expect/volume/tol is not a key of the deck; Expect/volume has "
+            "series, value, tolerance, kind, at or source.");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 0, tolerance: 1, kind: relative}\n"),
+            "Expect/volume/kind `relative` and the value 0 contradict each other.");
+}
+
+TEST(Interpolation, IsExactForCubicsAndAtTheRows) {
+  for (const double t : {0.0, 0.05, 0.1, 0.3, 0.45, 0.7, 1.0, 1.7, 2.0})
+    EXPECT_NEAR(interpolated(cubic.at("time"), cubic.at("volume"), t), 1 + t - t * t + 0.5 * t * t * t, 1e-14) << t;  // round-off
+  EXPECT_EQ(interpolated({0.0, 1.0}, {2.0, 4.0}, 0.5), 3.0) << "two rows: a line";
+  EXPECT_EQ(interpolated({1.0}, {2.0}, 1.0), 2.0);
+}
+
+TEST(Verdicts, HoldTheLastRowOrAMoment) {
+  const auto all = verdicts(expectations("    last: {series: volume, value: 3, tolerance: 1e-9}\n    half: {series: volume, value: 1.3, tolerance: 0.02, at: 0.5}\n"
+                                         "    off: {series: volume, value: 3.3, tolerance: 0.05, kind: relative}\n"),
+                            cubic);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_TRUE(all[0].passed);
+  EXPECT_EQ(all[0].value, 3.0);
+  EXPECT_TRUE(all[1].passed);
+  EXPECT_NEAR(all[1].error, 0.0125, 1e-14);
+  EXPECT_FALSE(all[2].passed);
+  EXPECT_NEAR(all[2].error, 0.3 / 3.3, 1e-14);
+  EXPECT_EQ(all[2].reason, "volume is 3, expected 3.3 within 0.05 (relative)");
+}
+
+TEST(Verdicts, AreNeverFewerThanDeclared) {
+  const auto all = verdicts(expectations("    nothing: {value: 1, tolerance: 1}\n    late: {series: volume, value: 1, tolerance: 100, at: 2.1}\n"), cubic);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_EQ(all[0].reason, "the results hold no series nothing");
+  EXPECT_FALSE(all[1].passed);
+  EXPECT_EQ(all[1].reason, "the results do not reach the time 2.1");
+}
+
+TEST(Verdicts, FailOnWhatIsNotANumber) {
+  EXPECT_FALSE(verdicts(expectations("    a: {value: 1, tolerance: 1e300}\n"), {{"time", {0.0}}, {"a", {std::nan("")}}})[0].passed);
+}
+
+}  // namespace
+}  // namespace tanktread::deck

@@ -1,0 +1,105 @@
+#include "deck/section.hpp"
+
+#include <gtest/gtest.h>
+
+#include "options.hpp"
+
+namespace tanktread::deck {
+namespace {
+
+TEST(Keys, ThatAreNotGivenKeepTheirDefaults) {
+  const Kinds k = kinds("    count: 4\n");
+  EXPECT_EQ(k.rate, 1.0);
+  EXPECT_FALSE(k.modulus.has_value());
+  EXPECT_EQ(k.count, 4);
+  EXPECT_EQ(k.law, "soft");
+  EXPECT_TRUE(k.gradient.isIdentity(0));
+}
+
+TEST(Keys, OfEveryTypeAreRead) {
+  const Kinds k = kinds(
+      "    shear rate: 2.5\n    modulus: 1e-3\n    count: 7\n    limit: 0\n    enabled: true\n    law: very hard\n    note: \"a: b # c\"\n"
+      "    center: [1, 2, 3]\n    axes: [1., 2, 3.5]\n    gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9]\n    stress: [[1., 2., 3.], [4., 5., 6.], [7., 8., 9.]]\n"
+      "    Inner: {depth: 0.25}\n");
+  EXPECT_EQ(k.rate, 2.5);
+  EXPECT_EQ(k.modulus, 1e-3);
+  EXPECT_EQ(k.count, 7);
+  EXPECT_EQ(k.limit, 0);
+  EXPECT_TRUE(k.enabled);
+  EXPECT_EQ(k.law, "very hard");
+  EXPECT_EQ(k.note, "a: b # c");
+  EXPECT_EQ(k.center, Vec3(1, 2, 3));
+  EXPECT_EQ(k.axes.value(), Vec3(1, 2, 3.5));
+  EXPECT_EQ(k.gradient(0, 2), 3.0) << "row by row";
+  EXPECT_EQ(k.stress.value(), k.gradient) << "a table is a row of rows";
+  EXPECT_EQ(k.inner.depth, 0.25);
+}
+
+TEST(Keys, TakeAWholeNumberForANumberButNotText) {
+  EXPECT_EQ(kinds("    shear rate: 2\n").rate, 2.0);
+  EXPECT_EQ(refusal("    shear rate: \"2\"\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is \"2\" (text).");
+  EXPECT_EQ(kinds("    count: 4.0\n").count, 4);
+  EXPECT_EQ(refusal("    count: 4.5\n"), "Kinds/count must be a whole number, between 1 and 9, but is 4.5.");
+}
+
+TEST(Keys, RefuseAValueOutsideTheirRuleWithPathRuleUnitAndValue) {
+  EXPECT_EQ(refusal("    shear rate: -1\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is -1.");
+  EXPECT_EQ(refusal("    count: 10\n"), "Kinds/count must be a whole number, between 1 and 9, but is 10.");
+  EXPECT_EQ(refusal("    Inner:\n      depth: 2.5\n"), "Kinds/Inner/depth must be a number, between 0 and 1 (unit: length), but is 2.5.");
+  EXPECT_EQ(refusal("    axes: [1, 0, 1]\n"), "Kinds/axes must be three numbers in brackets, each positive (unit: length), but is [1, 0, 1].");
+}
+
+TEST(Keys, RefuseWrongTypes) {
+  EXPECT_EQ(refusal("    enabled: 1\n"), "Kinds/enabled must be true or false, but is 1.");
+  EXPECT_EQ(refusal("    note: 1\n"), "Kinds/note must be text (in quotes), but is 1.");
+  EXPECT_EQ(refusal("    center: 1\n"), "Kinds/center must be three numbers in brackets (unit: length), but is 1.");
+  EXPECT_EQ(refusal("    center: [1, 2]\n"), "Kinds/center must be three numbers in brackets (unit: length), but is [1, 2].");
+  EXPECT_EQ(refusal("    gradient: [1, 2]\n"), "Kinds/gradient must be nine numbers in brackets (unit: 1/time), but is [1, 2].");
+  EXPECT_EQ(refusal("    shear rate: {a: 1}\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is a list of keys.");
+  EXPECT_EQ(refusal("    Inner: 3\n"), "Kinds/Inner must be a list of keys, but is 3.");
+  EXPECT_EQ(refusal("    count: 99999999999\n"), "Kinds/count must be a whole number, between 1 and 9, but is 99999999999.");
+  EXPECT_NE(refusal("    shear rate: 1e999\n"), "") << "no infinity";
+  EXPECT_NE(refusal("    shear rate: nan\n"), "");
+}
+
+TEST(Choices, RefuseAnotherWordWithAGuess) {
+  EXPECT_EQ(refusal("    law: sotf\n"), "Kinds/law must be soft, hard or very hard, but is \"sotf\" (text); was `soft` meant?");
+  EXPECT_EQ(refusal("    law: SOFT\n"), "Kinds/law must be soft, hard or very hard, but is \"SOFT\" (text); was `soft` meant?");
+  EXPECT_EQ(refusal("    law: glass\n"), "Kinds/law must be soft, hard or very hard, but is \"glass\" (text).");
+  EXPECT_EQ(refusal("    law: 2\n"), "Kinds/law must be soft, hard or very hard, but is 2.");
+}
+
+TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
+  EXPECT_EQ(refusal("    shaer rate: 1\n"), "Kinds/shaer rate is not a key of the deck; was Kinds/shear rate meant?");
+  EXPECT_EQ(refusal("    Inner: {detph: 1}\n"), "Kinds/Inner/detph is not a key of the deck; was Kinds/Inner/depth meant?");
+  EXPECT_EQ(refusal("    depth: 1\n"), "Kinds/depth is not a key of the deck; was Kinds/Inner/depth meant?") << "the key of another list";
+  EXPECT_EQ(refusal_of("Tanktread:\n  Kind: {count: 1}\n"), "Kind is not a key of the deck; was Kinds meant?");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Zebra: 1\n"), "Zebra is not a key of the deck; its lists are Kinds or Expect.");
+  EXPECT_EQ(refusal("    Inner: {zebra: 1}\n"), "Kinds/Inner/zebra is not a key of the deck; Kinds/Inner has depth.");
+}
+
+TEST(GivenKeys, AreKnownAsGiven) {
+  struct Probe {
+    bool given = false, other = true;
+    std::string path;
+    double a = 1;
+    void declare(Section& s) {
+      given = s.given("a");
+      other = s.given("b");
+      path = s.path("a");
+      s.key("a", a, any(), "1", "one");
+    }
+  };
+  struct Root {
+    Probe probe;
+    void declare(Section& s) { s.section("Probe", probe, "a probe"); }
+  } root;
+  Document document = read_text("Tanktread:\n  Probe:\n    a: 1\n");
+  document.declare(root);
+  EXPECT_TRUE(root.probe.given);
+  EXPECT_FALSE(root.probe.other);
+  EXPECT_EQ(root.probe.path, "Probe/a");
+}
+
+}  // namespace
+}  // namespace tanktread::deck
