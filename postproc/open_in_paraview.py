@@ -1,0 +1,78 @@
+"""A run as ParaView shows it: curved elements, exact normals, coloured by a field, with the time slider.
+
+    pvpython postproc/open_in_paraview.py results/shear_neo_hookean --state run.pvsm     # then: paraview run.pvsm
+    xvfb-run -a pvbatch postproc/open_in_paraview.py results/shear_neo_hookean -o last.png
+
+ParaView 5.11 (Debian 12: package python3-paraview) or newer. This file must not be called paraview.py: it would hide the module.
+"""
+
+import argparse
+import pathlib
+import sys
+
+from paraview import simple
+
+SUBDIVISION = 3  # of every curved element when it is drawn; ParaView's own default shows it nearly flat
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", help="directory of a run's results")
+    parser.add_argument("--field", default="load", help="what colours the surface (default: %(default)s)")
+    parser.add_argument("--time", type=float, help="simulated time to show (default: the last)")
+    parser.add_argument("--state", metavar="FILE", help="save a state file for the ParaView program")
+    parser.add_argument("-o", "--output", metavar="FILE", help="save a picture")
+    arguments = parser.parse_args()
+
+    series = pathlib.Path(arguments.results).resolve() / "run.hdf.series"
+    if not series.exists():
+        sys.exit(f"{series} does not exist: give the directory of a run's results")
+    source = simple.OpenDataFile(str(series))
+    simple.RenameSource("tanktread", source)
+    view = simple.GetActiveViewOrCreate("RenderView")
+    view.ViewSize = [1200, 900]
+    view.Background = [1, 1, 1]
+    view.UseColorPaletteForBackground = 0
+    go_to(arguments.time, view)
+    show(source, view, arguments.field)
+    look_at_shear_plane(view)
+    if arguments.state:
+        simple.SaveState(arguments.state)
+    if arguments.output:
+        simple.SaveScreenshot(arguments.output, view)
+
+
+def show(source, view, field):
+    display = simple.Show(source, view)
+    display.SetRepresentationType("Surface")
+    display.NonlinearSubdivisionLevel = SUBDIVISION
+    display.SelectNormalArray = "Normals"
+    source.UpdatePipeline(view.ViewTime)
+    components = source.PointData[field].GetNumberOfComponents() if field in source.PointData.keys() else 0
+    if components == 0:
+        sys.exit(f"there is no field {field}; there are: {', '.join(sorted(source.PointData.keys()))}")
+    simple.ColorBy(display, ("POINTS", field, "Magnitude") if components > 1 else ("POINTS", field))
+    display.RescaleTransferFunctionToDataRange(True)
+    display.SetScalarBarVisibility(view, True)
+    bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
+    bar.TitleColor = bar.LabelColor = [0.13, 0.15, 0.18]
+
+
+def go_to(time, view):
+    """The saved step nearest to a time; None: the last."""
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    times = scene.TimeKeeper.TimestepValues or [0.0]
+    times = list(times) if hasattr(times, "__len__") else [times]
+    scene.AnimationTime = view.ViewTime = times[-1] if time is None else min(times, key=lambda one: abs(one - time))
+
+
+def look_at_shear_plane(view):
+    """x1 to the right, x3 up, the eye on the side of negative x2 and somewhat above."""
+    view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [0.45, -0.8, 0.4], [0, 0, 1]
+    simple.ResetCamera(view)
+    view.CameraParallelProjection = 1
+    view.CameraParallelScale *= 0.75
+
+
+main()
