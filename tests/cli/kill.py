@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+# ranks: 1
+# Killed at any moment, what a run has written opens and holds every finished step.
+import pathlib
+import random
+import signal
+import time
+
+from harness import check, deck, main, run, series, start
+
+DECK = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particle: { shape: sphere }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { mesh: cube, elements per side: 3 }
+  Time: { final time: 2.0, tolerance: 1.0e-5 }
+  Output: { interval: 0.1 }
+"""
+KILLS = 20
+SERIES = ["time", "taylor_inertia", "energy", "volume_error", "evaluations"]
+
+
+def _rows(results):
+    """Rows of the record; 0 before the first."""
+    return len(series(results, "time")) if (pathlib.Path(results) / "run.h5").exists() else 0
+
+
+def _holds_the_beginning_of(whole, results):
+    """Every series of `results` is the beginning of that of `whole`, to the last bit."""
+    rows = _rows(results)
+    for name in SERIES if rows else []:
+        part = series(results, name)
+        check(len(part) == rows, f"{name} has {len(part)} rows, time has {rows}")
+        check(part.tobytes() == series(whole, name)[:rows].tobytes(), f"{name} differs from the run that was left alone")
+
+
+def _snapshots_are_whole(results):
+    """Every snapshot opens; nothing stands in the list of them that does not."""
+    import h5py
+    import json
+
+    results = pathlib.Path(results)
+    for path in results.glob("snapshot_*.hdf"):
+        with h5py.File(path, "r") as file:
+            check(file["checkpoint/arrays/x"].shape[1] == 3 and file["VTKHDF/Points"].shape[1] == 3, path)
+    if (results / "run.hdf.series").exists():
+        for entry in json.loads((results / "run.hdf.series").read_text())["files"]:
+            check((results / entry["name"]).exists(), f"{entry['name']} is listed and missing")
+
+
+def a_run_that_is_killed_leaves_every_finished_step():
+    deck(DECK)
+    begin = time.monotonic()
+    run("deck.yaml", "--output", "whole", "--quiet")
+    duration = time.monotonic() - begin
+    moments = random.Random(5)
+    most = 0
+    for k in range(KILLS):
+        results = f"killed_{k}"
+        process = start("deck.yaml", "--output", results, "--quiet")
+        end = time.monotonic() + moments.uniform(0.02, 1) * duration
+        seen = 0
+        while time.monotonic() < end and process.poll() is None:
+            seen = max(seen, _rows(results))  # also: a run that goes on can be watched
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        rows = _rows(results)
+        check(rows >= seen, f"{seen} rows were there, {rows} are left")
+        most = max(most, rows)
+        _holds_the_beginning_of("whole", results)
+        _snapshots_are_whole(results)
+    check(most > 3, "no run was killed after its third step: the test saw nothing")
+
+
+main()

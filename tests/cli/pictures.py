@@ -1,0 +1,43 @@
+#!/usr/bin/python3
+# The scripts of postproc/ draw what a run wrote, and say in one sentence when they cannot.
+import subprocess
+
+from harness import SOURCE, check, deck, main, run
+
+DECK = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particle: { shape: sphere }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { mesh: cube, elements per side: 3 }
+  Time: { final time: 0.2 }
+"""
+
+
+def _script(name, *arguments, code=0):
+    """Runs a script of postproc/ and returns what it says."""
+    result = subprocess.run([SOURCE / "postproc" / name, *arguments], capture_output=True, text=True)
+    check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
+    return result.stdout + result.stderr
+
+
+def a_run_is_drawn():
+    deck(DECK)
+    run("deck.yaml", "--output", "results", "--quiet")
+    for name in "deformation.py", "shape.py":
+        _script(name, "results", "-o", f"{name}.png")
+        with open(f"{name}.png", "rb") as file:
+            check(file.read(8) == b"\x89PNG\r\n\x1a\n", f"{name}.png is no picture")
+    check("taylor_inertia" in _script("read.py", "results"), "read.py does not list the series")
+    said = _script("shape.py", "results", "--field", "colour", code=1)
+    check("colour" in said and "load" in said, said)
+
+
+def help_is_there_and_absent_results_are_named():
+    for name in "deformation.py", "shape.py", "read.py":
+        check("usage" in _script(name, "--help"), name)
+        said = _script(name, "nowhere", code=1)
+        check("nowhere" in said and said.count("\n") == 1, said)
+
+
+main()

@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+# ranks: 2
+# A run that was killed and goes on is the run that was left alone.
+import pathlib
+import random
+import signal
+import time
+
+import numpy
+
+from harness import check, deck, main, run, series, start
+
+DECK = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particle: { shape: sphere }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { mesh: cube, elements per side: 3 }
+  Time: { final time: 2.0, tolerance: 1.0e-5 }
+  Output: { interval: 0.25 }
+"""
+OWN_TIME = ["wall_seconds"]  # the only series that may differ
+
+
+def _names(results):
+    """All series of a run."""
+    import h5py
+
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return list(file["series"])
+
+
+def _same_bits(one, other):
+    """Two runs are equal in every series and in their last checkpoint."""
+    check(_names(one) == _names(other), "the series have other names")
+    for name in _names(one):
+        if name not in OWN_TIME:
+            a, b = series(one, name), series(other, name)
+            check(a.shape == b.shape, f"{name}: {len(a)} rows and {len(b)}")
+            check(a.tobytes() == b.tobytes(), f"{name} differs by up to {numpy.nanmax(abs(a - b)):.3g}")
+    a, b = _last_checkpoint(one), _last_checkpoint(other)
+    check(a.keys() == b.keys(), "the last checkpoints hold different things")
+    for name in a:
+        check(a[name].tobytes() == b[name].tobytes(), f"{name} of the last checkpoint differs")
+
+
+def _last_checkpoint(results):
+    """Arrays and numbers of the newest snapshot by name."""
+    import h5py
+
+    with h5py.File(sorted(pathlib.Path(results).glob("snapshot_*.hdf"))[-1], "r") as file:
+        root = file["checkpoint"]
+        found = {f"arrays/{name}": data[()] for name, data in root["arrays"].items()}
+        found.update({f"numbers/{name}": data[()] for name, data in root["numbers"].items() if "wall" not in name})
+        return found
+
+
+def _kill_after(results, rows, *arguments):
+    """Starts a run and kills it when its record has that many rows."""
+    process = start(*arguments)
+    end = time.monotonic() + 300
+    while process.poll() is None and time.monotonic() < end:
+        if (pathlib.Path(results) / "run.h5").exists() and len(series(results, "time")) >= rows:
+            break
+        time.sleep(0.001)
+    check(process.poll() is None, f"the run ended before row {rows}: {process.communicate()}")
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+
+
+def a_killed_run_goes_on_to_the_same_last_bit_under_every_scheme():
+    for scheme in "tr-bdf2", "bs3", "crank-nicolson":
+        text = DECK.replace("Time: {", f"Time: {{ scheme: {scheme},").replace("final time: 2.0", "final time: 1.0")
+        deck(text.replace("interval: 0.25", "interval: 0.2"))
+        run("deck.yaml", "--output", f"whole_{scheme}", "--quiet")
+        steps = len(series(f"whole_{scheme}", "time"))
+        _kill_after(f"killed_{scheme}", 2 * steps // 3, "deck.yaml", "--output", f"killed_{scheme}", "--quiet")
+        run("--resume", f"killed_{scheme}", "--quiet")
+        _same_bits(f"whole_{scheme}", f"killed_{scheme}")
+
+
+def a_run_that_is_killed_again_and_again_arrives_at_the_same_end():
+    deck(DECK)
+    begin = time.monotonic()
+    run("deck.yaml", "--output", "whole", "--quiet")
+    duration = time.monotonic() - begin
+    moments = random.Random(6)
+    _kill_after("killed", 3, "deck.yaml", "--output", "killed", "--quiet")
+    for _ in range(6):
+        process = start("--resume", "killed", "--quiet")
+        time.sleep(moments.uniform(0.1, 0.7) * duration)
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+    run("--resume", "killed", "--quiet")
+    _same_bits("whole", "killed")
+
+
+def other_ranks_go_on_to_the_same_end_within_1e_10():
+    deck(DECK)
+    run("deck.yaml", "--output", "whole", "--quiet")
+    _kill_after("killed", 6, "deck.yaml", "--output", "killed", "--quiet")
+    run("--resume", "killed", "--quiet", ranks=2)
+    for name in "time", "taylor_inertia", "area", "energy":
+        a, b = series("whole", name), series("killed", name)
+        check(a.shape == b.shape, f"{name}: {len(a)} rows and {len(b)}")
+        worst = abs(a - b).max()
+        check(worst <= 1e-10, f"{name} differs by {worst:.3g}")
+
+
+def sigterm_stops_with_a_checkpoint_at_the_last_step():
+    deck(DECK)
+    run("deck.yaml", "--output", "whole", "--quiet")
+    process = start("deck.yaml", "--output", "stopped", "--quiet")
+    while process.poll() is None and not (pathlib.Path("stopped/run.h5").exists() and len(series("stopped", "time")) >= 4):
+        time.sleep(0.001)
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate(timeout=60)
+    check("Traceback" not in said and "signal" in said, said)
+    rows = len(series("stopped", "time"))
+    check(rows < len(series("whole", "time")), "the run was over before it was told to stop")
+    check(pathlib.Path(f"stopped/snapshot_{rows - 1:06d}.hdf").exists(), "no checkpoint of the last step")
+    run("--resume", "stopped", "--quiet")
+    _same_bits("whole", "stopped")
+
+
+def a_damaged_newest_checkpoint_is_passed_over():
+    deck(DECK)
+    run("deck.yaml", "--output", "whole", "--quiet")
+    run("deck.yaml", "--output", "damaged", "--quiet")
+    newest = sorted(pathlib.Path("damaged").glob("snapshot_*.hdf"))[-1]
+    newest.write_bytes(newest.read_bytes()[:2000])
+    run("--resume", "damaged", "--quiet")
+    _same_bits("whole", "damaged")
+
+
+def the_final_time_may_change_and_the_membrane_may_not():
+    deck(DECK)
+    run("deck.yaml", "--output", "short", "--set", "Time/final time=0.5", "--quiet")
+    run("--resume", "short", "--set", "Time/final time=1.0", "--quiet")
+    check(series("short", "time")[-1] == 1.0, "the run did not go on to its new end")
+    result = run("--resume", "short", "--set", "Membrane/capillary number=0.6", code=2)
+    check("Membrane/capillary number" in result.stderr, result.stderr)
+
+
+def a_directory_without_a_checkpoint_is_a_mistake():
+    pathlib.Path("empty").mkdir()
+    for directory in "empty", "absent":
+        result = run("--resume", directory, code=2)
+        check(directory in result.stderr and result.stderr.count("\n") == 1, result.stderr)
+
+
+main()
