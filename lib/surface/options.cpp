@@ -12,7 +12,7 @@ namespace tanktread::surface {
 
 void MeshOptions::declare(deck::Section& section) {
   section.key("mesh", mesh, deck::Choice{"cube"}, "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points");
-  section.key("elements per side", elements_per_side, deck::between(2, 200), "1", "n: 6n^2 elements on the cube mesh");
+  section.key("elements per side", elements_per_side, deck::between(3, 200), "1", "n: 6n^2 elements on the cube mesh");
   section.key("extraordinary points", extraordinary_points, deck::Choice{"g1"},
               "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point");
 }

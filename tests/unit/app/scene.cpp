@@ -1,0 +1,118 @@
+#include "app/scene.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "deck/document.hpp"
+
+namespace tanktread {
+namespace {
+
+Scene scene(const std::string& lists) {
+  Scene out;
+  deck::Document document = deck::read_text("Tanktread:\n" + (lists.empty() ? "  Flow: {}\n" : lists));
+  document.declare(out);
+  out.check();
+  return out;
+}
+
+std::string refusal(const std::string& lists) {
+  try {
+    scene(lists);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Scenes, WithoutAnyKeyAreASphereInShear) {
+  const Scene s = scene("");
+  EXPECT_EQ(s.flow.type, "simple shear");
+  EXPECT_EQ(s.radius(), 1.0);
+  EXPECT_NEAR(s.modulus(), 1 / 0.3, 1e-15);
+  EXPECT_EQ(s.membrane.law, "neo-Hookean");
+  EXPECT_EQ(s.volume.constraint, "exact");
+  EXPECT_EQ(s.time.scheme, "tr-bdf2");
+  EXPECT_EQ(s.snapshot_interval(), s.time.final_time / 20);
+}
+
+TEST(Scenes, SurviveTheirEffectiveDeck) {
+  for (const char* lists : {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
+                            "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
+                            "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n", "  Time: {fixed step: 0.01, scheme: bs3}\n"}) {
+    Scene first, second;
+    deck::Document once = deck::read_text(std::string("Tanktread:\n") + lists);
+    once.declare(first);
+    first.check();
+    deck::Document twice = deck::read_text(once.effective());
+    twice.declare(second);
+    second.check();
+    EXPECT_EQ(once.effective(), twice.effective());
+    EXPECT_EQ(first.modulus(), second.modulus());
+  }
+}
+
+TEST(Moduli, FollowFromTheCapillaryNumber) {
+  EXPECT_DOUBLE_EQ(scene("  Flow: {viscosity: 2, shear rate: 3}\n  Particle: {radius: 4}\n  Membrane: {capillary number: 0.5}\n").modulus(), 48.0);
+  EXPECT_DOUBLE_EQ(scene("  Membrane: {shear modulus: 7}\n").modulus(), 7.0);
+  // The largest singular value of the gradient of shear is the shear rate, of hyperbolic flow its rate.
+  EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [0, 0, 2.5, 0, 0, 0, 0, 0, 0]}\n").flow.rate(), 2.5);
+  EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [2, 0, 0, 0, 0, 0, 0, 0, -2]}\n").flow.rate(), 2.0);
+}
+
+TEST(EquivalentRadii, AreThoseOfTheSphereOfEqualVolume) {
+  EXPECT_DOUBLE_EQ(scene("  Particle: {shape: ellipsoid, semi-axes: [1, 2, 4]}\n").radius(), 2.0);
+  EXPECT_DOUBLE_EQ(scene("  Particle: {shape: spheroid, semi-axes: [8, 8, 1]}\n").radius(), 4.0);
+  // Volume of the disc by the midpoint rule: outline z = (R/2) sqrt(1 - r^2)(0.21 + 2.0 r^2 - 1.12 r^4).
+  double volume = 0;
+  const int steps = 200000;
+  for (int i = 0; i < steps; ++i) {
+    const double r = (i + 0.5) / steps;
+    volume += 2 * std::numbers::pi * r * std::sqrt(1 - r * r) * (0.21 + 2.0 * r * r - 1.12 * std::pow(r, 4)) / steps;
+  }
+  EXPECT_NEAR(scene("  Particle: {shape: red cell, radius: 2}\n").radius(), 2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)), 1e-6);  // the rule's error
+}
+
+TEST(Orientations, TurnTheAxesOfTheParticle) {
+  const Scene s = scene("  Particle: {shape: spheroid, semi-axes: [2, 2, 1], orientation: [0, -45, 0]}\n");
+  EXPECT_TRUE(s.particle.shape.rotation().col(0).isApprox(Vec3(1, 0, 1).normalized(), 1e-15)) << "along the direction of extension";
+  EXPECT_TRUE(scene("").particle.shape.rotation().isIdentity(0));
+}
+
+TEST(Contradictions, AreOneSentenceEach) {
+  EXPECT_EQ(refusal("  Membrane: {capillary number: 0.3, shear modulus: 1}\n"),
+            "Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
+  EXPECT_EQ(refusal("  Membrane: {area dilatation: 2}\n"), "Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `neo-Hookean`.");
+  EXPECT_EQ(refusal("  Membrane: {surface tension: 2}\n"),
+            "Membrane/surface tension and Membrane/law `neo-Hookean` contradict each other: give Membrane/shear modulus.");
+  EXPECT_EQ(refusal("  Membrane: {law: surface tension, load measure: reference}\n"),
+            "Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
+  EXPECT_EQ(refusal("  Particle: {semi-axes: [1, 1, 2]}\n"),
+            "Particle/semi-axes and Particle/shape `sphere` contradict each other: give Particle/radius.");
+  EXPECT_EQ(refusal("  Particle: {shape: ellipsoid}\n"), "Particle/shape `ellipsoid` needs Particle/semi-axes, three lengths.");
+  EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"), "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
+  EXPECT_EQ(refusal("  Flow: {type: four-roll}\n"), "Flow/type `four-roll` needs Flow/roll parameter.");
+  EXPECT_EQ(refusal("  Flow: {roll parameter: 0.5}\n"), "Flow/roll parameter belongs to Flow/type `four-roll`, but Flow/type is `simple shear`.");
+  EXPECT_EQ(refusal("  Time: {fixed step: 0.1, initial step: 0.1}\n"), "Time/fixed step and Time/initial step contradict each other: give one of them.");
+  EXPECT_EQ(refusal("  Volume: {constraint: none}\n").find("Volume/constraint `none` and Membrane/load measure `reference` contradict each other"), 0u);
+  EXPECT_EQ(refusal("  Volume: {constraint: none}\n  Membrane: {load measure: current}\n"), "");
+}
+
+TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
+  EXPECT_EQ(refusal("  Surface: {elements per side: 69}\n"), "");
+  EXPECT_NE(refusal("  Surface: {elements per side: 100}\n").find("60002 control points, whose single layer takes 259 GB"), std::string::npos);
+  EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n  Time: {scheme: bs3}\n"), "");
+  EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
+}
+
+TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
+  for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
+    EXPECT_TRUE(may_change_on_resume(path)) << path;
+  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side"}) EXPECT_FALSE(may_change_on_resume(path)) << path;
+}
+
+}  // namespace
+}  // namespace tanktread
