@@ -15,13 +15,15 @@ std::vector<Ray> bays(const TMesh& mesh, Ray ray, int count) {
 }
 }  // namespace
 
+int missing_slot(const TMesh& mesh, int v) {
+  constexpr std::int8_t missing[16] = {-1, -1, -1, -1, -1, -1, -1, 3, -1, -1, -1, 2, -1, 1, 0, -1};
+  return mesh.lattice->valence(v) == 4 ? missing[mesh.edges[v]] : -1;
+}
+
 std::vector<TJunction> t_junctions(const TMesh& mesh) {
-  constexpr int missing[16] = {-1, -1, -1, -1, -1, -1, -1, 3, -1, -1, -1, 2, -1, 1, 0, -1};
   std::vector<TJunction> out;
-  for (int v = 0; v < mesh.lattice->vertices(); ++v) {
-    const int m = missing[mesh.edges[v]];
-    if (m >= 0 && mesh.lattice->valence(v) == 4) out.push_back({v, m});
-  }
+  for (int v = 0; v < mesh.lattice->vertices(); ++v)
+    if (const int m = missing_slot(mesh, v); m >= 0) out.push_back({v, m});
   return out;
 }
 

@@ -11,6 +11,9 @@ struct TJunction {
 };
 std::vector<TJunction> t_junctions(const TMesh& mesh);
 
+/// The missing slot if the vertex is a T-junction, -1 otherwise.
+int missing_slot(const TMesh& mesh, int vertex);
+
 /// Whether a ray that arrives (its slot goes on) meets an edge perpendicular to it; a vertex on either side counts.
 inline bool touches(const TMesh& mesh, Ray r) { return mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10); }
 

@@ -1,10 +1,13 @@
 #include "spline/extraction.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <bit>
 #include <cstdlib>
+#include <map>
+#include <numeric>
 #include <string>
 
+#include "spline/catmull_clark.hpp"
 #include "spline/extraordinary_g1.hpp"
 #include "spline/knots.hpp"
 
@@ -183,10 +186,39 @@ std::vector<Site> greville(const Builder& b, int A, const Knots& k) {
   return sites;
 }
 
+/// Elements of a tile at an extraordinary point, in the tile's own unit square: one bi-quartic, or the Catmull-Clark pieces.
+std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, int corner, ExtraordinaryRule rule, int depth) {
+  std::vector<Element> out;
+  if (rule == ExtraordinaryRule::g1) {
+    Element e;
+    e.degree = 4;
+    e.points.assign(ring.begin(), ring.end());
+    e.extraction = at_corner(constrained_biquartic(), 4, corner);
+    out.push_back(std::move(e));
+    return out;
+  }
+  for (const Piece& piece : catmull_clark_pieces(depth)) {
+    const double u = piece.u, v = piece.v, far_u = 1 - u - piece.size, far_v = 1 - v - piece.size;
+    const double x[4] = {u, far_v, far_u, v}, y[4] = {v, u, far_v, far_u};
+    Element e;
+    e.origin = {x[corner], y[corner]};
+    e.size = {piece.size, piece.size};
+    const Eigen::MatrixXd all = at_corner(piece.extraction.transpose(), 3, corner);
+    std::vector<int> used;
+    for (int i = 0; i < OneRing::size; ++i)
+      if ((all.row(i).array() != 0).any()) used.push_back(i);
+    e.extraction = all(used, Eigen::all);
+    for (int i : used) e.points.push_back(ring[i]);
+    out.push_back(std::move(e));
+  }
+  return out;
+}
+
+int log2_of(int power) { return std::countr_zero(unsigned(power)); }
+
 }  // namespace
 
 Space space(const TMesh& mesh, ExtraordinaryRule rule) {
-  assert(rule == ExtraordinaryRule::g1);
   Builder b(mesh);
   const Lattice& l = b.l;
   Space out;
@@ -199,33 +231,64 @@ Space space(const TMesh& mesh, ExtraordinaryRule rule) {
     out.collocation[A] = greville(b, A, k);
   }
 
-  const Eigen::MatrixXd biquartic = constrained_biquartic();
-  out.elements.resize(b.tiling.tiles.size());
-  std::vector<int> count(b.tiling.tiles.size(), 0);
+  const int tiles = int(b.tiling.tiles.size());
+  std::vector<int> count(tiles, 0), first(tiles + 1, 0);  // functions of a tile; its first element
   for (const Contribution& c : b.entries) ++count[c.tile];
-  for (std::size_t t = 0; t < b.tiling.tiles.size(); ++t) {
+  out.elements.reserve(tiles);
+  // The averaged square keeps its side, 2^-max(levels, 4) of a base element, however often the rings around it are refined.
+  const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
+  std::map<std::pair<int, int>, std::vector<Element>> patterns;  // by corner and spacing, with ring numbers for points
+  std::array<int, OneRing::size> numbers;
+  std::iota(numbers.begin(), numbers.end(), 0);
+  for (int t = 0; t < tiles; ++t) {
     const Rectangle& r = b.tiling.tiles[t];
-    Element& e = out.elements[t];
-    e.face = r.face;
-    e.origin = {double(r.x) / l.units, double(r.y) / l.units};
-    e.size = {double(r.width) / l.units, double(r.height) / l.units};
+    first[t] = int(out.elements.size());
     if (b.irregular[t] < 0) {
+      Element e;
       e.points.reserve(count[t]);
       e.extraction.resize(count[t], 16);
+      out.elements.push_back(std::move(e));
     } else {
-      const auto ring = b.ring(int(t));
-      e.degree = 4;
-      e.points.assign(ring.begin(), ring.end());
-      e.extraction = at_corner(biquartic, 4, b.irregular[t]);
+      const auto ring = b.ring(t);
+      auto& pattern = patterns[{b.irregular[t], r.width}];
+      if (pattern.empty()) pattern = around_point(numbers, b.irregular[t], rule, below_unit + log2_of(r.width));
+      for (Element e : pattern) {
+        for (int& p : e.points) p = ring[p];
+        out.elements.push_back(std::move(e));
+      }
+    }
+    for (std::size_t k = first[t]; k < out.elements.size(); ++k) {
+      Element& e = out.elements[k];
+      e.face = r.face;
+      e.origin = {(r.x + e.origin[0] * r.width) / l.units, (r.y + e.origin[1] * r.height) / l.units};
+      e.size = {e.size[0] * r.width / l.units, e.size[1] * r.height / l.units};
     }
   }
+  first[tiles] = int(out.elements.size());
   for (const Contribution& c : b.entries) {
-    Element& e = out.elements[c.tile];
+    Element& e = out.elements[first[c.tile]];
     e.extraction.row(Eigen::Index(e.points.size())) = Eigen::Map<const Eigen::Matrix<double, 1, 16>>(c.row.data());
     e.points.push_back(c.point);
   }
-  out.description = std::to_string(out.elements.size()) + " cubic elements on a cube, " + std::to_string(out.n_points) +
-                    " control points, eight extraordinary points (g1)";
+  for (auto& sites : out.collocation) {
+    std::vector<Site> found;
+    for (const Site& site : sites) {
+      const Rectangle& r = b.tiling.tiles[site.element];
+      const double x = (r.x + site.s * r.width) / l.units, y = (r.y + site.t * r.height) / l.units;
+      if (first[site.element + 1] - first[site.element] == 1) {
+        found.push_back({first[site.element], site.s, site.t});
+        continue;
+      }
+      for (int k = first[site.element]; k < first[site.element + 1]; ++k) {
+        const Element& e = out.elements[k];
+        const double s = (x - e.origin[0]) / e.size[0], t = (y - e.origin[1]) / e.size[1], margin = 1e-9;
+        if (std::min(s, t) > -margin && std::max(s, t) < 1 + margin) found.push_back({k, std::clamp(s, 0.0, 1.0), std::clamp(t, 0.0, 1.0)});
+      }
+    }
+    sites = std::move(found);
+  }
+  out.description = std::to_string(out.elements.size()) + " Bezier elements on a cube, " + std::to_string(out.n_points) +
+                    " control points, eight extraordinary points (" + (rule == ExtraordinaryRule::g1 ? "g1" : "catmull-clark") + ")";
   return out;
 }
 

@@ -52,6 +52,9 @@ void connect(Lattice& l) {
     }
     if (l.neighbour[v][3] < 0) l.extraordinary.push_back(v);
   }
+  l.point_at.assign(l.faces, {-1, -1, -1, -1});
+  for (int i = 0; i < int(l.extraordinary.size()); ++i)
+    for (int s = 0; s < 3; ++s) l.point_at[l.face_of(l.cell[l.extraordinary[i]][s])][l.corner[l.extraordinary[i]][s]] = i;
 }
 
 Walker cross(const Lattice& l, Walker w, int edge, int& entered) {

@@ -28,6 +28,8 @@ struct Lattice {
 
   std::vector<int> extraordinary;  ///< vertices of valence 3
 
+  std::vector<std::array<int, 4>> point_at;  ///< of a macro face: number in `extraordinary` of the point at its corner 0 .. 3, or -1
+
   int vertices() const { return int(neighbour.size()); }
   int cells() const { return int(corners.size()); }
   int valence(int v) const { return neighbour[v][3] < 0 ? 3 : 4; }

@@ -1,0 +1,85 @@
+#pragma once
+// A T-mesh with the extensions of its T-junctions, kept up to date while edges are put in or taken out.
+
+#include <map>
+#include <set>
+#include <utility>
+
+#include "spline/extension.hpp"
+
+namespace tanktread::spline {
+
+/// Counts what stands between a T-mesh and nested, linearly independent splines:
+///  - crossings: pairs of extensions of different axis that meet in a vertex (end points count; an extension that reaches an extraordinary point
+///    counts too). None: the mesh is analysis-suitable (Scott et al. 2012).
+///  - missing: unit edges of an earlier extended mesh that are neither edges nor covered by an extension. None: the extended meshes are nested.
+///  - overlaps: vertices that are no T-mesh vertex, on the face extensions of two T-junctions of one line that point at each other. There the
+///    extended mesh carries a whole line and one smooth function more than the mesh has anchors.
+/// Together none of the three: the spline spaces are nested.
+///
+/// Adding or removing a path touches only the T-junctions whose extensions meet it, so both are cheap and exact inverses of each other.
+class ExtendedMesh {
+ public:
+  explicit ExtendedMesh(TMesh mesh);
+
+  const TMesh& mesh() const { return mesh_; }
+  TMesh take() && { return std::move(mesh_); }
+  void set_spacing(int point, int h) { mesh_.spacing[point] = h; }
+
+  /// Requires from now on that every edge of the present extended mesh stays covered.
+  void keep_extensions();
+
+  void insert(const std::vector<Ray>& path) { change(path, true); }
+  void remove(const std::vector<Ray>& path) { change(path, false); }
+
+  int crossings() const { return crossings_; }
+  int missing() const { return int(missing_.size()); }
+
+  /// The two T-junctions of the crossing at the first vertex from `cursor` on, cyclically; the vertex becomes the next cursor's predecessor.
+  std::pair<TJunction, TJunction> crossing(int& cursor) const;
+  /// The T-junctions on both sides of the first missing edge (one or two).
+  std::vector<TJunction> around_missing() const;
+  /// A pair of T-junctions with an overlap vertex, first in the order of vertices; false when there is none.
+  bool overlap(TJunction& a, TJunction& b) const;
+  int overlaps() const;
+
+ private:
+  struct Trace {  // of one T-junction
+    int missing = 0;
+    std::vector<Ray> vertices;  // passed, with the slot that goes on
+    std::vector<bool> face;     // whether on the face extension
+    std::vector<Ray> edges;
+  };
+  struct Passing {  // an extension that passes a vertex
+    int junction;
+    int heading;
+    bool face;
+  };
+
+  void change(const std::vector<Ray>& path, bool present);
+  void add(int vertex);
+  void erase(int vertex);
+  void cover(Ray edge, int by);
+  void check_missing(Ray edge);
+  int conflicts(int vertex, int heading) const;
+  const Passing* facing(int vertex, int heading, int junction) const;
+  Ray canonical(Ray edge) const;
+
+  TMesh mesh_;
+  std::map<int, Trace> traces_;                       // by vertex of the T-junction
+  std::vector<std::vector<Passing>> passing_;         // of a lattice vertex
+  std::vector<std::array<std::uint8_t, 4>> covered_;  // extensions over an edge, at its canonical end
+  std::vector<std::uint8_t> required_;                // bits as in TMesh::edges; empty: none
+  std::set<std::pair<int, int>> missing_;
+  std::set<int> crossed_;  // vertices with crossings
+  int crossings_ = 0;
+};
+
+/// Counted afresh, for tests and assertions.
+struct Suitability {
+  int crossings = 0, overlaps = 0;
+  int broken_zones = 0;  ///< edges off the h lattice within three rings of an extraordinary point
+};
+Suitability suitability(const TMesh& mesh);
+
+}  // namespace tanktread::spline

@@ -1,0 +1,111 @@
+#include "spline/refinement.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "spline/extended_mesh.hpp"
+#include "spline/extraordinary_zone.hpp"
+
+namespace tanktread::spline {
+
+namespace {
+
+/// Unit edges of the line that cuts a tile in halves: across s from its bottom to its top, or across t from left to right.
+std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
+  const int cell = across_s ? l.cell_at(r.face, r.x + r.width / 2, r.y) : l.cell_at(r.face, r.x, r.y + r.height / 2);
+  Ray ray{l.corners[cell][0], l.slot[cell][0]};
+  if (across_s) ray.slot = (ray.slot + 1) & 3;
+  std::vector<Ray> path;
+  for (int i = 0; i < (across_s ? r.height : r.width); ++i, ray = step(l, ray)) path.push_back(ray);
+  return path;
+}
+
+/// The first bay of a T-junction's face extension.
+std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
+  std::vector<Ray> path;
+  Ray r{t.vertex, t.missing};
+  do {
+    path.push_back(r);
+    r = step(*mesh.lattice, r);
+  } while (mesh.lattice->valence(r.vertex) == 4 && !touches(mesh, r));
+  return path;
+}
+
+/// Crossings + missing / 2 after a trial insertion; bays into the rings of an extraordinary point last.
+double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
+  const double penalty = broken_zones(extended.mesh(), bay, rings).empty() ? 0 : 1000;
+  extended.insert(bay);
+  const double score = extended.crossings() + 0.5 * extended.missing() + penalty;
+  extended.remove(bay);
+  return score;
+}
+
+/// Bay of the candidate that does the least harm; ties: the shorter bay, the lower vertex.
+std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
+  std::vector<Ray> best;
+  double least = 0;
+  for (const TJunction& t : candidates) {
+    auto bay = first_bay(extended.mesh(), t);
+    const double score = candidates.size() > 1 ? harm(extended, bay, rings) : 0;
+    const bool better = best.empty() || score < least ||
+                        (score == least && (bay.size() < best.size() || (bay.size() == best.size() && t.vertex < best[0].vertex)));
+    if (better) {
+      best = std::move(bay);
+      least = score;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules) {
+  int bays = 0, halvings = 0, cursor = -1;
+  while (true) {
+    std::vector<Ray> bay;
+    TJunction a, b;
+    if (extended.crossings() > 0) {
+      const auto pair = extended.crossing(cursor);
+      const TJunction both[2] = {pair.first, pair.second};
+      bay = best_bay(extended, std::span(both, pair.first.vertex == pair.second.vertex ? 1 : 2), rules.rings);
+    } else if (extended.missing() > 0) {
+      bay = best_bay(extended, extended.around_missing(), rules.rings);
+    } else if (rules.no_overlaps && extended.overlap(a, b)) {
+      bay = first_bay(extended.mesh(), a);
+      if (auto other = first_bay(extended.mesh(), b); other.size() < bay.size()) bay = std::move(other);
+    } else {
+      break;
+    }
+    extended.insert(bay);
+    ++bays;
+    halvings += restore_zones(extended, {bay}, rules.rings);
+  }
+  return {bays, halvings};
+}
+
+Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules) {
+  Refinement out;
+  ExtendedMesh extended(mesh);
+  if (rules.nested_extensions) extended.keep_extensions();
+  const Tiling tiling = elements(mesh);
+  std::vector<std::vector<Ray>> paths;
+  for (const Mark& m : marks)
+    for (bool across_s : {true, false}) {
+      if (!(across_s ? m.s : m.t)) continue;
+      const Rectangle& r = tiling.tiles[m.element];
+      if ((across_s ? r.width : r.height) < 2) {
+        ++out.refused;
+        continue;
+      }
+      paths.push_back(mid_line(*mesh.lattice, r, across_s));
+      extended.insert(paths.back());
+    }
+  out.halvings = restore_zones(extended, std::move(paths), rules.rings);
+  const auto [bays, halvings] = repair(extended, rules);
+  out.repairs = bays;
+  out.halvings += halvings;
+  out.mesh = std::move(extended).take();
+  return out;
+}
+
+}  // namespace tanktread::spline
