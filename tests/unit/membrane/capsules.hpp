@@ -26,7 +26,7 @@ inline const Sphere& sphere(int n) {
   Sphere& made = kept[n];
   const spline::TMesh mesh = spline::cube(n);
   made.space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  made.net = surface::unit_sphere(made.space, mesh, surface::LeastSquaresFit(made.space));
+  made.net = surface::unit_sphere(mesh, surface::LeastSquaresFit(made.space));
   made.elements.resize(made.space.elements.size());
   std::iota(made.elements.begin(), made.elements.end(), 0);
   return made;

