@@ -1,0 +1,122 @@
+#include "surface/partition.hpp"
+
+#include <metis.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "base/errors.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+/// Neighbours of every element in compressed rows, weighted by the number of common control points.
+struct Graph {
+  std::vector<idx_t> start, neighbour, weight;
+};
+
+std::vector<std::vector<int>> elements_of_points(const spline::Space& space) {
+  std::vector<std::vector<int>> result(space.n_points);
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
+    for (const int a : space.elements[e].points) result[a].push_back(e);
+  return result;
+}
+
+Graph common_points(const spline::Space& space, const std::vector<std::vector<int>>& elements_of) {
+  const int n = static_cast<int>(space.elements.size());
+  Graph graph;
+  graph.start.push_back(0);
+  std::vector<int> common(n, 0), touched;
+  for (int e = 0; e < n; ++e) {
+    touched.clear();
+    for (const int a : space.elements[e].points)
+      for (const int f : elements_of[a])
+        if (f != e && common[f]++ == 0) touched.push_back(f);
+    std::sort(touched.begin(), touched.end());
+    for (const int f : touched) {
+      graph.neighbour.push_back(f);
+      graph.weight.push_back(std::exchange(common[f], 0));
+    }
+    graph.start.push_back(static_cast<idx_t>(graph.neighbour.size()));
+  }
+  return graph;
+}
+
+/// Costs as the positive integers that METIS wants.
+std::vector<idx_t> scaled(std::span<const double> cost) {
+  const double largest = *std::max_element(cost.begin(), cost.end());
+  std::vector<idx_t> result;
+  for (const double c : cost) result.push_back(std::max<idx_t>(1, std::lround(1000 * c / largest)));
+  return result;
+}
+
+std::vector<int> element_owners(Graph graph, int parts, std::span<const double> cost) {
+  idx_t n = static_cast<idx_t>(graph.start.size()) - 1, constraints = 1, k = parts, cut = 0;
+  std::vector<idx_t> weights = cost.empty() ? std::vector<idx_t>(n, 1) : scaled(cost);
+  std::vector<idx_t> owner(n);
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_UFACTOR] = 10;  // parts within one per cent of each other
+  const auto method = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
+  const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k, nullptr,
+                            nullptr, options, &cut, owner.data());
+  if (status != METIS_OK) throw std::runtime_error("METIS could not partition the surface (status " + std::to_string(status) + ")");
+  return {owner.begin(), owner.end()};
+}
+
+/// Each point goes to the part that owns most of the elements around it, the clearest cases first; once a part has its fair share of points,
+/// to the adjacent one that has the fewest.
+std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, const std::vector<int>& element_owner, int parts) {
+  const int n = static_cast<int>(elements_of.size());
+  std::vector<std::map<int, int>> votes(n);
+  std::vector<int> order(n), lead(n), points(parts, 0), owner(n);
+  for (int a = 0; a < n; ++a) {
+    for (const int e : elements_of[a]) ++votes[a][element_owner[e]];
+    int most = 0;
+    for (const auto& [part, count] : votes[a]) most = std::max(most, count);
+    lead[a] = 2 * most - static_cast<int>(elements_of[a].size());
+    order[a] = a;
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lead[a] > lead[b]; });
+  for (const int a : order) {
+    using Vote = std::pair<const int, int>;
+    const auto majority = std::max_element(votes[a].begin(), votes[a].end(), [](const Vote& x, const Vote& y) { return x.second < y.second; });
+    const auto fewest = std::min_element(votes[a].begin(), votes[a].end(), [&](const Vote& x, const Vote& y) { return points[x.first] < points[y.first]; });
+    owner[a] = points[majority->first] * parts < n ? majority->first : fewest->first;
+    ++points[owner[a]];
+  }
+  return owner;
+}
+
+}  // namespace
+
+Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
+  const int n = static_cast<int>(space.elements.size());
+  if (parts > n)
+    throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) + " ranks; use at most one rank an element.");
+  if (parts == 1) return {1, std::vector<int>(n, 0), std::vector<int>(space.n_points, 0)};
+  const std::vector<std::vector<int>> elements_of = elements_of_points(space);
+  Partition result;
+  result.parts = parts;
+  result.element_owner = element_owners(common_points(space, elements_of), parts, cost);
+  result.point_owner = point_owners(elements_of, result.element_owner, parts);
+  return result;
+}
+
+Share share(const spline::Space& space, const Partition& partition, int rank) {
+  Share result;
+  for (int a = 0; a < space.n_points; ++a)
+    if (partition.point_owner[a] == rank) result.points.push_back(a);
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const auto& points = space.elements[e].points;
+    if (std::any_of(points.begin(), points.end(), [&](int a) { return partition.point_owner[a] == rank; })) result.elements.push_back(e);
+  }
+  return result;
+}
+
+}  // namespace tanktread::surface

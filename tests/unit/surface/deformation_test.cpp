@@ -1,0 +1,125 @@
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "surface/extremes.hpp"
+#include "surface/geometry.hpp"
+#include "surfaces.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+struct Axes {
+  double longest, shortest, angle;
+};
+/// Semi-axes of the ellipse x.A x = 1 and the angle of the long one with the first coordinate, degrees.
+Axes ellipse(const Eigen::Matrix2d& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(a);
+  const Eigen::Vector2d v = solver.eigenvectors().col(0);
+  double angle = std::atan2(v[1], v[0]) * 180 / std::numbers::pi;
+  if (angle > 90) angle -= 180;
+  if (angle <= -90) angle += 180;
+  return {1 / std::sqrt(solver.eigenvalues()[0]), 1 / std::sqrt(solver.eigenvalues()[1]), angle};
+}
+Eigen::Matrix2d in_plane(const Mat3& m) { return (Eigen::Matrix2d() << m(0, 0), m(0, 2), m(2, 0), m(2, 2)).finished(); }
+
+TEST(Deformation, OfAnEllipsoidInAnyPositionIsThatOfItsSectionAndItsMoments) {
+  ParticleShape shape;
+  shape.shape = "ellipsoid";
+  shape.semi_axes = Vec3(1.6, 0.9, 0.7);
+  shape.orientation = Vec3(10, -35, 20);
+  shape.center = Vec3(0.3, -0.2, 5);
+  const Mat3 map = shape.rotation() * shape.semi_axes->asDiagonal();
+  const Mat3 moments = map * map.transpose();
+  const Axes section = ellipse(in_plane(moments.inverse()));
+  const Axes inertia = ellipse(in_plane(moments).inverse());
+  double before = 1;
+  for (const int n : {6, 12, 24}) {
+    const CubeMesh cube(n);
+    const Deformation d = deformation(cube.space, cube.shape(shape));
+    const double error = std::abs(d.taylor_surface - (section.longest - section.shortest) / (section.longest + section.shortest));
+    EXPECT_LT(error, before / 4);  // the error of the fit at two points
+    before = error;
+    if (n == 24) {
+      EXPECT_LT(error, 1e-6);
+      EXPECT_NEAR(d.taylor_inertia, (inertia.longest - inertia.shortest) / (inertia.longest + inertia.shortest), 1e-9);
+      EXPECT_NEAR(d.inclination, inertia.angle, 1e-7);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(d.lengths[c], 2 * std::sqrt(moments(c, c)), 3e-6);
+    }
+  }
+}
+
+TEST(Deformation, ExtremesOfACrumpledSurfaceBoundWhatDenseSamplingFinds) {
+  const CubeMesh cube(4);
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const Net net = cube.crumpled(0.08, seed);
+    const Geometry geometry(cube.space);
+    const Patches patches(geometry.bezier(), net);
+    const Vec3 centre = geometry.measures(net).centroid;
+    const Range distance = section_distances(patches, centre);
+    Range coordinate[3];
+    for (int c = 0; c < 3; ++c) coordinate[c] = coordinate_range(patches, c);
+
+    constexpr int cells = 60;
+    double low[3], high[3], nearest = 1e9, farthest = 0;
+    for (int c = 0; c < 3; ++c) low[c] = 1e9, high[c] = -1e9;
+    for (int e = 0; e < patches.size(); ++e) {
+      Vec3 y[cells + 1][cells + 1];
+      for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i <= cells; ++i) {
+          const Vec3 x = place(patches[e], double(i) / cells, double(j) / cells);
+          y[j][i] = x - centre;
+          for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], x[c]), high[c] = std::max(high[c], x[c]);
+          for (const Vec3& before : {i > 0 ? y[j][i - 1] : y[j][i], j > 0 ? y[j - 1][i] : y[j][i]}) {
+            if (before[1] * y[j][i][1] >= 0) continue;
+            const Vec3 cut = before + before[1] / (before[1] - y[j][i][1]) * (y[j][i] - before);
+            nearest = std::min(nearest, std::hypot(cut[0], cut[2]));
+            farthest = std::max(farthest, std::hypot(cut[0], cut[2]));
+          }
+        }
+      }
+    }
+    // Sampling falls short by curvature times the square of its spacing, 1/240 of a face; straight cuts of the grid add as much.
+    const double spacing = 2e-4;
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_GE(coordinate[c].largest, high[c]);
+      EXPECT_LE(coordinate[c].largest, high[c] + spacing);
+      EXPECT_LE(coordinate[c].smallest, low[c]);
+      EXPECT_GE(coordinate[c].smallest, low[c] - spacing);
+    }
+    EXPECT_NEAR(distance.largest, farthest, spacing);
+    EXPECT_NEAR(distance.smallest, nearest, spacing);
+  }
+}
+
+TEST(Deformation, ExtremesDoNotDependOnWhereElementsMeetThePlane) {
+  // Aligned, the section runs along element edges; turned about x2, through the elements. The section of an ellipsoid of revolution about x2 with
+  // circular section stays the same circle; here the surface itself is turned, so values agree to round-off.
+  const CubeMesh cube(6);
+  ParticleShape shape;
+  shape.shape = "ellipsoid";
+  shape.semi_axes = Vec3(1.5, 1.0, 0.8);
+  const Deformation aligned = deformation(cube.space, cube.shape(shape));
+  EXPECT_NEAR(aligned.inclination, 0, 1e-10);
+  shape.orientation = Vec3(0, -25, 0);  // lifts x1 towards x3
+  const Deformation turned = deformation(cube.space, cube.shape(shape));
+  EXPECT_NEAR(turned.taylor_surface, aligned.taylor_surface, 1e-10);
+  EXPECT_NEAR(turned.taylor_inertia, aligned.taylor_inertia, 1e-12);
+  EXPECT_NEAR(turned.inclination, 25, 1e-9);
+}
+
+TEST(Deformation, ExtentsAreAlsoFoundOnSidesAndCornersOfElements) {
+  // The poles x_i = +-a_i of an aligned ellipsoid are element corners for even n, element middles for odd n.
+  for (const int n : {5, 6}) {
+    const CubeMesh cube(n);
+    const Deformation d = deformation(cube.space, cube.ellipsoid({1.3, 1.0, 0.8}));
+    EXPECT_NEAR(d.lengths[0], 2.6, 1e-3);
+    EXPECT_NEAR(d.lengths[1], 2.0, 1e-3);
+    EXPECT_NEAR(d.lengths[2], 1.6, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace tanktread::surface

@@ -1,0 +1,197 @@
+#include "surface/geometry.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "quadrature/gauss.hpp"
+#include "surface/patch.hpp"
+#include "surfaces.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+using std::numbers::pi;
+
+/// The same integrals by a plain loop with twelve points a direction, from the definitions.
+Measures reference(const spline::Space& space, const Net& net) {
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(12);
+  Measures result;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const ElementPoints element(space, net, static_cast<int>(e));
+    for (int q = 0; q < rule.size(); ++q) {
+      const Jet at = jet(element.patch(), rule.s[q], rule.t[q]);
+      const Vec3 normal = rule.weights[q] * at.s.cross(at.t);
+      result.area += normal.norm();
+      const double flux = at.x.dot(normal);
+      result.volume += flux / 3;
+      first += flux / 4 * at.x;
+      second += flux / 5 * at.x * at.x.transpose();
+    }
+  }
+  result.centroid = first / result.volume;
+  result.second_moments = second - result.volume * result.centroid * result.centroid.transpose();
+  return result;
+}
+
+TEST(Geometry, VolumeAndMomentsAreExactForPolynomialElements) {
+  const CubeMesh cube(3);
+  const Net net = cube.crumpled(0.1);
+  const Measures fast = measures(cube.space, net), exact = reference(cube.space, net);
+  // Both rules are exact: what differs is the order of sums of some thousand terms.
+  EXPECT_NEAR(fast.volume, exact.volume, 1e-12);
+  EXPECT_NEAR(volume(cube.space, net), exact.volume, 1e-12);
+  EXPECT_LT((fast.centroid - exact.centroid).norm(), 1e-12);
+  EXPECT_LT((fast.second_moments - exact.second_moments).norm(), 1e-12);
+  // The area is not a polynomial; on such a coarse, crumpled surface eight points against twelve.
+  EXPECT_NEAR(fast.area, exact.area, 1e-4);
+}
+
+TEST(Geometry, EllipsoidIsMeasuredToTheOrderOfItsFit) {
+  const Vec3 axes(1.5, 1.0, 0.7), turn(30, 40, -50), place(2, -1, 3);
+  double before = 1;
+  for (const int n : {3, 6, 12}) {
+    const CubeMesh cube(n);
+    const Net net = cube.ellipsoid(axes, turn, place);
+    const Measures m = measures(cube.space, net);
+    const Ellipsoid fitted = ellipsoid_of_inertia(m);
+    EXPECT_LT((m.centroid - place).norm(), 1e-12);  // by symmetry, whatever the fit
+    const double error = std::abs(m.volume / (4 * pi / 3 * axes.prod()) - 1);
+    const double error_axes = (fitted.semi_axes - axes).norm();
+    EXPECT_LT(error, n == 3 ? 1e-5 : n == 6 ? 1e-6 : 1e-8);
+    EXPECT_LT(error_axes, n == 3 ? 1e-5 : n == 6 ? 1e-6 : 1e-8);
+    if (n == 12) {
+      EXPECT_LT(error_axes, before / 16);  // at least fourth order; at n = 3 the error happens to change sign
+    }
+    before = error_axes;
+  }
+}
+
+TEST(Geometry, AreaOfASphereConverges) {
+  double before = 1;
+  for (const int n : {3, 6, 12}) {
+    const CubeMesh cube(n);
+    const double error = std::abs(measures(cube.space, cube.sphere()).area / (4 * pi) - 1);
+    EXPECT_LT(error, before / 16);
+    before = error;
+  }
+  EXPECT_LT(before, 1e-7);
+}
+
+TEST(Geometry, VolumeGradientIsTheDerivativeOfTheVolume) {
+  const CubeMesh cube(3);
+  const Geometry geometry(cube.space);
+  const Net net = cube.crumpled(0.1);
+  const Net b = geometry.volume_gradient(net);
+  const double h = 1e-3;
+  for (int a = 0; a < net.rows(); ++a) {
+    for (int c = 0; c < 3; ++c) {
+      Net moved = net;
+      moved(a, c) += h;
+      const double above = geometry.volume(moved);
+      moved(a, c) -= 2 * h;
+      // V is a cubic polynomial of which a coordinate of one point appears linearly: central differences are exact but for round-off.
+      EXPECT_NEAR(b(a, c), (above - geometry.volume(moved)) / (2 * h), 1e-11);
+    }
+  }
+}
+
+TEST(Geometry, VolumeGradientObeysTranslationAndScaling) {
+  const CubeMesh cube(4);
+  const Net net = cube.crumpled(0.1);
+  const Net b = volume_gradient(cube.space, net);
+  EXPECT_LT(b.colwise().sum().norm(), 1e-13);                                        // closed surface: int n dG = 0
+  EXPECT_NEAR(b.cwiseProduct(net).sum(), 3 * volume(cube.space, net), 1e-12);        // V is homogeneous of degree three
+  Vec3 torque = Vec3::Zero();
+  for (int a = 0; a < net.rows(); ++a) torque += Vec3(net.row(a)).cross(Vec3(b.row(a)));
+  EXPECT_LT(torque.norm(), 1e-12);                                                   // a rotation keeps the volume
+}
+
+TEST(Geometry, AShareOfTheElementsGivesItsRowsToTheLastBit) {
+  const CubeMesh cube(5);
+  const Geometry geometry(cube.space);
+  const Net net = cube.crumpled(0.05);
+  const Net all = geometry.volume_gradient(net);
+  for (const int first : {0, 40, 90}) {
+    std::vector<bool> own(cube.space.n_points, false);
+    for (int a = first; a < first + 30; ++a) own[a] = true;
+    std::vector<int> elements;
+    for (int e = 0; e < static_cast<int>(cube.space.elements.size()); ++e)
+      for (const int a : cube.space.elements[e].points)
+        if (own[a]) {
+          elements.push_back(e);
+          break;
+        }
+    Net part;
+    geometry.volume_gradient(net, elements, part);
+    for (int a = first; a < first + 30; ++a) EXPECT_EQ(part.row(a), all.row(a)) << "row " << a;
+  }
+}
+
+TEST(Geometry, FarFromTheOriginNothingIsLost) {
+  const CubeMesh cube(4);
+  Net net = cube.crumpled(0.05);
+  const Geometry geometry(cube.space);
+  const Measures here = geometry.measures(net);
+  const Deformation shape = geometry.deformation(net);
+  net.col(0).array() += 1e3;
+  net.col(2).array() -= 1e3;
+  // Coordinates of 1e3 carry round-off of 1e-13.
+  EXPECT_NEAR(geometry.volume(net), here.volume, 1e-11);
+  EXPECT_LT((geometry.measures(net).second_moments - here.second_moments).norm(), 1e-11);
+  EXPECT_NEAR(geometry.deformation(net).taylor_inertia, shape.taylor_inertia, 1e-11);
+  EXPECT_NEAR(geometry.deformation(net).taylor_surface, shape.taylor_surface, 1e-11);
+}
+
+TEST(Geometry, NormalsPointOutwardEverywhere) {
+  const CubeMesh cube(3);
+  const Net net = cube.sphere();
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(3);
+  for (int e = 0; e < static_cast<int>(cube.space.elements.size()); ++e) {
+    for (int q = 0; q < rule.size(); ++q) {
+      const Point p = point(cube.space, net, {e, rule.s[q], rule.t[q]});
+      EXPECT_GT(p.n.dot(p.x.normalized()), 0.99);
+      EXPECT_NEAR(p.jacobian, p.a1.cross(p.a2).norm(), 1e-15);
+      EXPECT_LT((value(cube.space, net, {e, rule.s[q], rule.t[q]}) - p.x).norm(), 1e-15);
+    }
+  }
+}
+
+/// Root mean square error of the mean curvature on a sphere of radius 2 and on a spheroid, relative to its size.
+double curvature_error(int n, bool spheroid) {
+  const CubeMesh cube(n);
+  const Vec3 axes = spheroid ? Vec3(1, 1, 1.5) : Vec3(2, 2, 2);
+  const Net net = cube.ellipsoid(axes);
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(3);
+  double sum = 0, area = 0;
+  for (int e = 0; e < static_cast<int>(cube.space.elements.size()); ++e) {
+    for (int q = 0; q < rule.size(); ++q) {
+      const spline::Site site{e, rule.s[q], rule.t[q]};
+      const Point at = point(cube.space, net, site);
+      const Vec3 g = at.x.cwiseQuotient(axes.cwiseAbs2()), inverse_squares = axes.cwiseAbs2().cwiseInverse();
+      // 1/2 div(g/|g|) with g half the gradient of sum x_i^2/a_i^2
+      const double exact = (inverse_squares.sum() - inverse_squares.dot(g.cwiseAbs2()) / g.squaredNorm()) / (2 * g.norm());
+      const double weight = rule.weights[q] * at.jacobian;
+      sum += weight * std::pow(mean_curvature(cube.space, net, site) / exact - 1, 2);
+      area += weight;
+    }
+  }
+  return std::sqrt(sum / area);
+}
+
+TEST(Geometry, MeanCurvatureOfSphereAndSpheroidConverges) {
+  for (const bool spheroid : {false, true}) {
+    const double coarse = curvature_error(6, spheroid), fine = curvature_error(12, spheroid), finest = curvature_error(24, spheroid);
+    // First order overall: the curvature around the extraordinary points, on a share h^2 of the surface, does not converge.
+    EXPECT_GT(std::log2(coarse / fine), 0.9);
+    EXPECT_GT(std::log2(fine / finest), 0.9);
+    EXPECT_LT(finest, 5e-3);
+  }
+}
+
+}  // namespace
+}  // namespace tanktread::surface

@@ -1,0 +1,136 @@
+#include "surface/shapes.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "quadrature/gauss.hpp"
+#include "surface/cube_sphere.hpp"
+#include "surface/geometry.hpp"
+#include "surface/patch.hpp"
+#include "surfaces.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+struct Errors {
+  double radial_rms, radial, normal, largest_normal;  ///< L2 norms over the surface, unless named otherwise
+};
+/// Of the image of a fitted unit sphere under x -> axes * x, against the ellipsoid; radial errors for the sphere only.
+Errors errors(const CubeMesh& cube, const Vec3& axes) {
+  const Net net = cube.ellipsoid(axes);
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(8);
+  double area = 0, radial = 0, normal = 0, largest = 0;
+  for (std::size_t e = 0; e < cube.space.elements.size(); ++e) {
+    const ElementPoints element(cube.space, net, static_cast<int>(e));
+    for (int q = 0; q < rule.size(); ++q) {
+      const Jet at = jet(element.patch(), rule.s[q], rule.t[q]);
+      const Vec3 n = at.s.cross(at.t);
+      const double weight = rule.weights[q] * n.norm();
+      const Vec3 exact = at.x.cwiseQuotient(axes.cwiseAbs2()).normalized();
+      const double error = (n.normalized() - exact).norm();
+      area += weight;
+      radial += weight * std::pow(at.x.norm() - 1, 2);
+      normal += weight * error * error;
+      largest = std::max(largest, error);
+    }
+  }
+  return {std::sqrt(radial / area), std::sqrt(radial), std::sqrt(normal), largest};
+}
+
+/// At most the value of the table plus five per cent, and not so much less that something else must have been measured.
+void expect_at_most(double value, double table) {
+  EXPECT_LT(value, 1.05 * table);
+  EXPECT_GT(value, 0.3 * table);
+}
+
+TEST(Shapes, SphereErrsNoMoreThanTheMeasuredTable) {  // splines.md C.11, space.md section 4
+  const double rms[] = {6e-4, 4e-5, 2.4e-6};
+  double normal_before = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Errors e = errors(CubeMesh(3 << k), Vec3::Ones());
+    expect_at_most(e.radial_rms, rms[k]);
+    if (k > 0) {
+      EXPECT_GT(std::log2(normal_before / e.normal), 2.5);
+    }
+    normal_before = e.normal;
+  }
+  const Errors finest = errors(CubeMesh(24), Vec3::Ones());
+  expect_at_most(finest.radial, 5.6e-7);
+  expect_at_most(finest.normal, 6.4e-5);
+  expect_at_most(finest.largest_normal, 5.0e-4);
+  EXPECT_GT(std::log2(normal_before / finest.normal), 2.5);
+}
+
+TEST(Shapes, NormalOfThePapersSpheroidErrsNoMoreThanTheMeasuredTable) {  // splines.md C.11: V = 1, b/a = 1.5
+  const double table[] = {1.42e-2, 1.80e-3, 2.51e-4, 3.96e-5};
+  for (int k = 0; k < 4; ++k) expect_at_most(errors(CubeMesh(3 << k), {0.5419260701, 0.5419260701, 0.8128891052}).normal, table[k]);
+}
+
+TEST(Shapes, MeshesThatAreNoSubdivisionOfTheCoarsestLieBetweenTheirNeighbours) {
+  const double n6 = errors(CubeMesh(6), Vec3::Ones()).normal, n8 = errors(CubeMesh(8), Vec3::Ones()).normal;
+  const double n10 = errors(CubeMesh(10), Vec3::Ones()).normal, n12 = errors(CubeMesh(12), Vec3::Ones()).normal;
+  EXPECT_LT(n8, 0.6 * n6);  // (8/6)^-2.7 = 0.46
+  EXPECT_LT(n10, n8);
+  EXPECT_LT(n12, n10);
+}
+
+TEST(Shapes, CubeSphereIsSmoothOverTheEdgesOfTheCube) {
+  // Directional derivatives of the map on both sides of the edge x1 = x3 = 1, seen in the same direction around it.
+  const CubeSphere sphere;
+  const double h = 1e-3, y = 0.3;
+  const Vec3 before = sphere.limit_point({1 - h, y, 1}), at = sphere.limit_point({1, y, 1}), after = sphere.limit_point({1, y, 1 - h});
+  const Vec3 before2 = sphere.limit_point({1 - 2 * h, y, 1}), after2 = sphere.limit_point({1, y, 1 - 2 * h});
+  const Vec3 left = (3 * at - 4 * before + before2) / (2 * h), right = (4 * after - 3 * at - after2) / (2 * h);
+  EXPECT_LT((left - right).norm(), 1e-5);  // second-order differences; the derivative is of order one
+  EXPECT_GT(left.norm(), 0.3);
+}
+
+TEST(Shapes, CubeSphereNetsHaveTheLimitThatTheyConvergeTo) {
+  const Vec3 on_cube(0.5, -1. / 3, 1);
+  const Vec3 limit = CubeSphere(5).limit_point(on_cube);
+  const double coarse = (CubeSphere(2).net_point(on_cube) - limit).norm(), fine = (CubeSphere(4).net_point(on_cube) - limit).norm();
+  EXPECT_LT(fine, coarse / 10);  // h^2
+  EXPECT_LT((CubeSphere(3).limit_point(on_cube) - limit).norm(), 1e-12);  // subdivision does not move the surface
+}
+
+TEST(Shapes, RedCellHasTheVolumeOfItsOutline) {
+  // V = 2 pi int_0^1 sqrt(1 - r^2) (0.21 + 2 r^2 - 1.12 r^4) r dr
+  const double exact = 2 * std::numbers::pi * (0.21 / 3 + 2.0 * 2 / 15 - 1.12 * 8 / 105);
+  double before = 1;
+  for (const int n : {6, 12, 24}) {
+    const CubeMesh cube(n);
+    ParticleShape shape;
+    shape.shape = "red cell";
+    shape.radius = 1;
+    const Net net = cube.shape(shape);
+    const double error = std::abs(volume(cube.space, net) / exact - 1);
+    EXPECT_LT(error, before / 8);
+    before = error;
+    const Deformation d = deformation(cube.space, net);
+    EXPECT_NEAR(d.lengths[0], 2, n == 6 ? 2e-2 : 2e-3);
+    if (n == 24) {
+      EXPECT_LT(error, 1e-5);
+      EXPECT_NEAR(d.taylor_surface, (1 - 0.105) / (1 + 0.105), 1e-4);  // rim at r = 1, dimple at half the thickness, 0.21/2
+    }
+  }
+}
+
+TEST(Shapes, StandWhereTheDeckPutsThem) {
+  const CubeMesh cube(4);
+  ParticleShape shape;
+  shape.shape = "spheroid";
+  shape.semi_axes = Vec3(2, 1, 1);
+  shape.orientation = Vec3(0, 0, 90);  // turns the particle's x1 into x2
+  shape.center = Vec3(1, 2, 3);
+  const Net net = cube.shape(shape);
+  const Deformation d = deformation(cube.space, net);
+  EXPECT_NEAR(d.lengths[0], 2, 1e-3);
+  EXPECT_NEAR(d.lengths[1], 4, 1e-3);
+  EXPECT_LT((measures(cube.space, net).centroid - shape.center).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace tanktread::surface
