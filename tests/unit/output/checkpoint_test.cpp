@@ -154,7 +154,7 @@ TEST(Snapshot, KilledWhileWritingLeavesOnlyWholeFiles) {
   }
 }
 
-/// The layout as another reader of HDF5 sees it. `stack.md` says which layout opens in which ParaView.
+/// The layout as another reader of HDF5 sees it.
 TEST(Snapshot, HoldsTheLayoutOfVtkhdf) {
   const Scratch scratch;
   const Scene scene;

@@ -63,7 +63,8 @@ TEST(LagrangeMesh, FieldsHaveAnyNumberOfComponents) {
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
   const Eigen::MatrixXd height = nodal_values(sheet_.space, mesh, sheet_.net.col(2));
   ASSERT_EQ(height.cols(), 1);
-  EXPECT_EQ(height, nodal_values(sheet_.space, mesh, sheet_.net).col(2));
+  // Products of other shapes round differently; heights are up to 27.
+  EXPECT_LT((height - nodal_values(sheet_.space, mesh, sheet_.net).col(2)).cwiseAbs().maxCoeff(), 1e-13);
 }
 
 TEST(LagrangeMesh, SitesNameThePlaceOfEachNode) {
