@@ -29,7 +29,8 @@ void heed_signals() {
 /// Wall clock of this run, earlier parts of a resumed one included.
 class Watch {
  public:
-  double seconds() const { return before_ + std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double seconds() const { return before_ + here(); }
   void add(double before) { before_ += before; }
 
  private:
@@ -131,7 +132,7 @@ class Run {
   std::string reason_to_stop() {
     if (ranks_.any(asked_to_stop != 0)) return "stopped by a signal";
     const auto limit = scene_.output.wall_clock_limit;
-    if (limit && ranks_.first(watch_.seconds() - standing_.wall_seconds_before) > *limit) return "stopped at the wall-clock limit";
+    if (limit && ranks_.first(watch_.here()) > *limit) return "stopped at the wall-clock limit";
     const auto steady = scene_.time.steady_tolerance;
     if (steady && entry(row_, "normal_velocity") < *steady) return "steady";
     return {};

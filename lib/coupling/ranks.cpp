@@ -13,6 +13,15 @@ namespace tanktread::coupling {
 using Map = Tpetra::Map<>;
 using MultiVector = Tpetra::MultiVector<>;
 
+struct Session::Impl {
+  Tpetra::ScopeGuard guard;
+  Impl(int* argc, char*** argv) : guard(argc, argv) {}
+};
+
+Session::Session(int* argc, char*** argv) : impl_(std::make_unique<Impl>(argc, argv)) {}
+Session::~Session() = default;
+int Session::rank() const { return Tpetra::getDefaultComm()->getRank(); }
+
 struct Ranks::Impl {
   Teuchos::RCP<const Teuchos::Comm<int>> comm = Tpetra::getDefaultComm();
   std::vector<int> rows;

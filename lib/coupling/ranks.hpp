@@ -8,6 +8,18 @@
 
 namespace tanktread::coupling {
 
+/// MPI and what Trilinos needs beside it, for as long as it lives: the first object of main.
+class Session {
+ public:
+  Session(int* argc, char*** argv);
+  ~Session();
+  int rank() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// The ranks of the run. Control nets are replicated; work is split by their rows. A rank fills the rows of its own control points, and
 /// `replicate` gives every rank all rows by a Tpetra import, so no sum ever crosses ranks and answers do not depend on their number.
 class Ranks {

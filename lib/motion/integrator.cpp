@@ -1,5 +1,8 @@
 #include "motion/integrator.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/errors.hpp"
 #include "motion/bs3.hpp"
 #include "motion/crank_nicolson.hpp"
@@ -12,6 +15,17 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options) {
   if (options.scheme == "bs3") return std::make_unique<Bs3>(options);
   if (options.scheme == "crank-nicolson") return std::make_unique<CrankNicolson>(options);
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
+}
+
+double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options) {
+  if (options.fixed_step) return *options.fixed_step;
+  const Net& slope = state.history.front();
+  const double speed = dynamics.norm(slope);
+  if (speed == 0) return std::min(1e-3 * options.final_time, options.maximum_step.value_or(1e300));
+  const double trial = 1e-3 / speed;
+  const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
+  const double step = std::cbrt(0.1 * options.tolerance / std::max(speed, change));
+  return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 
 double step_towards(double time, double limit, double step) {

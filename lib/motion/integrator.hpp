@@ -41,6 +41,10 @@ class Integrator {
 /// The scheme named by `Time/scheme`.
 std::unique_ptr<Integrator> integrator(const TimeOptions& options);
 
+/// A first step for a state whose slope is known, at the cost of one velocity evaluation: the error of a second-order scheme, judged by the
+/// change of slope along a short Euler step (Hairer, Norsett & Wanner, Solving ODEs I, II.4), is about a tenth of the tolerance.
+double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
+
 /// The step to take towards `limit` when the controller proposes `step`: the whole rest if it fits, half of it if two are needed,
 /// so that no sliver is left over.
 double step_towards(double time, double limit, double step);

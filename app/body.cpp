@@ -1,0 +1,76 @@
+#include "app/body.hpp"
+
+#include <cstdio>
+
+#include "spline/extraction.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread {
+
+namespace {
+
+membrane::Law law(const membrane::Options& options, double modulus) {
+  if (options.law == "Skalak") return membrane::Skalak{modulus, options.area_dilatation.value_or(1.0)};
+  if (options.law == "surface tension") return membrane::SurfaceTension{modulus};
+  return membrane::NeoHookean{modulus};
+}
+
+std::string text(const char* format, auto... values) {
+  char line[400];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+}  // namespace
+
+Body body(const Scene& scene) {
+  Body b;
+  b.mesh = spline::cube(scene.surface.elements_per_side);
+  b.space = spline::space(b.mesh, spline::ExtraordinaryRule::g1);
+  b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
+  b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
+  b.flow = stokes::AmbientFlow(scene.flow);
+  b.radius = scene.radius();
+  b.modulus = scene.modulus();
+  b.law = law(scene.membrane, b.modulus);
+  return b;
+}
+
+std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases) {
+  coupling::CapsuleParameters parameters;
+  parameters.viscosity = scene.flow.viscosity;
+  parameters.radius = body.radius;
+  parameters.law = body.law;
+  parameters.strong_load = scene.membrane.load == "strong";
+  // A drop has no unstressed state, so its load is always per current area.
+  const bool reference = scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
+  parameters.measure = reference ? stokes::Measure::reference : stokes::Measure::current;
+  parameters.volume = scene.volume;
+  parameters.solvers = scene.solvers;
+  parameters.quadrature = scene.quadrature;
+  return std::make_unique<coupling::Capsule>(body.space, body.unstressed, body.rest, body.flow, parameters, ranks, phases);
+}
+
+output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
+  const double points = body.space.n_points;
+  const bool implicit = scene.time.scheme == "tr-bdf2";
+  return {
+      {"surface", text("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
+                       body.space.description.c_str())},
+      {"unknowns", text("%d positions; velocity is a sum (2.4), no system is solved for it", 3 * body.space.n_points)},
+      {"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"},
+      {"viscosity", "ratio 1: no double layer"},
+      {"membrane", scene.membrane.law + ", load " + scene.membrane.load +
+                       (scene.membrane.load == "strong"                      ? " at the collocation sites (P-3)"
+                        : scene.membrane.law == "surface tension"            ? " per current area (3.6)"
+                        : scene.membrane.load_measure == "reference"         ? " per unstressed area (3.7), mass matrix factored once"
+                                                                             : " per current area (3.6), mass matrix factored every evaluation")},
+      {"volume", scene.volume.constraint},
+      {"time", scene.time.scheme + (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 36e-6 * points * points, ranks,
+                                                    ranks > 1 ? "s" : "")
+                                             : std::string(", explicit in the fluid: nothing is assembled"))},
+      {"symmetry", "none used"},
+  };
+}
+
+}  // namespace tanktread

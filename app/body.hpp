@@ -1,0 +1,37 @@
+#pragma once
+// A scene made into spaces, nets and a coupled system.
+
+#include <memory>
+
+#include "base/timing.hpp"
+#include "base/types.hpp"
+#include "coupling/capsule.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/laws.hpp"
+#include "output/summary.hpp"
+#include "app/scene.hpp"
+#include "spline/space.hpp"
+#include "spline/t_mesh.hpp"
+
+namespace tanktread {
+
+/// What the deck describes, before anything moves.
+struct Body {
+  spline::TMesh mesh;
+  spline::Space space;
+  Net rest;            ///< control net of the resting shape, where the run starts
+  Net unstressed;      ///< smaller by the pre-inflation (method.md, section 3)
+  stokes::AmbientFlow flow;
+  membrane::Law law;
+  double radius = 1;   ///< R_C
+  double modulus = 1;  ///< G_s, or sigma of an interface
+};
+Body body(const Scene& scene);
+
+/// The coupled system that the scene needs, and no more.
+std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases);
+
+/// What the run has chosen: blocks, unknowns, memory, kernel evaluations, and what the scene made superfluous.
+output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);
+
+}  // namespace tanktread

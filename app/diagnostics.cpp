@@ -1,0 +1,101 @@
+#include "app/diagnostics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all = {
+      {"time", "time", "simulated time"},
+      {"time_step", "time", "size of the step that ended here"},
+      {"taylor_inertia", "1", "Taylor parameter of the ellipsoid with the same second moments, in the x1 x3 plane"},
+      {"taylor_surface", "1", "Taylor parameter of the longest and shortest distance from the centroid, in the x1 x3 plane"},
+      {"inclination", "degree", "angle of the long axis of inertia with x1"},
+      {"volume", "length^3", "enclosed volume"},
+      {"volume_error", "1", "V/V0 - 1"},
+      {"area", "length^2", "area of the surface"},
+      {"energy", "force length", "energy stored in the membrane"},
+      {"smallest_tension", "1", "smallest principal tension over G_s"},
+      {"compressed_area", "1", "share of the area with a negative principal tension"},
+      {"stresslet_11", "force length", "particle stresslet, component 11"},
+      {"stresslet_22", "force length", "particle stresslet, component 22"},
+      {"stresslet_33", "force length", "particle stresslet, component 33"},
+      {"stresslet_12", "force length", "particle stresslet, component 12"},
+      {"stresslet_13", "force length", "particle stresslet, component 13"},
+      {"stresslet_23", "force length", "particle stresslet, component 23"},
+      {"length_x1", "length", "extent along x1"},
+      {"length_x2", "length", "extent along x2"},
+      {"length_x3", "length", "extent along x3"},
+      {"normal_velocity", "1", "largest |v.n| over rate x R_C: zero when the shape is steady"},
+      {"n_control_points", "1", "control points of the surface"},
+      {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"},
+      {"rejected_steps", "1", "attempts given up in this step"},
+      {"iterations", "1", "nonlinear iterations or sub-iterations in this step"},
+      {"evaluations", "1", "velocity evaluations so far"},
+      {"assemblies", "1", "assemblies of the frozen layer operator so far"},
+      {"solver_iterations", "1", "iterations of the linear solver so far"},
+      {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"},
+  };
+  return all;
+}
+
+std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
+                        const motion::StepReport& report, double wall_seconds) {
+  const surface::Measures measures = capsule.geometry().measures(state.x);
+  const surface::Deformation shape = capsule.geometry().deformation(state.x, measures);
+  const membrane::TensionSummary tension = capsule.membrane().tension_summary(state.x);
+  const Mat3 stresslet = capsule.stresslet(state.x);
+  const coupling::Work& work = capsule.work();
+  return {state.time,
+          report.step,
+          shape.taylor_inertia,
+          shape.taylor_surface,
+          shape.inclination,
+          measures.volume,
+          capsule.volume_error(state.x),
+          measures.area,
+          capsule.membrane().energy(state.x),
+          tension.smallest,
+          tension.compressed_area,
+          stresslet(0, 0),
+          stresslet(1, 1),
+          stresslet(2, 2),
+          stresslet(0, 1),
+          stresslet(0, 2),
+          stresslet(1, 2),
+          shape.lengths[0],
+          shape.lengths[1],
+          shape.lengths[2],
+          normal_velocity(scene, body, state),
+          static_cast<double>(body.space.n_points),
+          report.error,
+          static_cast<double>(report.rejected),
+          static_cast<double>(report.iterations),
+          static_cast<double>(work.evaluations),
+          static_cast<double>(work.assemblies),
+          static_cast<double>(work.solver_iterations),
+          wall_seconds};
+}
+
+double entry(const std::vector<double>& row, const std::string& name) {
+  for (size_t i = 0; i < columns().size(); ++i)
+    if (columns()[i].name == name) return row.at(i);
+  throw std::out_of_range(name);
+}
+
+double normal_velocity(const Scene& scene, const Body& body, const motion::State& state) {
+  if (state.history.empty()) return 0;
+  double largest = 0;
+  for (const auto& sites : body.space.collocation) {
+    const Vec3 v = surface::value(body.space, state.history.front(), sites.front());
+    largest = std::max(largest, std::abs(v.dot(surface::point(body.space, state.x, sites.front()).n)));
+  }
+  const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : 1;
+  return largest / (rate * body.radius);
+}
+
+}  // namespace tanktread

@@ -1,0 +1,29 @@
+#pragma once
+// The series of a run (interface.md, Results): their names, units, descriptions, and one row of them.
+
+#include <string>
+#include <vector>
+
+#include "app/body.hpp"
+#include "coupling/capsule.hpp"
+#include "motion/integrator.hpp"
+
+namespace tanktread {
+
+/// Name, unit and description of one column of `/series`.
+struct Column {
+  std::string name, unit, description;
+};
+const std::vector<Column>& columns();
+
+/// One row, in the order of `columns`. Collective.
+std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
+                        const motion::StepReport& report, double wall_seconds);
+
+/// The value of one column of a row. Throws std::out_of_range for an unknown name.
+double entry(const std::vector<double>& row, const std::string& name);
+
+/// Largest |v.n| over the collocation sites, over rate x R_C: zero when the shape is steady.
+double normal_velocity(const Scene& scene, const Body& body, const motion::State& state);
+
+}  // namespace tanktread

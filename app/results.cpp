@@ -1,0 +1,138 @@
+#include "app/results.hpp"
+
+#include <cmath>
+
+#include "app/provenance.hpp"
+#include "base/errors.hpp"
+#include "deck/expectation.hpp"
+#include "output/checkpoint.hpp"
+#include "output/file.hpp"
+#include "output/state.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+void store(const Standing& standing, output::Checkpoint& checkpoint) {
+  checkpoint.numbers["step number"] = standing.step;
+  checkpoint.numbers["wall seconds"] = standing.wall_seconds;
+  checkpoint.numbers["evaluations"] = static_cast<double>(standing.work.evaluations);
+  checkpoint.numbers["assemblies"] = static_cast<double>(standing.work.assemblies);
+  checkpoint.numbers["tangents"] = static_cast<double>(standing.work.tangents);
+  checkpoint.numbers["solves"] = static_cast<double>(standing.work.solves);
+  checkpoint.numbers["solver iterations"] = static_cast<double>(standing.work.solver_iterations);
+}
+
+Standing stored_standing(const output::Checkpoint& checkpoint) {
+  const auto count = [&](const char* name) { return static_cast<long>(checkpoint.numbers.at(name)); };
+  return {static_cast<int>(count("step number")),
+          checkpoint.numbers.at("wall seconds"),
+          {count("evaluations"), count("assemblies"), count("tangents"), count("solves"), count("solver iterations")}};
+}
+
+}  // namespace
+
+/// The first rank acts; if it fails, every rank throws.
+template <class Write>
+void Results::write(const Write& action) {
+  std::string error;
+  if (writes_) {
+    try {
+      action();
+    } catch (const std::exception& exception) {
+      error = exception.what();
+    }
+  }
+  if (ranks_.any(!error.empty())) throw RunFailure(error.empty() ? "the first rank could not write" : error);
+}
+
+std::map<std::string, std::string> Results::origin() const {
+  std::map<std::string, std::string> made_by = provenance();
+  made_by["ranks"] = std::to_string(ranks_.size());
+  return made_by;
+}
+
+Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks)
+    : scene_(scene), request_(request), body_(body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+  if (!writes_) return;
+  if (request.resume) {
+    output::tidy_directory(directory_);
+  } else {
+    output::start_directory(directory_);
+    record_.emplace(directory_ / "run.h5", request.deck_text, origin());
+    series_.emplace(directory_);
+    for (const Column& column : columns()) record_->declare(column.name, column.unit, column.description);
+  }
+  picture_mesh_ = output::lagrange_mesh(body.space, body.unstressed);
+}
+
+std::optional<Resumed> Results::resumed() {
+  if (!request_.resume) return {};
+  const auto saved = output::newest_checkpoint(directory_);  // every rank reads it: one file, read-only
+  if (!saved) throw UserError("--resume " + directory_.string() + ": there is no checkpoint in this directory");
+  const Resumed resumed{output::stored_state(saved->checkpoint), stored_standing(saved->checkpoint)};
+  last_saved_ = resumed.standing.step;
+  if (writes_) {
+    record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
+    record_->truncate(static_cast<size_t>(resumed.standing.step) + 1);
+    record_->describe(request_.deck_text, origin());
+    for (const Column& column : columns()) record_->declare(column.name, column.unit, column.description);
+    series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_));
+  }
+  return resumed;
+}
+
+void Results::record(const std::vector<double>& row) {
+  write([&] { record_->append(row); });
+}
+
+void Results::save(const motion::State& state, const Standing& standing, const Net& load, const membrane::Membrane& membrane) {
+  last_saved_ = standing.step;
+  write([&] { write_snapshot(state, standing, load, membrane); });
+}
+
+void Results::write_snapshot(const motion::State& state, const Standing& standing, const Net& load, const membrane::Membrane& membrane) {
+  output::Checkpoint checkpoint;
+  output::store(state, checkpoint);
+  store(standing, checkpoint);
+  checkpoint.arrays["unstressed"] = body_.unstressed;
+  checkpoint.arrays["initial"] = body_.rest;
+  checkpoint.texts["deck"] = request_.deck_text;
+
+  output::Picture picture = output::picture(body_.space, picture_mesh_, state.x);
+  picture.point_fields.push_back({"load", output::nodal_values(body_.space, picture_mesh_, load)});
+  picture.point_fields.push_back({"displacement", output::nodal_values(body_.space, picture_mesh_, state.x - body_.unstressed)});
+  if (!state.history.empty())
+    picture.point_fields.push_back({"velocity", output::nodal_values(body_.space, picture_mesh_, state.history.front())});
+  picture.point_fields.push_back({"principal tensions", membrane.tensions(state.x, picture_mesh_.sites)});
+  Eigen::VectorXd curvature(static_cast<Eigen::Index>(picture_mesh_.sites.size()));
+  for (size_t i = 0; i < picture_mesh_.sites.size(); ++i)
+    curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_.space, state.x, picture_mesh_.sites[i]);
+  picture.point_fields.push_back({"mean curvature", curvature});
+  output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, picture);
+  series_->add(standing.step, state.time);
+}
+
+bool Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases) {
+  if (!writes_) return true;
+  output::Summary summary;
+  deck::SeriesTable table;
+  for (const output::Series& series : record_->series()) {
+    table[series.name] = series.values;
+    summary.final.emplace_back(series.name, series.values.back());
+  }
+  bool passed = true;
+  for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table)) {
+    summary.expect.push_back({verdict.name, verdict.value, verdict.expected, verdict.error, verdict.passed});
+    if (!verdict.passed) std::fprintf(stderr, "Expect/%s: %s\n", verdict.name.c_str(), verdict.reason.c_str());
+    passed = passed && verdict.passed;
+  }
+  summary.counts = counts;
+  for (const Phases::Phase& phase : phases.all()) summary.seconds.emplace_back(phase.name, phase.seconds);
+  summary.plan = plan;
+  output::write_summary(directory_ / "summary.yaml", summary);
+  return passed;
+}
+
+}  // namespace tanktread

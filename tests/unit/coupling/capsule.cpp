@@ -1,0 +1,126 @@
+// The coupled capsule: what fluid and membrane must do together, whatever the mesh.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "coupling/capsule.hpp"
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+
+/// A unit sphere on the coarsest mesh, in shear or at rest.
+struct Fixture {
+  spline::TMesh mesh = spline::cube(3);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  Net sphere = surface::initial_shape(space, mesh, {});
+  stokes::FlowOptions flow;
+  CapsuleParameters parameters;
+  Ranks ranks;
+  Phases phases;
+
+  explicit Fixture(const char* type = "simple shear") {
+    flow.type = type;
+    parameters.law = membrane::NeoHookean{2.5};
+    parameters.viscosity = 1.7;
+  }
+  Capsule capsule() { return Capsule(space, sphere, sphere, stokes::AmbientFlow(flow), parameters, ranks, phases); }
+
+  /// Stretched, sheared and bent, with the volume of nothing in particular.
+  Net deformed() const {
+    Net x = sphere;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const Vec3 p = sphere.row(i).transpose();
+      x.row(i) << 1.2 * p[0] + 0.3 * p[2], 0.9 * p[1] + 0.1 * p[0] * p[0], 0.95 * p[2] - 0.1 * p[1] * p[0];
+    }
+    return x;
+  }
+};
+
+TEST(Capsule, UnstressedMembraneMovesWithTheFlow) {
+  Fixture f;
+  Capsule capsule = f.capsule();
+  const Net v = capsule.velocity(f.sphere);
+  for (Eigen::Index i = 0; i < v.rows(); ++i) EXPECT_NEAR((v.row(i) - Eigen::RowVector3d(f.sphere(i, 2), 0, 0)).norm(), 0, 1e-13);
+}
+
+TEST(Capsule, StoredEnergyFallsInAQuiescentFluid) {
+  Fixture f("quiescent");
+  Capsule capsule = f.capsule();
+  Net x = f.deformed();
+  capsule.restore_volume(x);
+  const Net v = capsule.velocity(x);
+  Net d;
+  capsule.membrane().load(x, [&] {
+    std::vector<int> all(f.space.elements.size());
+    for (size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
+    return all;
+  }(), d = Net(x.rows(), 3));
+  EXPECT_LT(dot(d, v), 0);  // dE/dt
+  EXPECT_LT(capsule.membrane().energy(x + 1e-3 * v), capsule.membrane().energy(x));
+}
+
+TEST(Capsule, NoFluxThroughTheSurface) {
+  Fixture f;
+  for (const auto measure : {stokes::Measure::reference, stokes::Measure::current}) {
+    f.parameters.measure = measure;
+    f.parameters.volume.constraint = "flux";
+    Capsule capsule = f.capsule();
+    const Net x = f.deformed(), b = capsule.geometry().volume_gradient(x), v = capsule.velocity(x);
+    EXPECT_NEAR(dot(b, v), 0, 1e-13 * b.norm() * v.norm());
+  }
+}
+
+TEST(Capsule, ExactConstraintRestoresTheVolumeToRoundOff) {
+  Fixture f;
+  Capsule capsule = f.capsule();
+  Net x = f.sphere * 1.001;  // 0.3 %: more than any step leaves
+  capsule.restore_volume(x);
+  EXPECT_NEAR(capsule.volume_error(x), 0, 1e-14 * 100);  // two Newton iterations: (0.003)^4
+}
+
+TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
+  Fixture f;
+  const Net x = f.deformed();
+  f.parameters.measure = stokes::Measure::reference;
+  const Net v0 = f.capsule().velocity(x);
+  f.parameters.measure = stokes::Measure::current;
+  const Net v = f.capsule().velocity(x);
+  EXPECT_LT((v - v0).norm(), 0.05 * v.norm());  // two projections of the same load on a mesh of 56 points
+  EXPECT_GT((v - v0).norm(), 0);
+}
+
+// On the unstressed surface the load vanishes, so the part of the Jacobian that is left out, (dA/dx) f, vanishes too, and what is kept is exact.
+TEST(Capsule, JacobianIsTheDerivativeOfTheVelocityAtRest) {
+  Fixture f;
+  f.parameters.volume.constraint = "flux";  // its derivative is left out of the Jacobian: directions without flux only
+  Capsule capsule = f.capsule();
+  Net delta = Net::Random(f.sphere.rows(), 3);
+  const Net b = capsule.geometry().volume_gradient(f.sphere);
+  delta -= dot(b, delta) / dot(b, b) * b;
+  capsule.freeze(f.sphere);
+  capsule.linearise(f.sphere);
+  const double h = 1e-5, shift = 0.7;
+  f.parameters.volume.constraint = "none";
+  Capsule free = f.capsule();
+  const Net jd = (free.velocity(f.sphere + h * delta) - free.velocity(f.sphere - h * delta)) / (2 * h);
+  const Net solved = capsule.solve(shift, delta - shift * jd, 1e-7);
+  EXPECT_LT((solved - delta).norm(), 1e-5 * delta.norm());  // frozen operator in single precision, central differences
+}
+
+TEST(Capsule, StressletIsSymmetricAndTraceless) {
+  Fixture f;
+  Capsule capsule = f.capsule();
+  const Mat3 s = capsule.stresslet(f.deformed());
+  EXPECT_NEAR(s.trace(), 0, 1e-12);
+  EXPECT_EQ(s, s.transpose());
+  EXPECT_GT(s(0, 0), 0);  // stretched along x1: the membrane resists
+}
+
+}  // namespace
+}  // namespace tanktread::coupling

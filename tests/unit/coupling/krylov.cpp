@@ -1,0 +1,82 @@
+// Belos behind one function, and replicated rows, on any number of ranks.
+
+#include <cmath>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "coupling/krylov.hpp"
+#include "coupling/ranks.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+Eigen::MatrixXd nonsymmetric(int n) {
+  Eigen::MatrixXd a(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) a(i, j) = (i == j ? 3 : 0) + std::sin(1.0 + i + 2 * j) / n;
+  return a;
+}
+
+TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  const Krylov::Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  for (const char* name : {"GMRES", "BICGSTAB"})
+    for (const double tolerance : {1e-3, 1e-10}) {
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+      const SolveReport report = Krylov(name, nullptr).solve(apply, b, x, tolerance);
+      EXPECT_TRUE(report.converged);
+      EXPECT_GT(report.iterations, 0);
+      EXPECT_LT((a * x - b).norm(), 2 * tolerance * b.norm()) << name;  // Belos measures the same residual by recurrence
+    }
+}
+
+TEST(Krylov, TellsWhenItStopsShort) {
+  const int n = 40;
+  const Krylov::Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before step n
+    for (int i = 0; i < n; ++i) out[i] = in[(i + 1) % n];
+  };
+  Eigen::VectorXd b = Eigen::VectorXd::Unit(n, 0), x = Eigen::VectorXd::Zero(n);
+  const Krylov krylov("GMRES", nullptr);
+  EXPECT_TRUE(krylov.solve(shift, b, x, 1e-8).converged);
+  const Krylov::Apply singular = [&](const double*, double* out) { std::fill(out, out + n, 0.0); };
+  x.setZero();
+  EXPECT_FALSE(krylov.solve(singular, b, x, 1e-8).converged);
+}
+
+TEST(Krylov, ZeroRightHandSideCostsNothing) {
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(5);
+  const SolveReport report = Krylov("GMRES", nullptr).solve([](const double*, double*) { FAIL(); }, Eigen::VectorXd::Zero(5), x, 1e-8);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_EQ(x.norm(), 0);
+}
+
+TEST(Krylov, ASolverThatBelosDoesNotKnowIsTheUsersMistake) { EXPECT_THROW(Krylov("WISHFUL", nullptr), UserError); }
+
+TEST(Ranks, EveryRankGetsAllRows) {
+  Ranks ranks;
+  const int n = 23;
+  std::vector<int> mine;
+  for (int i = 0; i < n; ++i)
+    if (i * 7 % 11 % ranks.size() == ranks.rank()) mine.push_back(i);
+  ranks.own(mine, n);
+  Net net = Net::Constant(n, 3, -1);
+  for (const int i : mine) net.row(i) << i, 10 * i, 100 * i;
+  ranks.replicate(net);
+  for (int i = 0; i < n; ++i) EXPECT_EQ(net.row(i), Eigen::RowVector3d(i, 10 * i, 100 * i));
+}
+
+TEST(Ranks, OneRankSpeaksForAll) {
+  Ranks ranks;
+  EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));
+  EXPECT_FALSE(ranks.any(false));
+  EXPECT_EQ(ranks.first(3.5 + ranks.rank()), 3.5);
+}
+
+}  // namespace
+}  // namespace tanktread::coupling
