@@ -1,0 +1,46 @@
+#include "membrane/mass_solver.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+constexpr double residual_allowed = 1e-13;
+constexpr int iterations_allowed = 60;  // more would cost as much as a factorisation
+
+Eigen::Array3d column_products(const Net& a, const Net& b) { return a.cwiseProduct(b).colwise().sum().transpose(); }
+
+// a/b, and 0 for a component that is solved already
+Eigen::Array3d ratio(const Eigen::Array3d& a, const Eigen::Array3d& b) { return (b == 0).select(0., a / b); }
+
+}  // namespace
+
+MassSolver::MassSolver(const DirectSolverOptions& options) : reference_(options), direct_(options) {}
+
+void MassSolver::factor(const Eigen::SparseMatrix<double>& m0) {
+  reference_.factor(m0);
+  diagonal_ = m0.diagonal();
+}
+
+Net MassSolver::solve(const Eigen::SparseMatrix<double>& s, const Net& d) {
+  const Eigen::VectorXd scale = diagonal_.cwiseQuotient(s.diagonal()).cwiseSqrt();
+  const auto precondition = [&](const Net& r) { return Net(scale.asDiagonal() * reference_.solve(scale.asDiagonal() * r)); };
+  const Eigen::Array3d enough = residual_allowed * residual_allowed * column_products(d, d);
+  Net f = precondition(d), r = d - s * f;
+  Net direction = Net::Zero(d.rows(), 3);
+  Eigen::Array3d before = Eigen::Array3d::Zero();
+  for (iterations_ = 0; iterations_ < iterations_allowed; ++iterations_) {
+    if ((column_products(r, r) <= enough).all()) return f;
+    const Net z = precondition(r);
+    const Eigen::Array3d now = column_products(r, z);
+    direction = z + direction * ratio(now, before).matrix().asDiagonal();
+    const Net image = s * direction;
+    const auto step = ratio(now, column_products(direction, image)).matrix().eval();
+    f += direction * step.asDiagonal();
+    r -= image * step.asDiagonal();
+    before = now;
+  }
+  iterations_ = 0;
+  direct_.factor(s);
+  return direct_.solve(d);
+}
+
+}  // namespace tanktread::membrane
