@@ -1,0 +1,61 @@
+#include "surface/quality.hpp"
+
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "surfaces.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+TEST(Quality, AFittedSphereIsEven) {
+  const CubeMesh cube(6);
+  const BezierMap map(cube.space);
+  const Quality q = quality(map, cube.sphere());
+  EXPECT_GT(q.jacobian_ratio, 0.4);  // the corners of the cube are the most uneven
+  EXPECT_LT(q.aspect_ratio, 1.5);
+  EXPECT_NO_THROW(require_sound(q));
+}
+
+TEST(Quality, StretchingShowsInTheAspectRatio) {
+  const CubeMesh cube(6);
+  const BezierMap map(cube.space);
+  Net net = cube.sphere();
+  const double before = quality(map, net).aspect_ratio;
+  net.col(0) *= 5;
+  const double after = quality(map, net).aspect_ratio;
+  EXPECT_GT(after, 4);
+  EXPECT_LT(after, 5 * before);
+}
+
+TEST(Quality, AFoldedElementIsNamedWithItsPlace) {
+  const CubeMesh cube(6);
+  const BezierMap map(cube.space);
+  Net net = cube.sphere();
+  // A control point pulled over its neighbour: a fold between them.
+  const spline::Element& element = cube.space.elements[14];
+  const Net before = net;
+  net.row(element.points[5]) += 3 * (net.row(element.points[6]) - net.row(element.points[5]));
+  const Quality q = quality(map, net);
+  ASSERT_LT(q.jacobian_ratio, 0);
+  EXPECT_LT((q.folded_place - Vec3(before.row(element.points[5]))).norm(), 1);
+  try {
+    require_sound(q);
+    FAIL() << "a folded surface passed";
+  } catch (const RunFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("element " + std::to_string(q.folded_element) + " is folded at ("), std::string::npos) << failure.what();
+  }
+}
+
+TEST(Quality, AControlPointThatIsNotANumberEndsTheRun) {
+  const CubeMesh cube(3);
+  Net net = cube.sphere();
+  net(7, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(quality(BezierMap(cube.space), net), RunFailure);
+}
+
+}  // namespace
+}  // namespace tanktread::surface
