@@ -77,8 +77,10 @@ FaceNet subdivided(const FaceNet& net) {
   for (int j = 0; j <= net.n; ++j) {
     for (int i = 0; i <= net.n; ++i) {
       fine.set(2 * i, 2 * j, vertex_point(net, i, j));
-      if (i < net.n) fine.set(2 * i + 1, 2 * j, (net.at(i, j) + net.at(i + 1, j) + net.centre_of_cell(i, j) + net.centre_of_cell(i, j - 1)) / 4);
-      if (j < net.n) fine.set(2 * i, 2 * j + 1, (net.at(i, j) + net.at(i, j + 1) + net.centre_of_cell(i, j) + net.centre_of_cell(i - 1, j)) / 4);
+      if (i < net.n)
+        fine.set(2 * i + 1, 2 * j, (net.at(i, j) + net.at(i + 1, j) + net.centre_of_cell(i, j) + net.centre_of_cell(i, j - 1)) / 4);
+      if (j < net.n)
+        fine.set(2 * i, 2 * j + 1, (net.at(i, j) + net.at(i, j + 1) + net.centre_of_cell(i, j) + net.centre_of_cell(i - 1, j)) / 4);
       if (i < net.n && j < net.n) fine.set(2 * i + 1, 2 * j + 1, net.centre_of_cell(i, j));
     }
   }

@@ -218,7 +218,8 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  if (longest.empty()) throw RunFailure("the plane x2 = const. through the centroid misses the surface: it is no longer closed or not a number");
+  if (longest.empty())
+    throw RunFailure("the plane x2 = const. through the centroid misses the surface: it is no longer closed or not a number");
   return {best_distance(surface, centre, shortest, -1), best_distance(surface, centre, longest, 1)};
 }
 

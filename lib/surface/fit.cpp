@@ -38,8 +38,10 @@ Eigen::SparseMatrix<double> mass_matrix(const spline::Space& space, const Blocks
       for (std::size_t a = 0; a < element.points.size(); ++a) {
         if (element.points[a] < element.points[b]) continue;
         const auto at = std::find_if(column.begin(), column.end(), [&](const auto& entry) { return entry.first == element.points[a]; });
-        if (at == column.end()) column.emplace_back(element.points[a], area * local(a, b));
-        else at->second += area * local(a, b);
+        if (at == column.end())
+          column.emplace_back(element.points[a], area * local(a, b));
+        else
+          at->second += area * local(a, b);
       }
     }
   }

@@ -137,11 +137,16 @@ struct Of {
 template <class Use>
 void with_degree(int degree, Use use) {
   switch (degree) {
-    case 2: return use(std::integral_constant<int, 2>{});
-    case 3: return use(std::integral_constant<int, 3>{});
-    case 4: return use(std::integral_constant<int, 4>{});
-    case 5: return use(std::integral_constant<int, 5>{});
-    case 6: return use(std::integral_constant<int, 6>{});
+    case 2:
+      return use(std::integral_constant<int, 2>{});
+    case 3:
+      return use(std::integral_constant<int, 3>{});
+    case 4:
+      return use(std::integral_constant<int, 4>{});
+    case 5:
+      return use(std::integral_constant<int, 5>{});
+    case 6:
+      return use(std::integral_constant<int, 6>{});
   }
   throw std::logic_error("surface integrals have no rule for elements of degree " + std::to_string(degree));
 }

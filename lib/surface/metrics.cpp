@@ -62,7 +62,8 @@ MidLine mid_line(const std::vector<Piece>& parts, const Patches& patches, const 
 
 }  // namespace
 
-std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net, const MetricFields& fields) {
+std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
+                                            const MetricFields& fields) {
   const BezierMap map(space);
   const Patches patches(map, net);
   const spline::Locator locate(space);

@@ -34,7 +34,8 @@ struct MetricFields {
 
 /// Metrics of elements(mesh), in its order, on the surface of `net`. Elements are those of the T-mesh, which are marked and cut, not the Bezier
 /// elements: a mid-line may run through several of these.
-std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net, const MetricFields& fields);
+std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
+                                            const MetricFields& fields);
 
 /// The traction per current area of a load per reference area (3.7): f J0/J, with `load` on the net, `rest` and `net` the two configurations.
 FieldAt per_current_area(const spline::Space& space, const Net& rest, const Net& net, const Net& load);

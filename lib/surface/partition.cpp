@@ -63,8 +63,8 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_UFACTOR] = 10;  // parts within one per cent of each other
   const auto method = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
-  const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k, nullptr,
-                            nullptr, options, &cut, owner.data());
+  const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k,
+                            nullptr, nullptr, options, &cut, owner.data());
   if (status != METIS_OK) throw std::runtime_error("METIS could not partition the surface (status " + std::to_string(status) + ")");
   return {owner.begin(), owner.end()};
 }
@@ -85,8 +85,10 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lead[a] > lead[b]; });
   for (const int a : order) {
     using Vote = std::pair<const int, int>;
-    const auto majority = std::max_element(votes[a].begin(), votes[a].end(), [](const Vote& x, const Vote& y) { return x.second < y.second; });
-    const auto fewest = std::min_element(votes[a].begin(), votes[a].end(), [&](const Vote& x, const Vote& y) { return points[x.first] < points[y.first]; });
+    const auto majority =
+        std::max_element(votes[a].begin(), votes[a].end(), [](const Vote& x, const Vote& y) { return x.second < y.second; });
+    const auto fewest =
+        std::min_element(votes[a].begin(), votes[a].end(), [&](const Vote& x, const Vote& y) { return points[x.first] < points[y.first]; });
     owner[a] = points[majority->first] * parts < n ? majority->first : fewest->first;
     ++points[owner[a]];
   }
@@ -98,7 +100,8 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)
-    throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) + " ranks; use at most one rank an element.");
+    throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) +
+                    " ranks; use at most one rank an element.");
   if (parts == 1) return {1, std::vector<int>(n, 0), std::vector<int>(space.n_points, 0)};
   const std::vector<std::vector<int>> elements_of = elements_of_points(space);
   Partition result;

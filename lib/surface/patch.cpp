@@ -59,7 +59,8 @@ ElementPoints::ElementPoints(const spline::Space& space, const Net& net, int ele
   points_.assign(3 * from.extraction.cols(), 0.);
   for (int b = 0; b < from.extraction.cols(); ++b)
     for (int c = 0; c < 3; ++c)
-      for (int a = 0; a < from.extraction.rows(); ++a) points_[c * from.extraction.cols() + b] += from.extraction(a, b) * net(from.points[a], c);
+      for (int a = 0; a < from.extraction.rows(); ++a)
+        points_[c * from.extraction.cols() + b] += from.extraction(a, b) * net(from.points[a], c);
 }
 
 Patches::Patches(const BezierMap& map, const Net& net) : patches_(map.n_elements()) {

@@ -16,7 +16,8 @@ double monomial(const GaussRule& rule, int degree) {
 TEST(Gauss, IsExactToDegreeTwiceThePointsMinusOneAndNotBeyond) {
   for (const int n : {1, 2, 3, 5, 8, 16, 32, 64}) {
     const GaussRule& rule = gauss(n);
-    for (int degree = 0; degree < 2 * n; ++degree) EXPECT_NEAR(monomial(rule, degree) * (degree + 1), 1, 1e-13) << n << " points, degree " << degree;
+    for (int degree = 0; degree < 2 * n; ++degree)
+      EXPECT_NEAR(monomial(rule, degree) * (degree + 1), 1, 1e-13) << n << " points, degree " << degree;
     // The error for x^2n is (n!)^4 / ((2n + 1) ((2n)!)^2): visible above round-off up to about n = 11.
     if (n <= 8) {
       EXPECT_GT(std::abs(monomial(rule, 2 * n) * (2 * n + 1) - 1), 1e-10) << n << " points";

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "surface/extremes.hpp"
 #include "surface/geometry.hpp"

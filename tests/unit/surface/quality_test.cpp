@@ -46,7 +46,8 @@ TEST(Quality, AFoldedElementIsNamedWithItsPlace) {
     require_sound(q);
     FAIL() << "a folded surface passed";
   } catch (const RunFailure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("element " + std::to_string(q.folded_element) + " is folded at ("), std::string::npos) << failure.what();
+    EXPECT_NE(std::string(failure.what()).find("element " + std::to_string(q.folded_element) + " is folded at ("), std::string::npos)
+        << failure.what();
   }
 }
 

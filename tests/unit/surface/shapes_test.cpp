@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "quadrature/gauss.hpp"
 #include "surface/cube_sphere.hpp"
@@ -92,7 +92,7 @@ TEST(Shapes, CubeSphereNetsHaveTheLimitThatTheyConvergeTo) {
   const Vec3 on_cube(0.5, -1. / 3, 1);
   const Vec3 limit = CubeSphere(5).limit_point(on_cube);
   const double coarse = (CubeSphere(2).net_point(on_cube) - limit).norm(), fine = (CubeSphere(4).net_point(on_cube) - limit).norm();
-  EXPECT_LT(fine, coarse / 10);  // h^2
+  EXPECT_LT(fine, coarse / 10);                                           // h^2
   EXPECT_LT((CubeSphere(3).limit_point(on_cube) - limit).norm(), 1e-12);  // subdivision does not move the surface
 }
 
