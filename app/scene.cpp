@@ -29,20 +29,21 @@ void Scene::declare(deck::Section& root) {
 
 namespace {
 
-/// Bytes of the assembled single layer that an implicit step needs: dense, three rows and columns a control point.
-double assembled_bytes(int elements_per_side) {
-  const double points = 6.0 * elements_per_side * elements_per_side + 2.0;
-  return 9.0 * points * points * sizeof(double);
-}
+/// Control points of the cube mesh.
+double control_points(int elements_per_side) { return 6.0 * elements_per_side * elements_per_side + 2.0; }
+
+/// Bytes of the assembled single layer that an implicit step needs: dense, single precision, three rows and columns a control point.
+double assembled_bytes(int elements_per_side) { return 9.0 * sizeof(float) * std::pow(control_points(elements_per_side), 2); }
 
 void check_size(const Scene& scene) {
   constexpr double limit = 64e9;
   const int n = scene.surface.elements_per_side;
-  const double bytes = assembled_bytes(n);
-  if (scene.time.scheme != "tr-bdf2" || bytes <= limit) return;
-  throw UserError("Surface/elements per side " + std::to_string(n) + " makes " + std::to_string(6 * n * n + 2) +
-                  " control points, whose single layer takes " + std::to_string(std::lround(bytes / 1e9)) +
-                  " GB assembled, as Time/scheme `tr-bdf2` needs it; the limit is 64 GB (n = 69), or give Time/scheme `bs3`.");
+  if (scene.time.scheme != "tr-bdf2" || assembled_bytes(n) <= limit) return;
+  int largest = n;
+  while (assembled_bytes(largest) > limit) --largest;
+  throw UserError("Surface/elements per side must be at most " + std::to_string(largest) + " with Time/scheme `tr-bdf2`, but is " +
+                  std::to_string(n) + ": the single layer of its " + std::to_string(std::lround(control_points(n))) + " control points takes " +
+                  std::to_string(std::lround(assembled_bytes(n) / 1e9)) + " GB assembled, more than 64.");
 }
 
 }  // namespace

@@ -43,9 +43,10 @@ Teuchos::ParameterList decoded_list(const Teuchos::ParameterList& list) {
 std::string reduced(const std::string& error, const std::vector<std::string>& lines) {
   std::smatch match;
   if (std::regex_search(error, match, std::regex("Parameter \"([^\"]*)\" already exists"))) return ": " + match[1].str() + " is given twice";
-  if (!std::regex_search(error, match, std::regex("line (\\d+)")) || lines.empty()) return " is not YAML";
-  std::size_t number = std::min(static_cast<std::size_t>(std::stoul(match[1].str())), lines.size());
+  if (!std::regex_search(error, match, std::regex("line (\\d+)")) || lines.empty()) return std::string(" is not YAML with one list named `") + root_name + "`";
+  std::size_t number = std::stoul(match[1].str());
   if (error.find("Got: NEWLINE") != std::string::npos && number > 1) --number;  // it stopped at the end of the line before
+  number = std::min(number, lines.size());
   while (number > 1 && lines[number - 1].empty()) --number;
   std::string line = decoded(lines[number - 1]);
   line.erase(0, line.find_first_not_of(" \t"));

@@ -34,6 +34,8 @@ std::string bracketed(const std::vector<std::string>& words) {
 /// Everything that Teuchos reads from YAML or XML and that a deck may hold, as YAML.
 std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   if (const auto* value = held<double>(entry)) return real_text(*value);
+  if (const auto* value = held<int>(entry)) return std::to_string(*value);
+  if (const auto* value = held<long long>(entry)) return std::to_string(*value);
   if (const auto number = as_number(entry)) return number_text(*number);
   if (const auto truth = as_truth(entry)) return *truth ? "true" : "false";
   if (const auto text = as_text(entry)) return is_plain(*text) ? *text : in_quotes(*text);

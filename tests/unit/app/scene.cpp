@@ -102,8 +102,10 @@ TEST(Contradictions, AreOneSentenceEach) {
 }
 
 TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
-  EXPECT_EQ(refusal("  Surface: {elements per side: 69}\n"), "");
-  EXPECT_NE(refusal("  Surface: {elements per side: 100}\n").find("60002 control points, whose single layer takes 259 GB"), std::string::npos);
+  EXPECT_EQ(refusal("  Surface: {elements per side: 83}\n"), "");
+  EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"),
+            "Surface/elements per side must be at most 83 with Time/scheme `tr-bdf2`, but is 100: the single layer of its 60002 control points takes "
+            "130 GB assembled, more than 64.");
   EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n  Time: {scheme: bs3}\n"), "");
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
 }

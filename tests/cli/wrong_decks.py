@@ -1,0 +1,162 @@
+#!/usr/bin/python3
+# A mistake in the deck or on the command line is one sentence, exit code 2, and leaves nothing behind.
+import os
+import pathlib
+
+from harness import SOURCE, check, deck, main, run
+
+GOOD = """Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {law: neo-Hookean, capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.01}
+"""
+
+# (settings over the good deck, what the sentence must hold: path, rule, value)
+SETTINGS = [
+    # unknown keys, with a guess
+    (["Flow/shaer rate=1"], ["Flow/shaer rate", "not a key", "Flow/shear rate"]),
+    (["Flwo/type=linear"], ["Flwo", "not a key", "Flow"]),
+    (["Membrane/Capillary Number=0.3"], ["Membrane/Capillary Number", "Membrane/capillary number"]),
+    (["Membrane/viscosity ratio=1"], ["Membrane/viscosity ratio", "Particle/viscosity ratio"]),
+    (["Time/end=3"], ["Time/end", "not a key", "final time"]),
+    (["Expect/energy/value=1", "Expect/energy/tolerance=1", "Expect/energy/tol=1"], ["Expect/energy/tol", "not a key"]),
+    # what is promised, but not built yet
+    (["Tube/radius=1"], ["Tube", "not a key"]),
+    (["Adaptation/enabled=true"], ["Adaptation", "not a key"]),
+    (["Surface/mesh=polar"], ["Surface/mesh", "cube", "polar"]),
+    (["Flow/type=duct"], ["Flow/type", "simple shear", "duct"]),
+    (["Particle/motion=free"], ["Particle/motion", "deforming", "free"]),
+    (["Particle/viscosity ratio=5"], ["Particle/viscosity ratio", "equal to 1", "5"]),
+    # wrong types
+    (['Flow/viscosity="1"'], ["Flow/viscosity", "a number", '"1"']),
+    (["Flow/shear rate=fast"], ["Flow/shear rate", "a number", "1/time", "fast"]),
+    (["Surface/elements per side=6.5"], ["Surface/elements per side", "whole number", "6.5"]),
+    (["Particle/center=1"], ["Particle/center", "three numbers", "1"]),
+    (["Particle/center=[0, 1]"], ["Particle/center", "three numbers", "[0, 1]"]),
+    (["Flow/type=linear", "Flow/gradient=[1, 2, 3]"], ["Flow/gradient", "nine numbers", "[1, 2, 3]"]),
+    (["Membrane/law=3"], ["Membrane/law", "neo-Hookean", "3"]),
+    (["Time/final time/value=3"], ["Time/final time", "a number", "a list"]),
+    (["Quadrature/tolerance=nan"], ["Quadrature/tolerance", "a number", "nan"]),
+    # values outside their rule
+    (["Membrane/shear modulus=-1"], ["Membrane/shear modulus", "positive", "force/length", "-1"]),
+    (["Membrane/capillary number=0"], ["Membrane/capillary number", "positive", "0"]),
+    (["Membrane/law=Hooke"], ["Membrane/law", "Skalak", "Hooke"]),
+    (["Membrane/law=neo-hookean"], ["Membrane/law", "neo-hookean", "`neo-Hookean`"]),
+    (["Particle/radius=0"], ["Particle/radius", "positive", "length", "0"]),
+    (["Particle/shape=ellipsoid", "Particle/semi-axes=[1, 1, 0]"], ["Particle/semi-axes", "positive", "[1, 1, 0]"]),
+    (["Time/final time=-1"], ["Time/final time", "positive", "-1"]),
+    (["Time/scheme=euler"], ["Time/scheme", "tr-bdf2", "euler"]),
+    (["Quadrature/tolerance=2"], ["Quadrature/tolerance", "between", "2"]),
+    (["Surface/elements per side=2"], ["Surface/elements per side", "between 3 and 200", "2"]),
+    (["Surface/elements per side=1000000000"], ["Surface/elements per side", "between 3 and 200", "1000000000"]),
+    (["Surface/elements per side=150"], ["Surface/elements per side", "150", "GB"]),
+    (["Output/wall-clock limit=-5"], ["Output/wall-clock limit", "positive", "seconds", "-5"]),
+    # contradictory keys
+    (["Membrane/shear modulus=1"], ["Membrane/capillary number", "Membrane/shear modulus", "contradict"]),
+    (["Membrane/area dilatation=2"], ["Membrane/area dilatation", "Skalak", "neo-Hookean"]),
+    (["Particle/semi-axes=[1, 1, 2]"], ["Particle/semi-axes", "sphere", "contradict"]),
+    (["Particle/shape=spheroid"], ["spheroid", "needs", "Particle/semi-axes"]),
+    (["Particle/shape=spheroid", "Particle/semi-axes=[1, 2, 3]"], ["Particle/semi-axes", "spheroid", "two equal"]),
+    (["Flow/type=quiescent"], ["Membrane/capillary number", "gradient"]),
+    (["Flow/type=four-roll"], ["four-roll", "Flow/roll parameter"]),
+    (["Flow/type=linear", "Flow/gradient=[1, 0, 0, 0, 1, 0, 0, 0, 1]"], ["Flow/gradient", "trace", "3"]),
+    (["Volume/constraint=none"], ["Volume/constraint", "none", "Membrane/load measure"]),
+    (["Time/fixed step=0.1", "Time/initial step=0.1"], ["Time/fixed step", "Time/initial step", "contradict"]),
+    (["Expect/energy/value=1"], ["Expect/energy/tolerance", "missing"]),
+    # not of the form Section/key=value
+    (["Flow/viscosity"], ["Flow/viscosity", "Section/key=value"]),
+    (["viscosity=1"], ["viscosity=1", "Section/key=value"]),
+    (["Flow/viscosity=[1"], ["Flow/viscosity=[1", "not YAML"]),
+]
+
+# (text of the deck, what the sentence must hold)
+TEXTS = [
+    ("", ["empty", "Tanktread"]),
+    ("# only a comment\n", ["empty", "Tanktread"]),
+    ("Dear reader,\nthis is a letter.\n", ["not YAML", "Dear reader,"]),
+    ("<html><body>404</body></html>\n", ["not YAML", "line 1"]),
+    ("Tanktread:\n  Flow: {type: simple shear\n", ["not YAML", "line 2"]),
+    ("Tanktread:\n  Flow:\n    type: uniform\n    type: linear\n", ["line 4", "Flow/type", "second time", "line 3"]),
+    ("Tanktread:\n  Flow:\n    type: uniform\n   viscosity: 1\n", ["line 4", "indentation"]),
+    ("Tanktread:\n\tFlow: {}\n", ["line 2", "tabs"]),
+    ("Flow:\n  type: uniform\n", ["Tanktread", "Flow"]),
+    ("Tanktread:\n  Flow: {}\nMembrane: {}\n", ["Tanktread", "Membrane"]),
+    ("Tanktread: 7\n", ["Tanktread"]),
+    ("Tanktread:\n  Flow: 7\n", ["Flow", "list of keys", "7"]),
+    ("Tanktread:\n  Membrane:\n    - law: Skalak\n    - law: Skalak\n", ["not YAML"]),
+    ("Tanktread:\n  Flow: {type: \x07}\n", ["line 2", "not text"]),
+]
+
+
+def _refused(words, *arguments):
+    """One line, exit code 2, nothing written."""
+    result = run(*arguments, "--output", "results", code=2)
+    lines = result.stderr.splitlines()
+    check(len(lines) == 1, f"{len(lines)} lines on standard error:\n{result.stderr}")
+    for word in words:
+        check(word in lines[0], f"no '{word}' in: {lines[0]}")
+    for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp"):
+        check(word not in lines[0], f"'{word}' in: {lines[0]}")
+    check(len(lines[0]) < 400, f"{len(lines[0])} characters: {lines[0]}")
+    check(result.stdout == "", f"on standard output: {result.stdout}")
+    check(not pathlib.Path("results").exists(), "results were written")
+
+
+def wrong_settings_are_refused():
+    path = deck(GOOD)
+    check(len(SETTINGS) + len(TEXTS) >= 30, "fewer than thirty wrong decks")
+    for settings, words in SETTINGS:
+        _refused(words, path, *[word for setting in settings for word in ("--set", setting)])
+
+
+def wrong_texts_are_refused():
+    for text, words in TEXTS:
+        _refused(words, deck(text))
+
+
+def wrong_files_are_refused():
+    _refused(["missing.yaml", "does not exist"], "missing.yaml")
+    os.mkdir("folder.yaml")
+    _refused(["folder.yaml", "directory"], "folder.yaml")
+    pathlib.Path("binary.yaml").write_bytes(bytes(range(256)))
+    _refused(["binary.yaml", "not text"], "binary.yaml")
+    _refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
+    _refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
+    if os.geteuid() != 0:
+        deck(GOOD, "locked.yaml").chmod(0)
+        _refused(["locked.yaml", "cannot be read"], "locked.yaml")
+
+
+def wrong_command_lines_are_refused():
+    _refused(["No deck", "--help"])
+    _refused(["--colour"], deck(GOOD), "--colour")
+    check("--set" in run(deck(GOOD), "--set", code=2).stderr, "a setting without a value")
+    _refused(["--output", "--resume", "contradict"], "--resume", "nowhere")
+    for arguments in (["--resume", "nowhere"], ["--resume", "nowhere", "--set", "Time/final time=2"]):
+        result = run(*arguments, code=2)
+        check(len(result.stderr.splitlines()) == 1 and "nowhere" in result.stderr and "checkpoint" in result.stderr, result.stderr)
+        check(not pathlib.Path("nowhere").exists(), "a directory was made")
+
+
+def several_ranks_speak_once():
+    result = run(deck(GOOD), "--set", "Flow/shaer rate=1", ranks=2, code=None)
+    lines = [line for line in result.stderr.splitlines() if line.startswith("tanktread:")]
+    check(result.returncode == 2, f"exit code {result.returncode}")
+    check(len(lines) == 1, result.stderr)
+
+
+def the_good_deck_is_good():
+    result = run(deck(GOOD), "--check")
+    check("capillary number: 0.3" in result.stdout and "final time: 0.01" in result.stdout, result.stdout)
+
+
+def shipped_decks_are_good_and_so_is_what_they_effectively_say():
+    for path in sorted((SOURCE / "inputs").glob("*.yaml")):
+        printed = run(path, "--check").stdout
+        effective = printed.split("\n\n", 1)[0] + "\n"
+        again = run(deck(effective), "--check").stdout
+        check(printed == again, f"{path.name}: the effective deck says something else")
+
+
+main()
