@@ -1,0 +1,194 @@
+#include "spline/coarsening.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "spline/extended_mesh.hpp"
+#include "spline/extraordinary_zone.hpp"
+
+namespace tanktread::spline {
+
+namespace {
+
+/// A unit edge in the frame of a macro face: from (x, y) one step along x (or y), on the line with this number.
+struct PlacedEdge {
+  int face, x, y;
+  bool horizontal;
+  int line() const { return horizontal ? y : x; }
+};
+
+PlacedEdge placed(const Lattice& l, Ray e) {
+  const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot];
+  return {l.face_of(c), l.x_of(c) + (k == 1), l.y_of(c) + (k == 2), k % 2 == 0};
+}
+
+/// Larger coordinate of an edge's farther end from the corner of its face.
+int farther_end(const Lattice& l, const PlacedEdge& e, int corner) {
+  auto distance = [&](int i, int j) { return std::max(corner == 1 || corner == 2 ? l.units - i : i, corner >= 2 ? l.units - j : j); };
+  return std::max(distance(e.x, e.y), distance(e.x + e.horizontal, e.y + !e.horizontal));
+}
+
+/// Whether the edge lies in the rings of a point at spacing h or a larger one.
+bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
+  for (; h < l.base; h *= 2)
+    if (e.line() % h == 0 && farther_end(l, e, corner) <= 3 * h) return true;
+  return false;
+}
+
+/// Lines of the base mesh, and of the rings of an extraordinary point at its present and every larger spacing.
+bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
+  const Lattice& l = *mesh.lattice;
+  if (e.line() % l.base == 0) return true;
+  for (int corner = 0; corner < 4; ++corner)
+    if (const int point = l.point_at[e.face][corner]; point >= 0 && in_rings(l, e, corner, mesh.spacing[point])) return true;
+  return false;
+}
+
+struct Remover {
+  TMesh mesh;
+  std::vector<std::uint8_t> removable;
+  int bays = 0, doublings = 0;
+
+  const Lattice& lattice() const { return *mesh.lattice; }
+  bool may_go(Ray e) const { return removable[e.vertex] >> e.slot & 1; }
+
+  void clear(Ray e) {
+    const Lattice& l = lattice();
+    mesh.edges[e.vertex] &= std::uint8_t(~(1 << e.slot));
+    mesh.edges[l.neighbour[e.vertex][e.slot]] &= std::uint8_t(~(1 << l.back[e.vertex][e.slot]));
+  }
+
+  /// The bay that starts at a vertex with a perpendicular edge; empty if one of its edges must stay or an end would lose its rectangle.
+  std::vector<Ray> removable_bay(Ray start) const {
+    const Lattice& l = lattice();
+    auto both_sides = [&](Ray r) { return (mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10)) == (r.slot & 1 ? 5 : 10); };
+    std::vector<Ray> path;
+    if (l.valence(start.vertex) == 3 || !both_sides(start)) return path;
+    Ray r = start;
+    do {
+      if (!mesh.edge(r.vertex, r.slot) || !may_go(r) || is_kept(mesh, placed(l, r))) return {};
+      path.push_back(r);
+      r = step(l, r);
+      if (l.valence(r.vertex) == 3) return {};
+    } while (!touches(mesh, r));
+    if (!both_sides(r)) return {};
+    return path;
+  }
+
+  /// One pass over all bays, shortest first.
+  bool remove_bays() {
+    const Lattice& l = lattice();
+    std::vector<std::pair<std::size_t, Ray>> found;
+    for (int v = 0; v < l.vertices(); ++v)
+      for (int k = 0; k < l.valence(v); ++k)
+        if (mesh.edge(v, k) && may_go({v, k}))
+          if (const auto bay = removable_bay({v, k}); !bay.empty() && v < step(l, bay.back()).vertex) found.push_back({bay.size(), {v, k}});
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+      return std::tuple(a.first, a.second.vertex, a.second.slot) < std::tuple(b.first, b.second.vertex, b.second.slot);
+    });
+    bool any = false;
+    for (const auto& [length, start] : found) {
+      const auto bay = removable_bay(start);
+      for (Ray e : bay) clear(e);
+      bays += !bay.empty();
+      any = any || !bay.empty();
+    }
+    return any;
+  }
+
+  /// Edges off the 2 h lattice in the closed 6 h square of a point.
+  std::vector<Ray> ring_edges(int point) const {
+    const Lattice& l = lattice();
+    const int P = l.extraordinary[point], h = mesh.spacing[point];
+    std::vector<Ray> out;
+    for (int s = 0; s < 3; ++s) {
+      const Walker corner{l.cell[P][s], l.corner[P][s]};
+      for (int j = 0; j < 6 * h; ++j)
+        for (int i = 0; i < 6 * h; ++i) {
+          const int c = left(l, forward(l, corner, i), j).cell;
+          for (int k = 0; k < 4; ++k) {
+            const Ray e{l.corners[c][k], l.slot[c][k]};
+            if (mesh.edge(e.vertex, e.slot) && placed(l, e).line() % (2 * h) != 0) out.push_back(e);
+          }
+        }
+    }
+    return out;
+  }
+
+  /// The points that must double h together with this one (their rings share edges that go), itself included; empty if an edge must stay.
+  std::vector<int> doubling_group(int first) const {
+    const Lattice& l = lattice();
+    std::vector<int> group{first};
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if (mesh.spacing[group[i]] >= l.base) return {};
+      for (Ray e : ring_edges(group[i])) {
+        if (!may_go(e)) return {};
+        const PlacedEdge at = placed(l, e);
+        for (int corner = 0; corner < 4; ++corner) {
+          const int other = l.point_at[at.face][corner];
+          if (other < 0 || std::find(group.begin(), group.end(), other) != group.end()) continue;
+          if (in_rings(l, at, corner, 2 * mesh.spacing[other])) return {};
+          if (in_rings(l, at, corner, mesh.spacing[other])) group.push_back(other);
+        }
+      }
+    }
+    return group;
+  }
+
+  /// Doubles h of every point whose rings may go.
+  bool double_rings() {
+    bool any = false;
+    for (int point = 0; point < int(lattice().extraordinary.size()); ++point) {
+      const auto group = doubling_group(point);
+      std::vector<Ray> edges;
+      for (int p : group)
+        for (Ray e : ring_edges(p)) edges.push_back(e);
+      for (Ray e : edges) clear(e);
+      for (int p : group) mesh.spacing[p] *= 2;
+      doublings += int(group.size());
+      any = any || !group.empty();
+    }
+    return any;
+  }
+};
+
+}  // namespace
+
+Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules) {
+  Remover r{mesh, removable};
+  bool going = true;
+  while (going) {
+    going = r.remove_bays();
+    if (!going) going = r.double_rings();
+  }
+  ExtendedMesh extended(std::move(r.mesh));
+  const int repairs = repair(extended, rules).first;
+  return {std::move(extended).take(), r.bays, r.doublings, repairs};
+}
+
+Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules) {
+  const Lattice& l = *mesh.lattice;
+  const Tiling tiling = elements(mesh);
+  // Width and height that a tile may grow to, as powers of two; a line stays if it is on that grid.
+  std::vector<std::array<int, 2>> limit(tiling.tiles.size(), {1, 1});
+  for (const Merge& m : merges) {
+    const Rectangle& r = tiling.tiles[m.element];
+    auto grown = [&](int size, int doublings) { return std::min(int(std::bit_floor(unsigned(size))) << std::min(doublings, 16), l.base); };
+    limit[m.element] = {m.s > 0 ? grown(r.width, m.s) : 1, m.t > 0 ? grown(r.height, m.t) : 1};
+  }
+  std::vector<std::uint8_t> removable(l.vertices(), 0);
+  for (int c = 0; c < l.cells(); ++c)
+    for (int k : {1, 2}) {  // right and upper edge of each cell, inside a face
+      const bool vertical = k == 1;
+      const int line = (vertical ? l.x_of(c) : l.y_of(c)) + 1;
+      if (line == l.units || !mesh.edge_of_cell(c, k)) continue;
+      const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
+      if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
+      const int v = l.corners[c][k], s = l.slot[c][k];
+      removable[v] |= std::uint8_t(1 << s);
+      removable[l.neighbour[v][s]] |= std::uint8_t(1 << l.back[v][s]);
+    }
+  return take_out(mesh, removable, rules);
+}
+
+}  // namespace tanktread::spline
