@@ -89,7 +89,7 @@ def report(run, known):
         if not curve.exact:
             continue
         d = literature.difference(t, run.series["taylor_inertia"], curve.t, curve.d)
-        angle = literature.difference(t[1:], run.series["inclination"][1:], curve.t, curve.inclination)
+        angle = literature.difference(t, run.series["inclination"], curve.t, curve.inclination)
         print(f"{run.name}: largest difference from the {curve.label}: {d:.2e} in D, {angle:.2e} degrees")
 
 

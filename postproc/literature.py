@@ -67,15 +67,12 @@ def _digitised(folder, ca):
 
 
 def difference(t, values, curve_t, curve_values, order=6):
-    """Largest |values - curve| over the times of the curve within the run; the run is interpolated by polynomials through `order` points."""
-    inside = (curve_t >= t[0]) & (curve_t <= t[-1] * (1 + 1e-12))
-    order = min(order, len(t))
-    if not inside.any():
-        return math.nan
-    first = numpy.clip(numpy.searchsorted(t, curve_t[inside]) - order // 2, 0, len(t) - order)
+    """Largest |values - curve| over the times t that the curve covers; the curve is interpolated by polynomials through `order` points."""
     worst = 0.0
-    for start, time, expected in zip(first, curve_t[inside], curve_values[inside]):
-        nodes, at = t[start:start + order], values[start:start + order]
-        weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
-        worst = max(worst, abs(float(numpy.dot(weights, at)) - expected))
+    for time, value in zip(t, values):
+        if curve_t[0] <= time <= curve_t[-1]:
+            start = min(max(int(numpy.searchsorted(curve_t, time)) - order // 2, 0), len(curve_t) - order)
+            nodes = curve_t[start:start + order]
+            weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
+            worst = max(worst, abs(value - float(numpy.dot(weights, curve_values[start:start + order]))))
     return worst

@@ -1,5 +1,7 @@
 #include "output/summary.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "output/file.hpp"
@@ -13,10 +15,19 @@ std::string scalar(long value) { return std::to_string(value); }
 std::string scalar(bool value) { return value ? "true" : "false"; }
 std::string scalar(const std::string& value) { return in_quotes(value); }
 
+/// Without quotes where YAML 1.1 can only take it for a word.
+std::string key_text(const std::string& name) {
+  constexpr std::string_view others[] = {"yes", "no", "on", "off", "y", "n", "true", "false", "null"};
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz";
+  const bool plain = std::ranges::find(others, name) == std::end(others) && !name.empty() && letters.find(name.front()) != letters.npos &&
+                     name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_ ") == name.npos && name.back() != ' ';
+  return plain ? name : in_quotes(name);
+}
+
 template <class Value>
 std::string map(std::string_view key, const Entries<Value>& entries) {
   std::string text = std::string(key) + ":" + (entries.empty() ? " {}\n" : "\n");
-  for (const auto& [name, value] : entries) text += "  " + in_quotes(name) + ": " + scalar(value) + "\n";
+  for (const auto& [name, value] : entries) text += "  " + key_text(name) + ": " + scalar(value) + "\n";
   return text;
 }
 

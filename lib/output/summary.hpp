@@ -28,7 +28,7 @@ struct Summary {
   Entries<std::string> plan;  ///< what the run chose to compute, one line each
 };
 
-/// The text of `summary.yaml`: YAML 1.1, every word in quotes, every double readable to its last bit.
+/// The text of `summary.yaml`: YAML 1.1, every text in quotes, every double readable to its last bit.
 std::string yaml(const Summary& summary);
 
 /// Writes it whole. Throws RunFailure when the disk refuses.

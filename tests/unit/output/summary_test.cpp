@@ -40,7 +40,7 @@ TEST(Summary, IsReadByPythonAsItWasMeant) {
   Summary summary;
   summary.final = {{"time", 7.5}, {"volume_error", 1e-15}, {"energy", std::nan("")}, {"drag", -std::numeric_limits<double>::infinity()}};
   summary.expect = {{"taylor_inertia", 0.39785, 0.3979, -5e-5, true}, {"no", 1, 2, -1, false}};
-  summary.counts = {{"steps", 42}, {"velocity evaluations", 1234567890123}};
+  summary.counts = {{"steps", 42}, {"velocity evaluations", 1234567890123}, {"on", 1}, {"1e3", 2}};
   summary.seconds = {{"far field: near: self", 1.25}};
   summary.plan = {{"flow", "simple shear, γ̇ = 1: \"λ = 1\" # no double layer\n\tC:\\"}, {"yes", ""}};
   write_summary(scratch / "summary.yaml", summary);
@@ -52,7 +52,7 @@ f = s['final']
 assert f['time'] == 7.5 and f['volume_error'] == 1e-15 and math.isnan(f['energy']) and f['drag'] == -math.inf
 assert s['expect'] == [dict(name='taylor_inertia', value=0.39785, expected=0.3979, error=-5e-5, passed=True),
                        dict(name='no', value=1.0, expected=2.0, error=-1.0, passed=False)]
-assert s['counts'] == {'steps': 42, 'velocity evaluations': 1234567890123}
+assert s['counts'] == {'steps': 42, 'velocity evaluations': 1234567890123, 'on': 1, '1e3': 2}
 assert s['seconds'] == {'far field: near: self': 1.25}
 assert s['plan'] == {'flow': 'simple shear, γ̇ = 1: "λ = 1" # no double layer\n\tC:\\', 'yes': ''}, s['plan']
 )");
