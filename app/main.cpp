@@ -56,8 +56,10 @@ int run(const Arguments& arguments, bool speaks) {
     return done;
   }
   const bool resume = !arguments.resume.empty();
-  if (arguments.decks.empty() && !resume) throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
-  if (resume && !arguments.output.empty()) throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
+  if (arguments.decks.empty() && !resume)
+    throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
+  if (resume && !arguments.output.empty())
+    throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
 
   const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
   Scene scene;

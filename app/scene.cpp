@@ -42,8 +42,8 @@ void check_size(const Scene& scene) {
   int largest = n;
   while (assembled_bytes(largest) > limit) --largest;
   throw UserError("Surface/elements per side must be at most " + std::to_string(largest) + " with Time/scheme `tr-bdf2`, but is " +
-                  std::to_string(n) + ": the single layer of its " + std::to_string(std::lround(control_points(n))) + " control points takes " +
-                  std::to_string(std::lround(assembled_bytes(n) / 1e9)) + " GB assembled, more than 64.");
+                  std::to_string(n) + ": the single layer of its " + std::to_string(std::lround(control_points(n))) +
+                  " control points takes " + std::to_string(std::lround(assembled_bytes(n) / 1e9)) + " GB assembled, more than 64.");
 }
 
 }  // namespace
@@ -55,8 +55,9 @@ void Scene::check() const {
   time.check();
   modulus();
   if (volume.constraint == "none" && membrane.load == "weak" && membrane.load_measure == "reference")
-    throw UserError("Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
-                    "the load per reference area (3.7) needs `flux` or `exact`.");
+    throw UserError(
+        "Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
+        "the load per reference area (3.7) needs `flux` or `exact`.");
   check_size(*this);
 }
 

@@ -18,7 +18,7 @@ namespace tanktread {
 /// `Particle/*`: the resting shape and what fills it.
 struct ParticleOptions {
   surface::ParticleShape shape;
-  double viscosity_ratio = 1;           ///< lambda
+  double viscosity_ratio = 1;  ///< lambda
   std::string motion = "deforming";
 
   void declare(deck::Section& section);

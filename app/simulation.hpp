@@ -9,11 +9,11 @@ namespace tanktread {
 
 /// What the command line says beside the deck.
 struct RunRequest {
-  std::string name;         ///< of the run: the deck's file name without its ending
-  std::string output;       ///< directory of the results
-  bool resume = false;      ///< go on from the newest checkpoint there
-  bool quiet = false;       ///< no progress bar
-  std::string deck_text;    ///< the effective deck, to be stored with the results
+  std::string name;       ///< of the run: the deck's file name without its ending
+  std::string output;     ///< directory of the results
+  bool resume = false;    ///< go on from the newest checkpoint there
+  bool quiet = false;     ///< no progress bar
+  std::string deck_text;  ///< the effective deck, to be stored with the results
 };
 
 /// Runs the scene to its end. Exit code: 0 every expectation met, 1 one was missed. Throws UserError and RunFailure. Collective.

@@ -5,8 +5,9 @@
 namespace tanktread::coupling {
 
 void VolumeOptions::declare(deck::Section& section) {
-  section.key("constraint", constraint, deck::Choice{"exact", "flux", "none"},
-              "`flux`: no net flux through the surface in every evaluation (2.8); `exact`: that, and the volume restored after every step; `none`");
+  section.key(
+      "constraint", constraint, deck::Choice{"exact", "flux", "none"},
+      "`flux`: no net flux through the surface in every evaluation (2.8); `exact`: that, and the volume restored after every step; `none`");
 }
 
 void SolverOptions::declare(deck::Section& section) {

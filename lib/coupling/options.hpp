@@ -17,8 +17,8 @@ struct VolumeOptions {
 
 /// The solvers of the linear systems: `Solvers/*` of the deck.
 struct SolverOptions {
-  std::string krylov = "GMRES";                  ///< Belos' name of the iterative solver of the implicit step
-  std::shared_ptr<Teuchos::ParameterList> belos; ///< its list, as it is
+  std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of the implicit step
+  std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
   membrane::DirectSolverOptions direct;
 
   void declare(deck::Section& section);

@@ -23,12 +23,13 @@ void Expectation::declare(Section& section) {
 }
 
 void Expectations::declare(Section& section) {
-  section.each("a value that the results must have; the run ends with exit code 1 when one is off", [this](const std::string& name, Section& inner) {
-    Expectation expectation;
-    expectation.name = expectation.series = name;
-    expectation.declare(inner);
-    all.push_back(expectation);
-  });
+  section.each("a value that the results must have; the run ends with exit code 1 when one is off",
+               [this](const std::string& name, Section& inner) {
+                 Expectation expectation;
+                 expectation.name = expectation.series = name;
+                 expectation.declare(inner);
+                 all.push_back(expectation);
+               });
 }
 
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t) {

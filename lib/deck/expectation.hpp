@@ -12,13 +12,13 @@ namespace tanktread::deck {
 
 /// One expected value of a series.
 struct Expectation {
-  std::string name;                ///< the user's, of the list
-  std::string series;              ///< the name itself, unless the deck says otherwise
-  double value = 0;                ///< required
-  double tolerance = 0;            ///< required; absolute, or relative to `value`
-  std::string kind = "absolute";   ///< absolute, relative
-  std::optional<double> at;        ///< time; empty: the last one
-  std::string source;              ///< where the value comes from
+  std::string name;               ///< the user's, of the list
+  std::string series;             ///< the name itself, unless the deck says otherwise
+  double value = 0;               ///< required
+  double tolerance = 0;           ///< required; absolute, or relative to `value`
+  std::string kind = "absolute";  ///< absolute, relative
+  std::optional<double> at;       ///< time; empty: the last one
+  std::string source;             ///< where the value comes from
 
   void declare(Section& section);
 };
@@ -32,11 +32,11 @@ struct Expectations {
 /// What became of one expectation.
 struct Verdict {
   std::string name;
-  double value = 0;     ///< found; not a number when there was nothing to look at
+  double value = 0;  ///< found; not a number when there was nothing to look at
   double expected = 0;
-  double error = 0;     ///< |value - expected|, over |expected| when the kind is relative
+  double error = 0;  ///< |value - expected|, over |expected| when the kind is relative
   bool passed = false;
-  std::string reason;   ///< why nothing could be looked at, or how far it is off; empty when passed
+  std::string reason;  ///< why nothing could be looked at, or how far it is off; empty when passed
 };
 
 /// Series by name, rows in order of time, with the series `time` among them.

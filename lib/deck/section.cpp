@@ -84,7 +84,8 @@ void state_number(List& list, std::string_view name, Field& field, const Rule& r
 }
 
 template <class Field>
-void state_whole_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+void state_whole_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit,
+                        std::string_view meaning) {
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
     const auto number = as_whole_number(entry);
     if (!number || !rule.holds(*number)) refuse(path, rule_text(rule, "whole number"), unit, description(entry));
@@ -95,13 +96,17 @@ void state_whole_number(List& list, std::string_view name, Field& field, const R
 
 template <class Field>
 void state_vector(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked_array<3, 1>(path, entry, each, unit); };
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    return checked_array<3, 1>(path, entry, each, unit);
+  };
   state<Vec3>(list, name, field, array_rule(each, "three"), unit, meaning, read, array_text<3, 1>);
 }
 
 template <class Field>
 void state_matrix(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked_array<3, 3>(path, entry, each, unit); };
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    return checked_array<3, 3>(path, entry, each, unit);
+  };
   state<Mat3>(list, name, field, array_rule(each, "nine"), unit, meaning, read, array_text<3, 3>);
 }
 
@@ -203,12 +208,8 @@ void Section::each(std::string_view meaning, const std::function<void(const std:
   }
 }
 
-bool Section::given(std::string_view name) const {
-  return state_->list->given && state_->list->given->isParameter(std::string(name));
-}
+bool Section::given(std::string_view name) const { return state_->list->given && state_->list->given->isParameter(std::string(name)); }
 
-std::string Section::path(std::string_view name) const {
-  return name.empty() ? state_->list->path : state_->list->path_of(name);
-}
+std::string Section::path(std::string_view name) const { return name.empty() ? state_->list->path : state_->list->path_of(name); }
 
 }  // namespace tanktread::deck

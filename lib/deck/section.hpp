@@ -51,7 +51,8 @@ class Section {
   void key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning);
   void key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit, std::string_view meaning);  ///< nine numbers, row by row
+  void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit,
+           std::string_view meaning);  ///< nine numbers, row by row
   void key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
 
   /// A list inside this one, stated by `options.declare(Section&)`.

@@ -42,8 +42,10 @@ Teuchos::ParameterList decoded_list(const Teuchos::ParameterList& list) {
 /// The one thing to know from the several lines that Teuchos throws: where it stopped, and the line that stands there.
 std::string reduced(const std::string& error, const std::vector<std::string>& lines) {
   std::smatch match;
-  if (std::regex_search(error, match, std::regex("Parameter \"([^\"]*)\" already exists"))) return ": " + match[1].str() + " is given twice";
-  if (!std::regex_search(error, match, std::regex("line (\\d+)")) || lines.empty()) return std::string(" is not YAML with one list named `") + root_name + "`";
+  if (std::regex_search(error, match, std::regex("Parameter \"([^\"]*)\" already exists")))
+    return ": " + match[1].str() + " is given twice";
+  if (!std::regex_search(error, match, std::regex("line (\\d+)")) || lines.empty())
+    return std::string(" is not YAML with one list named `") + root_name + "`";
   std::size_t number = std::stoul(match[1].str());
   if (error.find("Got: NEWLINE") != std::string::npos && number > 1) --number;  // it stopped at the end of the line before
   number = std::min(number, lines.size());
@@ -113,7 +115,8 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {
   const std::string origin = "--set '" + setting + "'";
   const std::size_t equals = setting.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size()) throw UserError(origin + " must be of the form Section/key=value.");
+  if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size())
+    throw UserError(origin + " must be of the form Section/key=value.");
   std::istringstream path(setting.substr(0, equals));
   std::vector<std::string> keys;
   for (std::string key; std::getline(path, key, '/');) keys.push_back(key);

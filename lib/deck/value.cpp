@@ -46,7 +46,8 @@ std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   }
   const bool real = held<Teuchos::Array<double>>(entry) || held<Teuchos::TwoDArray<double>>(entry);
   std::vector<std::string> words;
-  for (const double value : as_numbers(entry).value_or(std::vector<double>{})) words.push_back(real ? real_text(value) : number_text(value));
+  for (const double value : as_numbers(entry).value_or(std::vector<double>{}))
+    words.push_back(real ? real_text(value) : number_text(value));
   return bracketed(words);
 }
 

@@ -29,7 +29,8 @@ std::string without_comment(const std::string& line) {
     const bool blank = c == ' ' || c == '\t';
     if (!quote && c == '#' && (before == ' ' || before == '\t')) break;
     out += c == '~' || static_cast<unsigned char>(c) >= 0x80 || (quote && c == '#') ? encoded(c) : std::string(1, c);
-    const bool escapes = quote && i + 1 < line.size() && ((quote == '"' && c == '\\') || (quote == '\'' && c == '\'' && line[i + 1] == '\''));
+    const bool escapes =
+        quote && i + 1 < line.size() && ((quote == '"' && c == '\\') || (quote == '\'' && c == '\'' && line[i + 1] == '\''));
     if (escapes) {
       out += line[++i];
     } else if (quote && c == quote) {
@@ -87,7 +88,10 @@ struct Outline {
     Level& level = levels.back();
     last_key = level.path.empty() ? key : level.path + "/" + key;
     const auto [first, is_new] = level.keys.emplace(key, number);
-    if (!is_new) refuse(origin, number, last_key.substr(last_key.find('/') + 1) + " is given a second time; it already stands in line " + std::to_string(first->second + 1));
+    if (!is_new)
+      refuse(origin, number,
+             last_key.substr(last_key.find('/') + 1) + " is given a second time; it already stands in line " +
+                 std::to_string(first->second + 1));
   }
 };
 
@@ -106,7 +110,8 @@ std::vector<std::string> clean_lines(const std::string& text, const std::string&
     check_characters(line, origin, number);
     lines.push_back(line);
     if (line.empty() || is_marker(line)) continue;
-    if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string::npos) refuse(origin, number, "indent with spaces, not with tabs");
+    if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string::npos)
+      refuse(origin, number, "indent with spaces, not with tabs");
     outline.add(line, origin, number);
   }
   return lines;

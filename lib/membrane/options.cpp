@@ -6,7 +6,8 @@
 namespace tanktread::membrane {
 
 void Options::declare(deck::Section& section) {
-  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "surface tension"}, "constitutive law: (P-7), (P-8), or a fluid interface (3.4)");
+  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "surface tension"},
+              "constitutive law: (P-7), (P-8), or a fluid interface (3.4)");
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
               "Ca = viscosity x rate x R_C / G_s (over the surface tension for a drop); R_C: radius of the sphere of equal volume, rate: "
@@ -36,7 +37,8 @@ void Options::check() const {
   if (area_dilatation && law != "Skalak")
     throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `" + law + "`.");
   if (law == "surface tension" && pre_inflation != 0.0)
-    throw UserError("Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
+    throw UserError(
+        "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }
@@ -51,7 +53,8 @@ double Options::modulus(double viscosity, double rate, double radius) const {
 }
 
 void DirectSolverOptions::declare(deck::Section& section) {
-  section.key("direct solver", name, deck::Choice{}, "Amesos2's name of the solver of the sparse systems: `KLU2`, or another that it was built with");
+  section.key("direct solver", name, deck::Choice{},
+              "Amesos2's name of the solver of the sparse systems: `KLU2`, or another that it was built with");
   section.foreign("Amesos2", amesos2, "list handed to the direct solver as it is");
 }
 

@@ -35,8 +35,8 @@ struct Options {
 
 /// The direct solver of the sparse systems (mass matrices, collocation matrix): keys of `Solvers/*`.
 struct DirectSolverOptions {
-  std::string name = "KLU2";                       ///< as Amesos2 names it
-  std::shared_ptr<Teuchos::ParameterList> amesos2; ///< its list, as it is
+  std::string name = "KLU2";                        ///< as Amesos2 names it
+  std::shared_ptr<Teuchos::ParameterList> amesos2;  ///< its list, as it is
 
   void declare(deck::Section& section);
 };

@@ -18,12 +18,16 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
               "the run ends when the largest normal velocity over rate x R_C falls below it; if not given, only at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1", "end of the sub-iteration of `crank-nicolson` (4.1)");
-  section.key("newton tolerance", newton_tolerance, deck::between(1e-12, 1.0), "1", "end of the quasi-Newton iteration, in parts of the tolerance");
-  section.key("newton iterations", newton_iterations, deck::at_least(1), "1", "most quasi-Newton iterations of a stage before the step is halved");
-  section.key("linear tolerance", linear_tolerance, deck::between(1e-14, 0.5), "1", "relative residual of the linear solves of the implicit step");
+  section.key("newton tolerance", newton_tolerance, deck::between(1e-12, 1.0), "1",
+              "end of the quasi-Newton iteration, in parts of the tolerance");
+  section.key("newton iterations", newton_iterations, deck::at_least(1), "1",
+              "most quasi-Newton iterations of a stage before the step is halved");
+  section.key("linear tolerance", linear_tolerance, deck::between(1e-14, 0.5), "1",
+              "relative residual of the linear solves of the implicit step");
   section.key("contraction limit", contraction_limit, deck::between(0.01, 1.0), "1",
               "contraction rate of the iteration above which the frozen layer operator is assembled anew");
-  section.key("predictor order", predictor_order, deck::between(0, 3), "1", "order of the extrapolation of slopes that a stage starts from");
+  section.key("predictor order", predictor_order, deck::between(0, 3), "1",
+              "order of the extrapolation of slopes that a stage starts from");
 }
 
 void TimeOptions::check() const {

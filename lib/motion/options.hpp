@@ -11,20 +11,20 @@ namespace tanktread::motion {
 
 /// The integration in time: `Time/*` of the deck.
 struct TimeOptions {
-  std::string scheme = "tr-bdf2";           ///< tr-bdf2 (method.md, section 4), bs3, crank-nicolson (4.1)
-  double final_time = 1.0;                  ///< the run ends here
-  double tolerance = 1e-4;                  ///< error of a step: root mean square displacement of the control points over R_C
-  std::optional<double> initial_step;       ///< empty: the scheme finds one
-  std::optional<double> fixed_step;         ///< steps of this size without error control, the last one shortened
-  std::optional<double> maximum_step;       ///< empty: no limit
-  double minimum_step = 1e-9;               ///< a controlled step below this ends the run with a failure
-  std::optional<double> steady_tolerance;   ///< stop when max |v.n| over (rate R_C) falls below it; empty: never
-  double iteration_tolerance = 1e-7;        ///< end of the sub-iteration of crank-nicolson (4.1)
-  double newton_tolerance = 0.05;           ///< end of the quasi-Newton iteration, in parts of `tolerance`
-  int newton_iterations = 6;                ///< most iterations of a stage before the step is halved
-  double linear_tolerance = 0.03;           ///< relative residual of its linear solves
-  double contraction_limit = 0.25;          ///< contraction rate above which the frozen layer operator is assembled anew
-  int predictor_order = 2;                  ///< order of the polynomial through known slopes that a stage starts from
+  std::string scheme = "tr-bdf2";          ///< tr-bdf2 (Hosea & Shampine 1996), bs3, crank-nicolson (4.1)
+  double final_time = 1.0;                 ///< the run ends here
+  double tolerance = 1e-4;                 ///< error of a step: root mean square displacement of the control points over R_C
+  std::optional<double> initial_step;      ///< empty: the scheme finds one
+  std::optional<double> fixed_step;        ///< steps of this size without error control, the last one shortened
+  std::optional<double> maximum_step;      ///< empty: no limit
+  double minimum_step = 1e-9;              ///< a controlled step below this ends the run with a failure
+  std::optional<double> steady_tolerance;  ///< stop when max |v.n| over (rate R_C) falls below it; empty: never
+  double iteration_tolerance = 1e-7;       ///< end of the sub-iteration of crank-nicolson (4.1)
+  double newton_tolerance = 0.05;          ///< end of the quasi-Newton iteration, in parts of `tolerance`
+  int newton_iterations = 6;               ///< most iterations of a stage before the step is halved
+  double linear_tolerance = 0.03;          ///< relative residual of its linear solves
+  double contraction_limit = 0.25;         ///< contraction rate above which the frozen layer operator is assembled anew
+  int predictor_order = 2;                 ///< order of the polynomial through known slopes that a stage starts from
 
   void declare(deck::Section& section);
 

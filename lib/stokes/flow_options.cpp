@@ -32,7 +32,8 @@ void FlowOptions::check() const {
   belongs("gradient", gradient.has_value(), "linear");
   belongs("velocity", velocity.has_value(), "uniform");
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
-    throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) + ".");
+    throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
+                    ".");
   if (type == "linear" && shear_rate != 1.0)
     throw UserError("Flow/shear rate and Flow/gradient contradict each other: the gradient of a `linear` flow holds its rate already.");
 }

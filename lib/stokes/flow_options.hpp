@@ -11,14 +11,14 @@ class Section;
 
 namespace tanktread::stokes {
 
-/// The ambient flow and the outer fluid: `Flow/*` of the deck. Axes as in method.md, section 2: the plane of the flow is x1 x3.
+/// The ambient flow and the outer fluid: `Flow/*` of the deck. The plane of the flow is x1 x3.
 struct FlowOptions {
-  std::string type = "simple shear";    ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear
-  double shear_rate = 1.0;              ///< rate of every flow with a gradient but `linear`, units 1/time
-  double viscosity = 1.0;               ///< mu of the outer fluid
-  std::optional<double> roll_parameter; ///< a of (P-48); set for `four-roll`
-  std::optional<Mat3> gradient;         ///< L_ij = dv_i/dx_j; set for `linear`
-  std::optional<Vec3> velocity;         ///< set for `uniform`
+  std::string type = "simple shear";     ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear
+  double shear_rate = 1.0;               ///< rate of every flow with a gradient but `linear`, units 1/time
+  double viscosity = 1.0;                ///< mu of the outer fluid
+  std::optional<double> roll_parameter;  ///< a of (P-48); set for `four-roll`
+  std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`
+  std::optional<Vec3> velocity;          ///< set for `uniform`
 
   void declare(deck::Section& section);
 

@@ -32,8 +32,10 @@ void ParticleShape::declare(deck::Section& section) {
 
 void ParticleShape::check() const {
   const bool round = shape == "sphere" || shape == "red cell";
-  if (round && semi_axes) throw UserError("Particle/semi-axes and Particle/shape `" + shape + "` contradict each other: give Particle/radius.");
-  if (!round && radius) throw UserError("Particle/radius and Particle/shape `" + shape + "` contradict each other: give Particle/semi-axes.");
+  if (round && semi_axes)
+    throw UserError("Particle/semi-axes and Particle/shape `" + shape + "` contradict each other: give Particle/radius.");
+  if (!round && radius)
+    throw UserError("Particle/radius and Particle/shape `" + shape + "` contradict each other: give Particle/semi-axes.");
   if (!round && !semi_axes) throw UserError("Particle/shape `" + shape + "` needs Particle/semi-axes, three lengths.");
   if (shape == "spheroid") {
     const Vec3& a = *semi_axes;

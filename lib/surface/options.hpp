@@ -22,11 +22,11 @@ struct MeshOptions {
 
 /// The resting shape of the particle: keys of `Particle/*`.
 struct ParticleShape {
-  std::string shape = "sphere";        ///< sphere, spheroid, ellipsoid, red cell
-  std::optional<double> radius;        ///< of the sphere, or of the disc of a red cell; set for these two, empty otherwise
-  std::optional<Vec3> semi_axes;       ///< along the particle's own x1, x2, x3; set for spheroid and ellipsoid, empty otherwise
-  Vec3 center = Vec3::Zero();          ///< of the resting shape
-  Vec3 orientation = Vec3::Zero();     ///< rotation vector (axis times angle) in degrees, from the particle's own axes to those of space
+  std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell
+  std::optional<double> radius;     ///< of the sphere, or of the disc of a red cell; set for these two, empty otherwise
+  std::optional<Vec3> semi_axes;    ///< along the particle's own x1, x2, x3; set for spheroid and ellipsoid, empty otherwise
+  Vec3 center = Vec3::Zero();       ///< of the resting shape
+  Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees, from the particle's own axes to those of space
 
   void declare(deck::Section& section);
 

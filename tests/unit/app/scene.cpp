@@ -40,9 +40,11 @@ TEST(Scenes, WithoutAnyKeyAreASphereInShear) {
 }
 
 TEST(Scenes, SurviveTheirEffectiveDeck) {
-  for (const char* lists : {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
-                            "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
-                            "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n", "  Time: {fixed step: 0.01, scheme: bs3}\n"}) {
+  for (const char* lists :
+       {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
+        "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
+        "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n",
+        "  Time: {fixed step: 0.01, scheme: bs3}\n"}) {
     Scene first, second;
     deck::Document once = deck::read_text(std::string("Tanktread:\n") + lists);
     once.declare(first);
@@ -56,7 +58,8 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
 }
 
 TEST(Moduli, FollowFromTheCapillaryNumber) {
-  EXPECT_DOUBLE_EQ(scene("  Flow: {viscosity: 2, shear rate: 3}\n  Particle: {radius: 4}\n  Membrane: {capillary number: 0.5}\n").modulus(), 48.0);
+  EXPECT_DOUBLE_EQ(scene("  Flow: {viscosity: 2, shear rate: 3}\n  Particle: {radius: 4}\n  Membrane: {capillary number: 0.5}\n").modulus(),
+                   48.0);
   EXPECT_DOUBLE_EQ(scene("  Membrane: {shear modulus: 7}\n").modulus(), 7.0);
   // The largest singular value of the gradient of shear is the shear rate, of hyperbolic flow its rate.
   EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [0, 0, 2.5, 0, 0, 0, 0, 0, 0]}\n").flow.rate(), 2.5);
@@ -73,7 +76,8 @@ TEST(EquivalentRadii, AreThoseOfTheSphereOfEqualVolume) {
     const double r = (i + 0.5) / steps;
     volume += 2 * std::numbers::pi * r * std::sqrt(1 - r * r) * (0.21 + 2.0 * r * r - 1.12 * std::pow(r, 4)) / steps;
   }
-  EXPECT_NEAR(scene("  Particle: {shape: red cell, radius: 2}\n").radius(), 2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)), 1e-6);  // the rule's error
+  EXPECT_NEAR(scene("  Particle: {shape: red cell, radius: 2}\n").radius(), 2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)),
+              1e-6);  // the rule's error
 }
 
 TEST(Orientations, TurnTheAxesOfTheParticle) {
@@ -85,7 +89,8 @@ TEST(Orientations, TurnTheAxesOfTheParticle) {
 TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Membrane: {capillary number: 0.3, shear modulus: 1}\n"),
             "Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
-  EXPECT_EQ(refusal("  Membrane: {area dilatation: 2}\n"), "Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `neo-Hookean`.");
+  EXPECT_EQ(refusal("  Membrane: {area dilatation: 2}\n"),
+            "Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `neo-Hookean`.");
   EXPECT_EQ(refusal("  Membrane: {surface tension: 2}\n"),
             "Membrane/surface tension and Membrane/law `neo-Hookean` contradict each other: give Membrane/shear modulus.");
   EXPECT_EQ(refusal("  Membrane: {law: surface tension, load measure: reference}\n"),
@@ -93,18 +98,24 @@ TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Particle: {semi-axes: [1, 1, 2]}\n"),
             "Particle/semi-axes and Particle/shape `sphere` contradict each other: give Particle/radius.");
   EXPECT_EQ(refusal("  Particle: {shape: ellipsoid}\n"), "Particle/shape `ellipsoid` needs Particle/semi-axes, three lengths.");
-  EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"), "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
+  EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"),
+            "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
   EXPECT_EQ(refusal("  Flow: {type: four-roll}\n"), "Flow/type `four-roll` needs Flow/roll parameter.");
-  EXPECT_EQ(refusal("  Flow: {roll parameter: 0.5}\n"), "Flow/roll parameter belongs to Flow/type `four-roll`, but Flow/type is `simple shear`.");
-  EXPECT_EQ(refusal("  Time: {fixed step: 0.1, initial step: 0.1}\n"), "Time/fixed step and Time/initial step contradict each other: give one of them.");
-  EXPECT_EQ(refusal("  Volume: {constraint: none}\n").find("Volume/constraint `none` and Membrane/load measure `reference` contradict each other"), 0u);
+  EXPECT_EQ(refusal("  Flow: {roll parameter: 0.5}\n"),
+            "Flow/roll parameter belongs to Flow/type `four-roll`, but Flow/type is `simple shear`.");
+  EXPECT_EQ(refusal("  Time: {fixed step: 0.1, initial step: 0.1}\n"),
+            "Time/fixed step and Time/initial step contradict each other: give one of them.");
+  EXPECT_EQ(refusal("  Volume: {constraint: none}\n")
+                .find("Volume/constraint `none` and Membrane/load measure `reference` contradict each other"),
+            0u);
   EXPECT_EQ(refusal("  Volume: {constraint: none}\n  Membrane: {load measure: current}\n"), "");
 }
 
 TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   EXPECT_EQ(refusal("  Surface: {elements per side: 83}\n"), "");
   EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"),
-            "Surface/elements per side must be at most 83 with Time/scheme `tr-bdf2`, but is 100: the single layer of its 60002 control points takes "
+            "Surface/elements per side must be at most 83 with Time/scheme `tr-bdf2`, but is 100: the single layer of its 60002 control "
+            "points takes "
             "130 GB assembled, more than 64.");
   EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n  Time: {scheme: bs3}\n"), "");
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
@@ -113,7 +124,8 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
 TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
   for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
     EXPECT_TRUE(may_change_on_resume(path)) << path;
-  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side"}) EXPECT_FALSE(may_change_on_resume(path)) << path;
+  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side"})
+    EXPECT_FALSE(may_change_on_resume(path)) << path;
 }
 
 }  // namespace

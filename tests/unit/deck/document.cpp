@@ -5,10 +5,10 @@
 #include <fstream>
 #include <random>
 
-#include <Teuchos_ParameterList.hpp>
-#include <Teuchos_XMLParameterListCoreHelpers.hpp>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <Teuchos_ParameterList.hpp>
+#include <Teuchos_XMLParameterListCoreHelpers.hpp>
 
 #include "options.hpp"
 
@@ -46,7 +46,8 @@ std::string refused(const std::vector<std::string>& files, const std::vector<std
 
 TEST(Overlays, ReplaceKeyByKeyAndLeaveTheRest) {
   const Folder folder;
-  const auto base = folder.file("base.yaml", "Tanktread:\n  Kinds:\n    count: 4\n    law: hard\n    Inner: {depth: 0.1}\n    Belos: {a: 1, b: {c: 2}}\n");
+  const auto base = folder.file(
+      "base.yaml", "Tanktread:\n  Kinds:\n    count: 4\n    law: hard\n    Inner: {depth: 0.1}\n    Belos: {a: 1, b: {c: 2}}\n");
   const auto over = folder.file("over.yaml", "Tanktread:\n  Kinds:\n    law: soft\n    Inner: {depth: 0.2}\n    Belos: {b: {d: 3}}\n");
   const Sample s = sample({base, over});
   EXPECT_EQ(s.kinds.count, 4);
@@ -69,8 +70,9 @@ TEST(Overlays, MayChangeTheTypeOfAValue) {
 TEST(Settings, GoOverAllDecksAndAreReadAsYaml) {
   const Folder folder;
   const auto base = folder.file("base.yaml", "Tanktread:\n  Kinds:\n    count: 4\n");
-  const Sample s = sample({base}, {"Kinds/count=5", "Kinds/law=very hard", "Kinds/center=[1, 2., 3]", "Kinds/Inner/depth=1e-1", "Kinds/note=\"x=y\"",
-                                   "Kinds/enabled=true", "Kinds/Belos/Maximum Iterations=12", "Tanktread/Kinds/shear rate=3"});
+  const Sample s =
+      sample({base}, {"Kinds/count=5", "Kinds/law=very hard", "Kinds/center=[1, 2., 3]", "Kinds/Inner/depth=1e-1", "Kinds/note=\"x=y\"",
+                      "Kinds/enabled=true", "Kinds/Belos/Maximum Iterations=12", "Tanktread/Kinds/shear rate=3"});
   EXPECT_EQ(s.kinds.count, 5);
   EXPECT_EQ(s.kinds.law, "very hard");
   EXPECT_EQ(s.kinds.center, Vec3(1, 2, 3));
@@ -96,15 +98,17 @@ TEST(StoredDecks, LieUnderAllOthers) {
 
 TEST(Xml, IsReadByExtension) {
   const Folder folder;
-  const auto file = folder.file("deck.xml",
-                                "<ParameterList name=\"Tanktread\"><ParameterList name=\"Kinds\">\n"
-                                "<Parameter name=\"count\" type=\"int\" value=\"6\"/><Parameter name=\"law\" type=\"string\" value=\"hard\"/>\n"
-                                "<Parameter name=\"center\" type=\"Array(double)\" value=\"{1, 2, 3}\"/></ParameterList></ParameterList>\n");
+  const auto file =
+      folder.file("deck.xml",
+                  "<ParameterList name=\"Tanktread\"><ParameterList name=\"Kinds\">\n"
+                  "<Parameter name=\"count\" type=\"int\" value=\"6\"/><Parameter name=\"law\" type=\"string\" value=\"hard\"/>\n"
+                  "<Parameter name=\"center\" type=\"Array(double)\" value=\"{1, 2, 3}\"/></ParameterList></ParameterList>\n");
   const Sample s = sample({file});
   EXPECT_EQ(s.kinds.count, 6);
   EXPECT_EQ(s.kinds.law, "hard");
   EXPECT_EQ(s.kinds.center[1], 2.0);
-  EXPECT_EQ(refused({folder.file("bad.xml", "<ParameterList")}), (folder.path / "bad.xml").string() + " is not XML of the kind that Teuchos reads.");
+  EXPECT_EQ(refused({folder.file("bad.xml", "<ParameterList")}),
+            (folder.path / "bad.xml").string() + " is not XML of the kind that Teuchos reads.");
 }
 
 TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
@@ -122,7 +126,8 @@ TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
 
 TEST(EffectiveDecks, StateEveryKeyThatIsSet) {
   Sample s;
-  Document document = read_text("Tanktread:\n  Kinds:\n    law: very hard\n    Belos: {tolerance: 1e-8, solver: \"Block GMRES\", verbose: false}\n");
+  Document document =
+      read_text("Tanktread:\n  Kinds:\n    law: very hard\n    Belos: {tolerance: 1e-8, solver: \"Block GMRES\", verbose: false}\n");
   document.declare(s);
   EXPECT_EQ(document.effective(),
             "Tanktread:\n  Kinds:\n    shear rate: 1.0\n    count: 3\n    enabled: false\n    law: very hard\n    note: none\n"
@@ -157,7 +162,8 @@ TEST(EffectiveDecks, ReadAgainGiveTheSameSceneToTheLastBit) {
 TEST(EffectiveDecks, KeepForeignListsWithTheirTypes) {
   Sample s, again;
   Document first = read_text(
-      "Tanktread:\n  Kinds:\n    Belos:\n      real: 3.\n      whole: 3\n      yes it is: true\n      text: \"3\"\n      reals: [1., 2.]\n      wholes: [1, 2]\n"
+      "Tanktread:\n  Kinds:\n    Belos:\n      real: 3.\n      whole: 3\n      yes it is: true\n      text: \"3\"\n      reals: [1., 2.]\n "
+      "     wholes: [1, 2]\n"
       "      texts: [a, \"b c\"]\n      Inner: {real: 1e-10}\n");
   first.declare(s);
   Document second = read_text(first.effective());

@@ -26,7 +26,9 @@ const SeriesTable cubic = [] {
 }();
 
 TEST(Expectations, AreReadByName) {
-  const auto all = expectations("    volume: {value: 4.19, tolerance: 1e-3, kind: relative, at: 7.5, source: \"sphere, exact\"}\n    energy: {value: 1, tolerance: 0.1}\n");
+  const auto all = expectations(
+      "    volume: {value: 4.19, tolerance: 1e-3, kind: relative, at: 7.5, source: \"sphere, exact\"}\n    energy: {value: 1, tolerance: "
+      "0.1}\n");
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].name, "volume");
   EXPECT_EQ(all[0].series, "volume");
@@ -40,7 +42,8 @@ TEST(Expectations, NeedValueAndTolerance) {
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1}\n"),
             "Expect/volume/tolerance is missing; an expectation needs `value` and `tolerance`.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: 1\n"), "Expect/volume must be a list of keys, but is 1.");
-  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1, tolerance: 1, tol: 2}\n"), "Expect/volume/tol is not a key of the deck; Expect/volume has "
+  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1, tolerance: 1, tol: 2}\n"),
+            "Expect/volume/tol is not a key of the deck; Expect/volume has "
             "series, value, tolerance, kind, at or source.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 0, tolerance: 1, kind: relative}\n"),
             "Expect/volume/kind `relative` and the value 0 contradict each other.");
@@ -54,9 +57,11 @@ TEST(Interpolation, IsExactForCubicsAndAtTheRows) {
 }
 
 TEST(Verdicts, HoldTheLastRowOrAMoment) {
-  const auto all = verdicts(expectations("    last: {series: volume, value: 3, tolerance: 1e-9}\n    half: {series: volume, value: 1.3, tolerance: 0.02, at: 0.5}\n"
-                                         "    off: {series: volume, value: 3.3, tolerance: 0.05, kind: relative}\n"),
-                            cubic);
+  const auto all = verdicts(
+      expectations(
+          "    last: {series: volume, value: 3, tolerance: 1e-9}\n    half: {series: volume, value: 1.3, tolerance: 0.02, at: 0.5}\n"
+          "    off: {series: volume, value: 3.3, tolerance: 0.05, kind: relative}\n"),
+      cubic);
   ASSERT_EQ(all.size(), 3u);
   EXPECT_TRUE(all[0].passed);
   EXPECT_EQ(all[0].value, 3.0);
@@ -68,7 +73,8 @@ TEST(Verdicts, HoldTheLastRowOrAMoment) {
 }
 
 TEST(Verdicts, AreNeverFewerThanDeclared) {
-  const auto all = verdicts(expectations("    nothing: {value: 1, tolerance: 1}\n    late: {series: volume, value: 1, tolerance: 100, at: 2.1}\n"), cubic);
+  const auto all = verdicts(
+      expectations("    nothing: {value: 1, tolerance: 1}\n    late: {series: volume, value: 1, tolerance: 100, at: 2.1}\n"), cubic);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_FALSE(all[0].passed);
   EXPECT_EQ(all[0].reason, "the results hold no series nothing");

@@ -19,7 +19,8 @@ TEST(Keys, ThatAreNotGivenKeepTheirDefaults) {
 TEST(Keys, OfEveryTypeAreRead) {
   const Kinds k = kinds(
       "    shear rate: 2.5\n    modulus: 1e-3\n    count: 7\n    limit: 0\n    enabled: true\n    law: very hard\n    note: \"a: b # c\"\n"
-      "    center: [1, 2, 3]\n    axes: [1., 2, 3.5]\n    gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9]\n    stress: [[1., 2., 3.], [4., 5., 6.], [7., 8., 9.]]\n"
+      "    center: [1, 2, 3]\n    axes: [1., 2, 3.5]\n    gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9]\n    stress: [[1., 2., 3.], [4., 5., 6.], "
+      "[7., 8., 9.]]\n"
       "    Inner: {depth: 0.25}\n");
   EXPECT_EQ(k.rate, 2.5);
   EXPECT_EQ(k.modulus, 1e-3);
@@ -46,7 +47,8 @@ TEST(Keys, RefuseAValueOutsideTheirRuleWithPathRuleUnitAndValue) {
   EXPECT_EQ(refusal("    shear rate: -1\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is -1.");
   EXPECT_EQ(refusal("    count: 10\n"), "Kinds/count must be a whole number, between 1 and 9, but is 10.");
   EXPECT_EQ(refusal("    Inner:\n      depth: 2.5\n"), "Kinds/Inner/depth must be a number, between 0 and 1 (unit: length), but is 2.5.");
-  EXPECT_EQ(refusal("    axes: [1, 0, 1]\n"), "Kinds/axes must be three numbers in brackets, each positive (unit: length), but is [1, 0, 1].");
+  EXPECT_EQ(refusal("    axes: [1, 0, 1]\n"),
+            "Kinds/axes must be three numbers in brackets, each positive (unit: length), but is [1, 0, 1].");
 }
 
 TEST(Keys, RefuseWrongTypes) {

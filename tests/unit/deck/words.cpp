@@ -16,7 +16,8 @@ TEST(Numbers, AreShortAndExact) {
 
 TEST(Words, ThatYamlReadsOtherwiseAreNotPlain) {
   for (const char* word : {"soft", "very hard", "neo-Hookean", "x1"}) EXPECT_TRUE(is_plain(word)) << word;
-  for (const char* word : {"", "yes", "No", "true", "null", "1", "1e5", "-a", "a: b", "a # b", "a ", "it's", "[a]"}) EXPECT_FALSE(is_plain(word)) << word;
+  for (const char* word : {"", "yes", "No", "true", "null", "1", "1e5", "-a", "a: b", "a # b", "a ", "it's", "[a]"})
+    EXPECT_FALSE(is_plain(word)) << word;
 }
 
 TEST(Guesses, ForgiveATypoButNotAnotherWord) {
