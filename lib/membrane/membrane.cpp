@@ -14,8 +14,8 @@ constexpr int max_values = 6 * max_order * max_order;
 
 }  // namespace
 
-Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order)
-    : space_(&space), unstressed_(unstressed), law_(law), order_(order), all_(space.elements.size()) {
+Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order, const Bending& bending)
+    : space_(&space), unstressed_(unstressed), law_(law), order_(order), bending_(bending), all_(space.elements.size()) {
   assert(unstressed.rows() == space.n_points && order >= 2 && order <= 10);
   std::iota(all_.begin(), all_.end(), 0);
 }
@@ -26,7 +26,7 @@ std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const 
     std::rotate(parts_.begin(), found, found + 1);
   } else {
     if (parts_.size() == parts_kept) parts_.pop_back();
-    parts_.insert(parts_.begin(), std::make_shared<const Part>(*space_, unstressed_, elements, order_));
+    parts_.insert(parts_.begin(), std::make_shared<const Part>(*space_, unstressed_, elements, order_, bending_));
   }
   return parts_.front();
 }
@@ -34,8 +34,9 @@ std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const 
 double Membrane::energy(const Net& x) const { return energy(x, all_); }
 
 double Membrane::energy(const Net& x, std::span<const int> elements) const {
-  double sum = 0;
-  part(elements)->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
+  const auto mine = part(elements);
+  double sum = bending_.modulus > 0 ? bending_energy(bending_, *mine, x) : 0;
+  mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
     Pack a[max_values];
     tangents(group, batch, x, a);
     const Pack energies = membrane::energy(law_, group.n_gauss(), reference, a);
@@ -46,12 +47,14 @@ double Membrane::energy(const Net& x, std::span<const int> elements) const {
 
 void Membrane::load(const Net& x, std::span<const int> elements, Net& d) const {
   d.setZero(space_->n_points, 3);
-  part(elements)->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
+  const auto mine = part(elements);
+  mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
     Pack a[max_values], p[max_values];
     tangents(group, batch, x, a);
     stresses(law_, group.n_gauss(), reference, a, p);
     add_transpose(group, batch, p, d);
   });
+  if (bending_.modulus > 0) add_bending_load(bending_, *mine, x, d);
 }
 
 Net Membrane::load(const Net& x) const {

@@ -8,12 +8,11 @@
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
+#include "membrane/bending.hpp"
 #include "membrane/laws.hpp"
 #include "spline/space.hpp"
 
 namespace tanktread::membrane {
-
-struct Part;
 
 /// Smallest principal tension over the modulus, and the share of the current area where it is negative (`smallest_tension`,
 /// `compressed_area` of the series); at the Gauss points. A tension counts as negative below -1e-9 of the modulus.
@@ -28,9 +27,9 @@ struct TensionSummary {
 class Membrane {
  public:
   /// `order` Gauss points per direction at degree 3, one more for each degree beyond; 2 to 10. `space` must outlive the membrane.
-  Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4);
+  Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4, const Bending& bending = {});
 
-  /// E = int Psi dGamma_0 over all or the given elements. Units force x length.
+  /// E = int Psi dGamma_0, and the bending energy, over all or the given elements. Units force x length.
   double energy(const Net& x) const;
   double energy(const Net& x, std::span<const int> elements) const;
 
@@ -45,7 +44,7 @@ class Membrane {
   /// Principal tensions, smaller first, over the modulus, at the given sites. Shape (sites, 2).
   Eigen::MatrixX2d tensions(const Net& x, std::span<const spline::Site> sites) const;
 
-  /// The strong form t = -div_s tau at a site, with second derivatives of both nets. Force per current area. P-3
+  /// The strong form t = -div_s tau at a site, bending left out, with second derivatives of both nets. Force per current area. P-3
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
   /// The same at the collocation sites `targets` (rows of t; others are untouched), mean over the incident elements. The paper and
@@ -55,6 +54,7 @@ class Membrane {
   const spline::Space& space() const { return *space_; }
   const Net& unstressed() const { return unstressed_; }
   const Law& law() const { return law_; }
+  const Bending& bending() const { return bending_; }
   int order() const { return order_; }
 
  private:
@@ -65,6 +65,7 @@ class Membrane {
   Net unstressed_;
   Law law_;
   int order_;
+  Bending bending_;
   std::vector<int> all_;
   mutable std::vector<std::shared_ptr<const Part>> parts_;  // the latest first
 };

@@ -1,6 +1,7 @@
 #include "membrane/packed.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 
 #include "quadrature/gauss.hpp"
@@ -11,13 +12,15 @@ namespace {
 
 Group group_with_rule(int degree, int order) {
   Group g;
+  assert(degree <= max_degree && order <= max_order);
   g.degree = degree;
   g.order = order;
   const auto& rule = quadrature::gauss(order);
   const int width = degree + 1;
   g.value.resize(order * width);
   g.slope.resize(order * width);
-  for (int q = 0; q < order; ++q) spline::bernstein(degree, rule.nodes[q], &g.value[q * width], &g.slope[q * width], nullptr);
+  g.bend.resize(order * width);
+  for (int q = 0; q < order; ++q) spline::bernstein(degree, rule.nodes[q], &g.value[q * width], &g.slope[q * width], &g.bend[q * width]);
   for (int qt = 0; qt < order; ++qt)
     for (int qs = 0; qs < order; ++qs) g.weight.push_back(rule.weights[qt] * rule.weights[qs]);
   return g;
@@ -28,6 +31,7 @@ void append(Group& g, const spline::Space& space, std::span<const int> elements)
   batch.used = static_cast<int>(elements.size());
   for (int l = 0; l < lanes; ++l) batch.elements[l] = elements[std::min(l, batch.used - 1)];
   for (int e : elements) batch.functions = std::max(batch.functions, static_cast<int>(space.elements[e].points.size()));
+  assert(batch.functions <= max_functions);
   batch.points = g.points.size();
   batch.extraction = g.extraction.size();
   g.points.resize(batch.points + batch.functions * lanes, 0);

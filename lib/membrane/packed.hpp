@@ -27,8 +27,9 @@ struct Batch {
 /// All elements of one degree of a list, in ascending order, with the Gauss rule that belongs to the degree.
 struct Group {
   int degree = 3, order = 4;
-  std::vector<double> value, slope;  ///< 1-D Bernstein polynomials and derivatives at the Gauss nodes, [q * (p + 1) + i]
-  std::vector<double> weight;        ///< tensor weights, [q_t * order + q_s]
+  std::vector<double> value, slope,
+      bend;                    ///< 1-D Bernstein polynomials, first and second derivatives at the Gauss nodes, [q * (p + 1) + i]
+  std::vector<double> weight;  ///< tensor weights, [q_t * order + q_s]
   std::vector<Batch> batches;
   std::vector<int> points;
   std::vector<Pack> extraction;
@@ -46,5 +47,9 @@ void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);
 
 /// The transpose of `tangents`: adds sum_q (N_A,s p_q,1 + N_A,t p_q,2) to the rows A of `sum`, lane after lane.
 void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
+
+/// The same up to second derivatives: j[15 q + 3 k + c], k = 0 .. 4 for x_,s x_,t x_,ss x_,st x_,tt.
+void jets(const Group& group, const Batch& batch, const Net& net, Pack* j);
+void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 
 }  // namespace tanktread::membrane

@@ -60,8 +60,9 @@ template <int Degree, int Order>
 struct Rule {
   static constexpr int max_p = Degree ? Degree : max_degree, max_q = Order ? Order : max_order;
   const int p, q;
-  const double *value, *slope;
-  explicit Rule(const Group& g) : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), value(g.value.data()), slope(g.slope.data()) {}
+  const double *value, *slope, *bend;
+  explicit Rule(const Group& g)
+      : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), value(g.value.data()), slope(g.slope.data()), bend(g.bend.data()) {}
 
   // a = (B_s' B_t, B_s B_t') applied to Bezier points, s first
   void evaluate(const Pack* bezier, Pack* a) const {
@@ -109,6 +110,65 @@ struct Rule {
         for (int c = 0; c < 3; ++c) bezier[3 * ((p + 1) * j + i) + c] = sum[c];
       }
   }
+
+  // The same for (B_s' B_t, B_s B_t', B_s'' B_t, B_s' B_t', B_s B_t'').
+  void evaluate_jets(const Pack* bezier, Pack* jet) const {
+    Pack along[max_p + 1][max_q][9];  // value, slope, bend on each row j
+    for (int j = 0; j <= p; ++j)
+      for (int k = 0; k < q; ++k) {
+        Pack sum[9] = {};
+        for (int i = 0; i <= p; ++i)
+          for (int c = 0; c < 3; ++c) {
+            const Pack& x = bezier[3 * ((p + 1) * j + i) + c];
+            sum[c] += value[k * (p + 1) + i] * x;
+            sum[3 + c] += slope[k * (p + 1) + i] * x;
+            sum[6 + c] += bend[k * (p + 1) + i] * x;
+          }
+        for (int c = 0; c < 9; ++c) along[j][k][c] = sum[c];
+      }
+    for (int l = 0; l < q; ++l)
+      for (int k = 0; k < q; ++k) {
+        Pack sum[15] = {};
+        for (int j = 0; j <= p; ++j) {
+          const double v = value[l * (p + 1) + j], d = slope[l * (p + 1) + j], dd = bend[l * (p + 1) + j];
+          for (int c = 0; c < 3; ++c) {
+            sum[c] += v * along[j][k][3 + c];
+            sum[3 + c] += d * along[j][k][c];
+            sum[6 + c] += v * along[j][k][6 + c];
+            sum[9 + c] += d * along[j][k][3 + c];
+            sum[12 + c] += dd * along[j][k][c];
+          }
+        }
+        for (int c = 0; c < 15; ++c) jet[15 * (l * q + k) + c] = sum[c];
+      }
+  }
+
+  void transpose_jets(const Pack* f, Pack* bezier) const {
+    Pack along[max_p + 1][max_q][9];
+    for (int j = 0; j <= p; ++j)
+      for (int k = 0; k < q; ++k) {
+        Pack sum[9] = {};
+        for (int l = 0; l < q; ++l) {
+          const double v = value[l * (p + 1) + j], d = slope[l * (p + 1) + j], dd = bend[l * (p + 1) + j];
+          const Pack* at = f + 15 * (l * q + k);
+          for (int c = 0; c < 3; ++c) {
+            sum[c] += d * at[3 + c] + dd * at[12 + c];
+            sum[3 + c] += v * at[c] + d * at[9 + c];
+            sum[6 + c] += v * at[6 + c];
+          }
+        }
+        for (int c = 0; c < 9; ++c) along[j][k][c] = sum[c];
+      }
+    for (int j = 0; j <= p; ++j)
+      for (int i = 0; i <= p; ++i) {
+        Pack sum[3] = {};
+        for (int k = 0; k < q; ++k)
+          for (int c = 0; c < 3; ++c)
+            sum[c] += value[k * (p + 1) + i] * along[j][k][c] + slope[k * (p + 1) + i] * along[j][k][3 + c] +
+                      bend[k * (p + 1) + i] * along[j][k][6 + c];
+        for (int c = 0; c < 3; ++c) bezier[3 * ((p + 1) * j + i) + c] = sum[c];
+      }
+  }
 };
 
 template <class Use>
@@ -120,28 +180,50 @@ void with_rule(const Group& g, const Use& use) {
   use(Rule<0, 0>(g));
 }
 
-}  // namespace
-
-void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a) {
-  Pack x[3 * max_functions], bezier[3 * max_bernstein];
+void to_bezier(const Group& group, const Batch& batch, const Net& net, Pack* bezier) {
+  Pack x[3 * max_functions];
   gather(group, batch, net, x);
   const Pack* extraction = &group.extraction[batch.extraction];
   const int n_b = group.n_bernstein();
   int b = 0;
   for (; b + 4 <= n_b; b += 4) extract_columns<4>(extraction, x, batch.functions, n_b, b, bezier);
   for (; b < n_b; ++b) extract_columns<1>(extraction, x, batch.functions, n_b, b, bezier);
-  with_rule(group, [&](const auto& rule) { rule.evaluate(bezier, a); });
 }
 
-void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) {
-  Pack f[3 * max_functions], bezier[3 * max_bernstein];
-  with_rule(group, [&](const auto& rule) { rule.transpose(p, bezier); });
+void add_from_bezier(const Group& group, const Batch& batch, const Pack* bezier, Net& sum) {
+  Pack f[3 * max_functions];
   const Pack* extraction = &group.extraction[batch.extraction];
   const int n_b = group.n_bernstein();
   int a = 0;
   for (; a + 4 <= batch.functions; a += 4) extract_rows<4>(extraction, bezier, n_b, a, f);
   for (; a < batch.functions; ++a) extract_rows<1>(extraction, bezier, n_b, a, f);
   scatter(group, batch, f, sum);
+}
+
+}  // namespace
+
+void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a) {
+  Pack bezier[3 * max_bernstein];
+  to_bezier(group, batch, net, bezier);
+  with_rule(group, [&](const auto& rule) { rule.evaluate(bezier, a); });
+}
+
+void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) {
+  Pack bezier[3 * max_bernstein];
+  with_rule(group, [&](const auto& rule) { rule.transpose(p, bezier); });
+  add_from_bezier(group, batch, bezier, sum);
+}
+
+void jets(const Group& group, const Batch& batch, const Net& net, Pack* j) {
+  Pack bezier[3 * max_bernstein];
+  to_bezier(group, batch, net, bezier);
+  with_rule(group, [&](const auto& rule) { rule.evaluate_jets(bezier, j); });
+}
+
+void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) {
+  Pack bezier[3 * max_bernstein];
+  with_rule(group, [&](const auto& rule) { rule.transpose_jets(p, bezier); });
+  add_from_bezier(group, batch, bezier, sum);
 }
 
 }  // namespace tanktread::membrane

@@ -1,11 +1,30 @@
 #include "membrane/part.hpp"
 
-namespace tanktread::membrane {
+#include "membrane/bending_kernel.hpp"
 
-Part::Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order)
+namespace tanktread::membrane {
+namespace {
+
+std::vector<Pack> curvature_of(const Group& group, const Net& net) {
+  std::vector<Pack> curvature(group.n_gauss() * group.batches.size());
+  for (std::size_t k = 0; k < group.batches.size(); ++k) {
+    Pack j[15 * max_order * max_order];
+    jets(group, group.batches[k], net, j);
+    curvatures(group.n_gauss(), j, &curvature[k * group.n_gauss()]);
+  }
+  return curvature;
+}
+
+}  // namespace
+
+Part::Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Bending& bending)
     : elements(list.begin(), list.end()), groups(pack(space, list, order)) {
   Pack a[6 * max_order * max_order];
   for (const Group& group : groups) {
+    if (bending.modulus > 0) {
+      const std::size_t n = group.n_gauss() * group.batches.size();
+      relaxed_curvature.push_back(bending.curved_when_relaxed ? curvature_of(group, unstressed) : std::vector<Pack>(n, Pack{}));
+    }
     std::vector<ReferencePoint>& points = reference.emplace_back(group.n_gauss() * group.batches.size());
     for (std::size_t k = 0; k < group.batches.size(); ++k) {
       const Batch& batch = group.batches[k];

@@ -5,45 +5,28 @@
 
 #include <Eigen/Geometry>
 
+#include "membrane/dual.hpp"
 #include "membrane/membrane.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::membrane {
 namespace {
 
-/// A number with its derivative along one parameter.
-struct Dual {
-  double value = 0, slope = 0;
-  Dual() = default;
-  Dual(double v, double d = 0) : value(v), slope(d) {}
-};
-Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
-Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
-Dual operator-(const Dual& a) { return {-a.value, -a.slope}; }
-Dual operator*(const Dual& a, const Dual& b) { return {a.value * b.value, a.slope * b.value + a.value * b.slope}; }
-Dual operator/(const Dual& a, const Dual& b) {
-  const double ratio = a.value / b.value;
-  return {ratio, (a.slope - ratio * b.slope) / b.value};
-}
-Dual sqrt(const Dual& a) {
-  const double root = std::sqrt(a.value);
-  return {root, a.slope / (2 * root)};
-}
-
-using Vector = std::array<Dual, 3>;
-Vector with_slope(const Vec3& v, const Vec3& d) { return {Dual{v[0], d[0]}, Dual{v[1], d[1]}, Dual{v[2], d[2]}}; }
-Dual dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+using Number = Dual<double>;
+using Vector = std::array<Number, 3>;
+Vector with_slope(const Vec3& v, const Vec3& d) { return {Number{v[0], d[0]}, Number{v[1], d[1]}, Number{v[2], d[2]}}; }
+Number dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Component `row` of sqrt(g) tau^{row b} g_b, a vector per local coordinate; X_,s X_,t in `r`, x_,s x_,t in `a`.
 template <class AnyLaw>
 Vector flux(const AnyLaw& law, const std::array<Vector, 2>& r, const std::array<Vector, 2>& a, int row) {
-  const Dual r11 = dot(r[0], r[0]), r12 = dot(r[0], r[1]), r22 = dot(r[1], r[1]), inverse = 1.0 / (r11 * r22 - r12 * r12);
-  const Dual a11 = dot(a[0], a[0]), a12 = dot(a[0], a[1]), a22 = dot(a[1], a[1]);
-  const Dual i1 = (r22 * a11 - 2.0 * r12 * a12 + r11 * a22) * inverse - 2.0, i2 = (a11 * a22 - a12 * a12) * inverse - 1.0;
-  const Response<Dual> psi = law.response(i1, i2);
-  const Dual scale = 2.0 * sqrt(inverse);  // 2 sqrt|G| / |G|, with G^ab and |g| g^ab in cofactors
-  const Dual same = scale * (psi.psi1 * (row == 0 ? r22 : r11) + psi.psi2 * (row == 0 ? a22 : a11));
-  const Dual mixed = scale * (psi.psi1 * (-r12) + psi.psi2 * (-a12));
+  const Number r11 = dot(r[0], r[0]), r12 = dot(r[0], r[1]), r22 = dot(r[1], r[1]), inverse = 1.0 / (r11 * r22 - r12 * r12);
+  const Number a11 = dot(a[0], a[0]), a12 = dot(a[0], a[1]), a22 = dot(a[1], a[1]);
+  const Number i1 = (r22 * a11 - 2.0 * r12 * a12 + r11 * a22) * inverse - 2.0, i2 = (a11 * a22 - a12 * a12) * inverse - 1.0;
+  const Response<Number> psi = law.response(i1, i2);
+  const Number scale = 2.0 * sqrt(inverse);  // 2 sqrt|G| / |G|, with G^ab and |g| g^ab in cofactors
+  const Number same = scale * (psi.psi1 * (row == 0 ? r22 : r11) + psi.psi2 * (row == 0 ? a22 : a11));
+  const Number mixed = scale * (psi.psi1 * (-r12) + psi.psi2 * (-a12));
   Vector sum;
   for (int c = 0; c < 3; ++c) sum[c] = same * a[row][c] + mixed * a[1 - row][c];
   return sum;

@@ -1,3 +1,4 @@
+#include "membrane/bending_kernel.hpp"
 #include "membrane/membrane.hpp"
 #include "membrane/part.hpp"
 
@@ -6,6 +7,7 @@ namespace tanktread::membrane {
 struct Tangent::Points {
   std::shared_ptr<const Part> part;
   std::vector<std::vector<TangentPoint>> of_group;
+  std::vector<std::vector<Pack>> jets;  // of x; empty without bending
 };
 
 Tangent::Tangent(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
@@ -22,6 +24,12 @@ void Tangent::update(const Net& x, std::span<const int> elements) {
     tangents(group, batch, x, a);
     tangent_points(membrane_->law(), group.n_gauss(), reference, a, &points_->of_group[g][first]);
   });
+  if (membrane_->bending().modulus == 0) return;
+  points_->jets.resize(part.groups.size());
+  for (std::size_t g = 0; g < part.groups.size(); ++g) points_->jets[g].resize(15 * part.reference[g].size());
+  part.each_batch([&](const Group& group, const Batch& batch, const ReferencePoint*, std::size_t first, std::size_t g) {
+    jets(group, batch, x, &points_->jets[g][15 * first]);
+  });
 }
 
 void Tangent::apply(const Net& u, Net& hu) const {
@@ -31,6 +39,14 @@ void Tangent::apply(const Net& u, Net& hu) const {
     tangents(group, batch, u, gradient);
     membrane::apply(group.n_gauss(), &points_->of_group[g][first], gradient, p);
     add_transpose(group, batch, p, hu);
+  });
+  if (points_->jets.empty()) return;
+  points_->part->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint*, std::size_t first, std::size_t g) {
+    Pack gradient[15 * max_order * max_order], p[15 * max_order * max_order];
+    jets(group, batch, u, gradient);
+    bending_apply(membrane_->bending().modulus, group.n_gauss(), group.weight.data(), &points_->part->relaxed_curvature[g][first],
+                  &points_->jets[g][15 * first], gradient, p);
+    add_jet_transpose(group, batch, p, hu);
   });
 }
 

@@ -36,6 +36,18 @@ TEST(StrongForm, TestedWithTheSplineFunctionsIsTheWeakForm) {
   }
 }
 
+/// div_s(sigma P) = -2 sigma chi n: the strong form of an interface is its curvature form, on any surface.
+TEST(StrongForm, OfASurfaceTensionIsTheCurvatureTimesTheNormal) {
+  const Sphere& s = sphere(4);
+  const Net x = deformed(s.net);
+  const Membrane membrane(s.space, s.net, SurfaceTension{1.3});
+  for (int e : s.elements) {
+    const spline::Site site{e, 0.3, 0.8};
+    const Vec3 expected = 2 * 1.3 * surface::mean_curvature(s.space, x, site) * surface::point(s.space, x, site).n;
+    EXPECT_LT((membrane.strong_load(x, site) - expected).norm(), 1e-11 * expected.norm() + 1e-12);  // round-off
+  }
+}
+
 /// Of a sphere inflated by 1.2: root mean square error of the load at the Greville points over the closed form 2 T/R n.
 double error_at_greville_points(int n) {
   const Sphere& s = sphere(n);

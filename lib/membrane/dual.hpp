@@ -1,0 +1,63 @@
+#pragma once
+// Numbers that carry their derivative along one direction.
+
+#include "membrane/pack.hpp"
+
+namespace tanktread::membrane {
+
+/// A value and its slope; `Number` is double or a Pack.
+template <class Number>
+struct Dual {
+  Number value, slope;
+};
+
+template <class N>
+Dual<N> operator+(const Dual<N>& a, const Dual<N>& b) {
+  return {a.value + b.value, a.slope + b.slope};
+}
+template <class N>
+Dual<N> operator-(const Dual<N>& a, const Dual<N>& b) {
+  return {a.value - b.value, a.slope - b.slope};
+}
+template <class N>
+Dual<N> operator*(const Dual<N>& a, const Dual<N>& b) {
+  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+}
+template <class N>
+Dual<N> operator/(const Dual<N>& a, const Dual<N>& b) {
+  const N ratio = a.value / b.value;
+  return {ratio, (a.slope - ratio * b.slope) / b.value};
+}
+template <class N>
+Dual<N> operator-(const Dual<N>& a) {
+  return {-a.value, -a.slope};
+}
+template <class N>
+Dual<N> operator+(const Dual<N>& a, double b) {
+  return {a.value + b, a.slope};
+}
+template <class N>
+Dual<N> operator+(double a, const Dual<N>& b) {
+  return b + a;
+}
+template <class N>
+Dual<N> operator-(const Dual<N>& a, double b) {
+  return {a.value - b, a.slope};
+}
+inline Dual<Pack> operator-(const Dual<Pack>& a, const Pack& b) { return {a.value - b, a.slope}; }
+template <class N>
+Dual<N> operator*(double a, const Dual<N>& b) {
+  return {a * b.value, a * b.slope};
+}
+template <class N>
+Dual<N> operator/(double a, const Dual<N>& b) {
+  const N ratio = a / b.value;
+  return {ratio, -ratio * b.slope / b.value};
+}
+template <class N>
+Dual<N> sqrt(const Dual<N>& a) {
+  const N root = sqrt(a.value);
+  return {root, 0.5 * a.slope / root};
+}
+
+}  // namespace tanktread::membrane
