@@ -31,15 +31,14 @@ std::size_t terminal_width(std::FILE* out) {
 
 }  // namespace
 
-std::string progress_line(const Moment& moment, double begin, double end, double seconds, bool bar) {
-  constexpr int kWidth = 20;
+std::string progress_line(const Moment& moment, double begin, double end, double seconds, int bar) {
   const double done = share_done(moment.time, begin, end);
   std::string line;
-  if (bar) {
-    const auto filled = static_cast<std::size_t>(done * kWidth);
-    line = "[" + std::string(filled, '#') + std::string(kWidth - filled, '-') + "] ";
+  if (bar > 0) {
+    const auto filled = static_cast<std::size_t>(done * bar);
+    line = "[" + std::string(filled, '#') + std::string(static_cast<std::size_t>(bar) - filled, '-') + "] ";
   }
-  line += format("%3.0f %%  t %.4g/%.4g  step %d  %d iteration%s  D %.5f", std::floor(100 * done), moment.time, end, moment.step,
+  line += format("%3.0f %%  t %.4g/%.4g  step %d  %d iteration%s  D %.4f", std::floor(100 * done), moment.time, end, moment.step,
                  moment.iterations, moment.iterations == 1 ? "" : "s", moment.deformation);
   if (done > 0 && done < 1) line += "  " + duration(seconds * (1 - done) / done) + " left";
   return line;
@@ -65,9 +64,10 @@ bool Progress::due(const Moment& moment, double now) const {
 }
 
 void Progress::print(const Moment& moment, double now) {
-  std::string line = progress_line(moment, begin_, end_, now, manner_ == Manner::bar);
+  const std::size_t width = manner_ == Manner::bar ? terminal_width(out_) : 0;
+  std::string line = progress_line(moment, begin_, end_, now, width == 0 ? 0 : width < 100 ? 8 : 24);
   if (manner_ == Manner::bar) {
-    line.resize(std::min(line.size(), terminal_width(out_) - 1));
+    line.resize(std::min(line.size(), width - 1));
     std::fprintf(out_, "\r\033[K%s", line.c_str());
   } else {
     std::fprintf(out_, "%s\n", line.c_str());

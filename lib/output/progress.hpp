@@ -45,9 +45,9 @@ class Progress {
   bool pending_ = false, open_ = false;
 };
 
-/// The line of a moment, `seconds` after the run began (or was resumed) at simulated time `begin`, without line end:
-/// "[#########-----------]  45 %  t 3.375/7.5  step 24  9 iterations  D 0.39871  12 s left".
-std::string progress_line(const Moment& moment, double begin, double end, double seconds, bool bar);
+/// The line of a moment, `seconds` after the run began (or was resumed) at simulated time `begin`, without line end, with a bar of so
+/// many characters: "[###-----]  45 %  t 3.375/7.5  step 24  9 iterations  D 0.3987  12 s left".
+std::string progress_line(const Moment& moment, double begin, double end, double seconds, int bar);
 
 /// The closing table: seconds and share of each phase, work counts, where the results are.
 std::string closing_table(const Phases& phases, const Entries<long>& counts, const std::filesystem::path& results);

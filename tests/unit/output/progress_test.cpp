@@ -8,14 +8,14 @@ namespace tanktread::output {
 namespace {
 
 TEST(Progress, ALineTellsTimeStepIterationsDeformationAndTimeLeft) {
-  EXPECT_EQ(progress_line({3, 24, 9, 0.39871}, 0, 7.5, 12, true),
-            "[########------------]  40 %  t 3/7.5  step 24  9 iterations  D 0.39871  18 s left");
-  EXPECT_EQ(progress_line({7.5, 60, 1, 0.4}, 0, 7.5, 12, false), "100 %  t 7.5/7.5  step 60  1 iteration  D 0.40000");
+  EXPECT_EQ(progress_line({3, 24, 9, 0.39871}, 0, 7.5, 12, 20),
+            "[########------------]  40 %  t 3/7.5  step 24  9 iterations  D 0.3987  18 s left");
+  EXPECT_EQ(progress_line({7.5, 60, 1, 0.4}, 0, 7.5, 12, 0), "100 %  t 7.5/7.5  step 60  1 iteration  D 0.4000");
 }
 
 TEST(Progress, AResumedRunCountsFromItsOwnBegin) {
-  EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, false).find(" 50 %"), std::string::npos);
-  EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, false).find("10 s left"), std::string::npos);
+  EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find(" 50 %"), std::string::npos);
+  EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find("10 s left"), std::string::npos);
 }
 
 /// What a run of many short steps leaves in a file.
@@ -30,7 +30,7 @@ std::string said(bool quiet) {
   return contents(scratch / "log");
 }
 
-TEST(Progress, WithoutATerminalAShortRunIsOnePlainLine) { EXPECT_EQ(said(false), "100 %  t 1/1  step 1000  3 iterations  D 0.10000\n"); }
+TEST(Progress, WithoutATerminalAShortRunIsOnePlainLine) { EXPECT_EQ(said(false), "100 %  t 1/1  step 1000  3 iterations  D 0.1000\n"); }
 
 TEST(Progress, QuietIsSilent) { EXPECT_EQ(said(true), ""); }
 
