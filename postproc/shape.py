@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The deformed surface with its load, and its section in the shear plane with the axis of inertia."""
+"""The deformed surface with its load, and its section in the x1 x3 plane with the axis of inertia."""
 
 import argparse
 import sys
@@ -144,7 +144,7 @@ def draw_sections(axis, runs, shots):
     axis.autoscale_view()
     axis.set_xlabel("x₁")
     axis.set_ylabel("x₃")
-    axis.set_title("section in the shear plane")
+    axis.set_title("section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
