@@ -12,7 +12,7 @@ namespace tanktread::quadrature {
 
 /// Sum of the semi-axes of the ellipse with foci -1 and 1 through z = re + i im: n Gauss points leave an error of rho^(-2 n).
 inline double ellipse(double re, double im) {
-  const double half = (std::hypot(re - 1, im) + std::hypot(re + 1, im)) / 2;
+  const double square = im * im, half = (std::sqrt((re - 1) * (re - 1) + square) + std::sqrt((re + 1) * (re + 1) + square)) / 2;
   return half + std::sqrt(std::max(0., half * half - 1));
 }
 

@@ -1,6 +1,7 @@
 #include "quadrature/polar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,8 @@ namespace tanktread::quadrature {
 namespace {
 
 using Vec2 = Eigen::Vector2d;
+
+constexpr double step = std::numbers::pi / 12;
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -30,15 +33,26 @@ void each_triangle(double s, double t, const Use& use) {
 
 }  // namespace
 
-Shear Shear::binned() const {
-  constexpr double step = std::numbers::pi / 12;
-  const double log2 = std::clamp(std::round(2 * std::log2(ratio)), -12., 12.);
-  return {std::exp2(log2 / 2), step * std::clamp(std::round(angle / step), 2., 10.)};
+double Shear::ratio() const { return std::exp2(0.5 * doublings); }
+
+double Shear::angle() const { return steps * step; }
+
+Shear shear(double g_ss, double g_st, double g_tt) {
+  static const auto borders = [] {
+    std::array<double, 10> cosine;
+    for (int k = 0; k < 10; ++k) cosine[k] = std::cos((k + 1.5) * step);
+    return cosine;
+  }();
+  const double square = g_tt / g_ss, cosine = g_st / std::sqrt(g_ss * g_tt);
+  if (!(square > 0 && std::isfinite(square) && std::isfinite(cosine))) return {};
+  int steps = 1;
+  for (const double border : borders) steps += cosine < border;
+  return {std::clamp(std::ilogb(square * std::numbers::sqrt2), -24, 24), steps};
 }
 
-Rule polar(double s, double t, const Shear& shear, int radial, double tolerance) {
+Rule polar(double s, double t, Shear shear, int radial, double tolerance) {
   Eigen::Matrix2d metric;
-  metric << 1, shear.ratio * std::cos(shear.angle), 0, shear.ratio * std::sin(shear.angle);
+  metric << 1, shear.ratio() * std::cos(shear.angle()), 0, shear.ratio() * std::sin(shear.angle());
   const GaussRule& along = gauss(radial);
   Rule rule;
   each_triangle(s, t, [&](const Vec2& a, const Vec2& b) {
@@ -46,7 +60,7 @@ Rule polar(double s, double t, const Shear& shear, int radial, double tolerance)
     const double tau_a = ma.dot(side), tau_b = mb.dot(side), h = cross(ma, side);
     const double mu_a = std::asinh(tau_a / h), range = std::asinh(tau_b / h) - mu_a;
     const double rho = ellipse(0, std::numbers::pi / range);
-    const GaussRule& around = gauss(1 + order_for(tolerance, rho));
+    const GaussRule& around = gauss(1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho));
     for (int j = 0; j < around.size(); ++j) {
       const double mu = mu_a + range * around.nodes[j];
       const Vec2 ray = a + (h * std::sinh(mu) - tau_a) / (tau_b - tau_a) * (b - a);

@@ -46,9 +46,9 @@ void far_sum(const PointForces& forces, const double* target, double* u) {
   }
 }
 
-void node_sum(const PointForces& forces, int first, int count, const double* x0, double* u) {
+void node_sum(const PointForces& forces, const double* x0, double* u) {
   double ux = 0, uy = 0, uz = 0;
-  for (int k = first; k < first + count; ++k) {
+  for (int k = 0; k < forces.n; ++k) {
     const double rx = forces.x[k] - x0[0], ry = forces.y[k] - x0[1], rz = forces.z[k] - x0[2];
     const double square = rx * rx + ry * ry + rz * rz, inverse = square > 0 ? 1 / std::sqrt(square) : 0;
     const double along = (rx * forces.fx[k] + ry * forces.fy[k] + rz * forces.fz[k]) * (inverse * inverse);

@@ -7,6 +7,8 @@ namespace tanktread::stokes {
 struct PointForces {
   int n = 0;
   const double *x = nullptr, *y = nullptr, *z = nullptr, *fx = nullptr, *fy = nullptr, *fz = nullptr;
+
+  PointForces part(int first, int count) const { return {count, x + first, y + first, z + first, fx + first, fy + first, fz + first}; }
 };
 
 /// Targets that share one pass over the nodes.
@@ -16,7 +18,7 @@ constexpr int far_block = 16;
 /// target[2 far_block + l]; u alike. Each target's sum runs over the nodes in their order. A node at the target counts as nothing.
 void far_sum(const PointForces& forces, const double* target, double* u);
 
-/// u[3] = sum over the nodes first .. first + count - 1 of the same, for one target x0[3]. What a pair with a better rule takes back.
-void node_sum(const PointForces& forces, int first, int count, const double* x0, double* u);
+/// The same for one target x0[3], u[3]: what a pair with a better rule takes back.
+void node_sum(const PointForces& forces, const double* x0, double* u);
 
 }  // namespace tanktread::stokes

@@ -10,6 +10,7 @@
 #include "quadrature/graded.hpp"
 #include "stokes/panels.hpp"
 #include "stokes/point_table.hpp"
+#include "stokes/self_field.hpp"
 
 namespace tanktread::stokes {
 
@@ -22,8 +23,8 @@ class NearField {
   /// Takes the shape from the Bezier points of all panels; they must outlive the calls below.
   void update(const std::vector<double>& bezier);
 
-  /// Panels whose far rule misses the tolerance at the target, ascending.
-  void list(const Vec3& target, std::vector<int>& near);
+  /// Panels whose far rule misses the tolerance at the target, ascending, but for those of `own`, which the target lies on.
+  void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
 
   /// The rule for one of them, as a table that stays valid until the next call.
   const PointTable& rule(int panel, const Vec3& target);
@@ -33,7 +34,7 @@ class NearField {
     quadrature::Patch flat;
     double area = 0, bulge = 0;
   };
-  int needed_order(const View& view, const quadrature::Sight& seen) const;
+  bool far_enough(const View& view, int order, const Vec3& target) const;
 
   const Panels& panels_;
   double tolerance_, allowed_ = 0;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "quadrature/options.hpp"
@@ -28,9 +29,8 @@ class SelfField {
  public:
   SelfField(const spline::Space& space, const quadrature::Options& options);
 
-  /// The pairs of collocation point i, first .. last - 1.
-  SelfPair* begin(int i) { return &pairs_[first_[i]]; }
-  SelfPair* end(int i) { return begin(i) + (first_[i + 1] - first_[i]); }
+  /// The pairs of collocation point i.
+  std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
   /// Gives the pair the rule for the panel's present metric. True when the rule is another one than before.
   bool choose(SelfPair& pair, int degree, const double* bezier);
@@ -39,7 +39,7 @@ class SelfField {
   Vec3 point(int i, const Panels& panels, const std::vector<double>& bezier) const;
 
  private:
-  const PointTable& made(const SelfPair& pair, int degree, const quadrature::Shear& shear);
+  const PointTable& made(const SelfPair& pair, int degree, quadrature::Shear shear);
 
   quadrature::Options options_;
   int radial_;

@@ -75,10 +75,10 @@ void SingleLayer::add_own_rules(int target, const Vec3& at, Measure measure, Rea
     add(e, table, point_weights_.data());
     evaluations_.near += table.points;
   }
-  for (SelfPair* pair = self_field_.begin(target); pair != self_field_.end(target); ++pair) {
-    const Pack* weights = self_weights(*pair, measure);
-    add(pair->panel, *pair->table, weights);
-    evaluations_.self += pair->table->points;
+  for (SelfPair& pair : self_field_[target]) {
+    const Pack* weights = self_weights(pair, measure);
+    add(pair.panel, *pair.table, weights);
+    evaluations_.self += pair.table->points;
   }
 }
 
@@ -102,7 +102,7 @@ void SingleLayer::assemble_rows(const Net& x, Measure measure, std::span<const i
       const int i = targets[first + l];
       add_own_rules(i, at_[first + l], measure, &sums[l]);
       for (const int e : near_) skip[e] |= 1u << l;
-      for (const SelfPair* pair = self_field_.begin(i); pair != self_field_.end(i); ++pair) skip[pair->panel] |= 1u << l;
+      for (const SelfPair& pair : self_field_[i]) skip[pair.panel] |= 1u << l;
     }
     for (int e = 0; e < panels_.size(); ++e) {
       const Panel& p = panels_[e];

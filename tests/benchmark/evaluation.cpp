@@ -1,0 +1,102 @@
+// Kernel evaluations per second: the bare far-field sum, and the single layer at n = 6, 12, 24 split into its parts, each relative to the
+// bare sum of the same run.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "spline/extraction.hpp"
+#include "stokes/far_kernel.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/shapes.hpp"
+
+namespace {
+
+using namespace tanktread;
+
+/// Seconds of processor time: a busy machine does not count.
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Interactions a second of the bare sum, best of the runs so far: what everything below is held against.
+double bare_rate = 0;
+
+void bare_far_sum(benchmark::State& state) {
+  const int n = 864 * 16, blocks = 54;
+  std::vector<double> forces(static_cast<std::size_t>(6) * n), targets(3 * stokes::far_block * blocks), u(3 * stokes::far_block);
+  for (std::size_t k = 0; k < forces.size(); ++k) forces[k] = std::sin(1. + static_cast<double>(k));
+  for (std::size_t k = 0; k < targets.size(); ++k) targets[k] = std::cos(1. + static_cast<double>(k));
+  const double* f = forces.data();
+  const double pairs = static_cast<double>(n) * stokes::far_block * blocks;
+  for (auto _ : state) {
+    const double start = now();
+    for (int b = 0; b < blocks; ++b) {
+      stokes::far_sum({n, f, f + n, f + 2 * n, f + 3 * n, f + 4 * n, f + 5 * n}, &targets[3 * stokes::far_block * b], u.data());
+      benchmark::DoNotOptimize(u.data());
+    }
+    bare_rate = std::max(bare_rate, pairs / (now() - start));
+  }
+  state.counters["interactions/s"] = bare_rate;
+}
+BENCHMARK(bare_far_sum)->Unit(benchmark::kMillisecond)->Iterations(30);
+
+struct Scene {
+  spline::Space space;
+  Net unstressed, x, f;
+  std::vector<int> all;
+
+  explicit Scene(int n) {
+    const spline::TMesh mesh = spline::cube(n);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    unstressed = surface::unit_sphere(mesh, fit);
+    x = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1], 0.75 * p[2]); });
+    f = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(p[2], 0.1 * p[1], p[0]); });
+    all.resize(space.n_points);
+    std::iota(all.begin(), all.end(), 0);
+  }
+};
+
+/// Shares of the time of an apply, its far rate over the bare rate, and the whole over its own far sum.
+void single_layer(benchmark::State& state) {
+  const Scene scene(static_cast<int>(state.range(0)));
+  stokes::SingleLayer layer(scene.space, {});
+  layer.set_reference(scene.unstressed);
+  Net u = Net::Zero(scene.space.n_points, 3);
+  layer.apply(scene.x, scene.f, stokes::Measure::reference, scene.all, u);
+  std::vector<double> best(4, 1e9);
+  const char* const parts[] = {"setup", "far", "near", "self"};
+  for (auto _ : state) {
+    double before[4];
+    for (int k = 0; k < 4; ++k) before[k] = layer.phases().seconds(parts[k]);
+    layer.apply(scene.x, scene.f, stokes::Measure::reference, scene.all, u);
+    for (int k = 0; k < 4; ++k) best[k] = std::min(best[k], layer.phases().seconds(parts[k]) - before[k]);
+  }
+  for (int k = 0; k < 4; ++k) state.counters[std::string(parts[k]) + " ms"] = 1e3 * best[k];
+  const double pairs = static_cast<double>(scene.space.n_points) * layer.n_nodes();
+  state.counters["far rate / bare"] = pairs / best[1] / bare_rate;
+  state.counters["all / far"] = std::accumulate(best.begin(), best.end(), 0.) / best[1];
+}
+BENCHMARK(single_layer)->Arg(6)->Arg(12)->Arg(24)->Unit(benchmark::kMillisecond)->Iterations(30);
+
+/// The frozen rows of the Jacobian, relative to one apply at the bare rate.
+void assembled_rows(benchmark::State& state) {
+  const Scene scene(static_cast<int>(state.range(0)));
+  stokes::SingleLayer layer(scene.space, {});
+  layer.set_reference(scene.unstressed);
+  stokes::DenseRows rows;
+  double best = 1e9;
+  for (auto _ : state) {
+    const double start = now();
+    layer.assemble(scene.x, stokes::Measure::reference, scene.all, rows);
+    best = std::min(best, now() - start);
+  }
+  state.counters["bare far sums"] = best * bare_rate / (static_cast<double>(scene.space.n_points) * layer.n_nodes());
+}
+BENCHMARK(assembled_rows)->Arg(6)->Arg(12)->Unit(benchmark::kMillisecond)->Iterations(10);
+
+}  // namespace

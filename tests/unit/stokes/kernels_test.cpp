@@ -1,0 +1,82 @@
+#include "stokes/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "stokes/far_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+const Vec3 r(0.3, -0.7, 1.1);
+
+TEST(Stokeslet, IsSymmetricAndFallsWithTheDistance) {
+  EXPECT_NEAR((stokeslet(r) - stokeslet(r).transpose()).norm(), 0, 1e-16);
+  EXPECT_NEAR((stokeslet(2 * r) - stokeslet(r) / 2).norm(), 0, 1e-15);
+  EXPECT_NEAR((stokeslet(r) * r - 2 * r / r.norm()).norm(), 0, 1e-15);  // along the force: 2/r
+}
+
+TEST(Stokeslet, IsFreeOfDivergence) {
+  const double h = 1e-5;
+  Vec3 divergence = Vec3::Zero();
+  for (int i = 0; i < 3; ++i)
+    divergence += (stokeslet(r + h * Vec3::Unit(i)).row(i) - stokeslet(r - h * Vec3::Unit(i)).row(i)).transpose() / (2 * h);
+  EXPECT_LT(divergence.norm(), 1e-9);  // central differences: h^2 and round-off over h
+}
+
+// sigma_ik of the velocity G_ij g_j (viscosity 1) is T_ijk g_j; its pressure is 2 r.g / r^3.
+TEST(Stresslet, IsTheStressOfTheStokeslet) {
+  const double h = 1e-5;
+  const Vec3 g(0.2, 0.9, -0.4), n = Vec3(1, 2, -2) / 3;
+  Mat3 gradient;  // d u_i / d x_k
+  for (int k = 0; k < 3; ++k) gradient.col(k) = (stokeslet(r + h * Vec3::Unit(k)) - stokeslet(r - h * Vec3::Unit(k))) * g / (2 * h);
+  const double pressure = 2 * r.dot(g) / std::pow(r.norm(), 3);
+  const Vec3 traction = -pressure * n + (gradient + gradient.transpose()) * n;
+  EXPECT_LT((stresslet(r, n) * g - traction).norm(), 1e-8);
+}
+
+struct Forces {
+  std::vector<double> values;
+  PointForces view;
+
+  explicit Forces(int n) : values(static_cast<std::size_t>(6) * n) {
+    std::mt19937 random(1);
+    for (double& v : values) v = std::uniform_real_distribution<>(-1, 1)(random);
+    const double* v = values.data();
+    view = {n, v, v + n, v + 2 * n, v + 3 * n, v + 4 * n, v + 5 * n};
+  }
+  Vec3 position(int k) const { return {view.x[k], view.y[k], view.z[k]}; }
+  Vec3 force(int k) const { return {view.fx[k], view.fy[k], view.fz[k]}; }
+};
+
+TEST(FarSum, IsTheSumOfStokeslets) {
+  const Forces forces(37);
+  double target[3 * far_block], u[3 * far_block];
+  for (int k = 0; k < 3 * far_block; ++k) target[k] = std::sin(k);
+  far_sum(forces.view, target, u);
+  for (int l = 0; l < far_block; ++l) {
+    const Vec3 x0(target[l], target[far_block + l], target[2 * far_block + l]);
+    Vec3 sum = Vec3::Zero(), one;
+    for (int k = 0; k < forces.view.n; ++k) sum += stokeslet(forces.position(k) - x0) * forces.force(k);
+    EXPECT_LT((Vec3(u[l], u[far_block + l], u[2 * far_block + l]) - sum).norm(), 1e-12 * sum.norm());
+    node_sum(forces.view, x0.data(), one.data());
+    EXPECT_LT((one - sum).norm(), 1e-12 * sum.norm());
+  }
+}
+
+TEST(FarSum, TakesNothingFromANodeAtTheTarget) {
+  Forces forces(5);
+  double target[3 * far_block], u[3 * far_block];
+  for (int l = 0; l < far_block; ++l)
+    for (int c = 0; c < 3; ++c) target[far_block * c + l] = forces.position(2)[c];
+  far_sum(forces.view, target, u);
+  Vec3 sum = Vec3::Zero();
+  for (const int k : {0, 1, 3, 4}) sum += stokeslet(forces.position(k) - forces.position(2)) * forces.force(k);
+  EXPECT_LT((Vec3(u[0], u[far_block], u[2 * far_block]) - sum).norm(), 1e-12 * sum.norm());
+}
+
+}  // namespace
+}  // namespace tanktread::stokes

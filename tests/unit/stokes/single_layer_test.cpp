@@ -1,0 +1,115 @@
+#include "stokes/single_layer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+#include "spline/extraction.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// A deformed surface of the smallest cube mesh, and a load on it.
+struct Scene {
+  spline::Space space;
+  Net unstressed, x, f;
+  std::vector<int> all;
+
+  Scene() {
+    const spline::TMesh mesh = spline::cube(3);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    unstressed = surface::unit_sphere(mesh, fit);
+    x = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1] + 0.1 * p[0] * p[0], 0.75 * p[2]); });
+    f = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(p[1] - 0.3, p[2] * p[0], p[0] * p[0]); });
+    all.resize(space.n_points);
+    std::iota(all.begin(), all.end(), 0);
+  }
+
+  Net apply(const Net& at, const Net& load, const quadrature::Options& options, Measure measure = Measure::current) const {
+    SingleLayer layer(space, options);
+    layer.set_reference(unstressed);
+    Net u = Net::Zero(space.n_points, 3);
+    layer.apply(at, load, measure, all, u);
+    return u;
+  }
+};
+
+const Scene& scene() {
+  static const Scene one;
+  return one;
+}
+
+double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
+
+TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
+  for (const char* rule : {"adaptive", "fixed"}) {
+    for (const Measure measure : {Measure::reference, Measure::current}) {
+      SingleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
+      layer.set_reference(scene().unstressed);
+      Net u = Net::Zero(scene().space.n_points, 3), rows = u;
+      layer.apply(scene().x, scene().f, measure, scene().all, u);
+      Rows<double> a;
+      layer.assemble(scene().x, measure, scene().all, a);
+      rows.reshaped<Eigen::RowMajor>() = a * scene().f.reshaped<Eigen::RowMajor>();
+      EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << rule;  // round-off of sums in another order
+      DenseRows single;
+      layer.assemble(scene().x, measure, scene().all, single);
+      EXPECT_LT((single.cast<double>() - a).cwiseAbs().maxCoeff(), 1e-5 * a.cwiseAbs().maxCoeff()) << rule;  // single precision
+    }
+  }
+}
+
+TEST(SingleLayer, DoesNotDependOnHowTargetsAreSplit) {
+  SingleLayer layer(scene().space, {.tolerance = 1e-6});
+  layer.set_reference(scene().unstressed);
+  Net whole = Net::Zero(scene().space.n_points, 3), parts = whole;
+  layer.apply(scene().x, scene().f, Measure::reference, scene().all, whole);
+  std::vector<int> odd, even;
+  for (const int i : scene().all) (i % 2 ? odd : even).push_back(i);
+  layer.apply(scene().x, scene().f, Measure::reference, odd, parts);
+  layer.apply(scene().x, scene().f, Measure::reference, even, parts);
+  EXPECT_EQ(whole, parts);  // to the last bit
+}
+
+TEST(SingleLayer, ForgetsEarlierShapes) {
+  SingleLayer used(scene().space, {.tolerance = 1e-6}), fresh(scene().space, {.tolerance = 1e-6});
+  used.set_reference(scene().unstressed), fresh.set_reference(scene().unstressed);
+  Net u = Net::Zero(scene().space.n_points, 3), v = u;
+  for (const Net& x : {scene().unstressed, Net(2 * scene().x), scene().x}) used.apply(x, scene().f, Measure::reference, scene().all, u);
+  fresh.apply(scene().x, scene().f, Measure::reference, scene().all, v);
+  EXPECT_EQ(u, v);  // a resumed run goes on to the last bit
+}
+
+TEST(SingleLayer, MovesAndTurnsWithTheSurface) {
+  const Mat3 turn = Eigen::AngleAxisd(0.9, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Net u = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
+  const Net moved = scene().apply((scene().x * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 2), scene().f * turn.transpose(),
+                                  {.tolerance = 1e-10});
+  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // the rules choose metrics and distances anew
+}
+
+TEST(SingleLayer, ScalesWithLengthAndWithTheDensity) {
+  const Net u = scene().apply(scene().x, scene().f, {.tolerance = 1e-6}),
+            v = scene().apply(4 * scene().x, 0.5 * scene().f, {.tolerance = 1e-6});
+  EXPECT_LT(largest(v - 2 * u), 1e-13 * largest(u));  // same rules, powers of two
+}
+
+TEST(SingleLayer, MeasuresAgreeWhereTheSurfaceIsUnstressed) {
+  const Net u = scene().apply(scene().unstressed, scene().f, {.tolerance = 1e-6}, Measure::current);
+  EXPECT_LT(largest(scene().apply(scene().unstressed, scene().f, {.tolerance = 1e-6}, Measure::reference) - u), 1e-13 * largest(u));
+}
+
+TEST(SingleLayer, FixedRuleOfThePaperIsGoodToSevenDigitsAtVertices) {
+  const Net exact = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
+  const Net fixed = scene().apply(scene().x, scene().f, {.rule = "fixed", .points = 8});
+  EXPECT_LT(largest(fixed - exact), 1e-6 * largest(exact));
+  EXPECT_GT(largest(fixed - exact), 1e-9 * largest(exact));  // another rule it is
+}
+
+}  // namespace
+}  // namespace tanktread::stokes

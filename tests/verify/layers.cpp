@@ -1,0 +1,179 @@
+// The layer integrals against a reference rule that shares nothing with the program's, and against exact solutions.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "spline/extraction.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+#include "tests/verify/layers_reference.hpp"
+
+namespace tanktread {
+namespace {
+
+/// A strongly deformed, S-shaped surface of the cube mesh, and a smooth load on it.
+struct Scene {
+  spline::Space space;
+  Net unstressed, x, f;
+  std::vector<int> all;
+
+  explicit Scene(int n) {
+    const spline::TMesh mesh = spline::cube(n);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    unstressed = surface::unit_sphere(mesh, fit);
+    x = fit.fit_image(unstressed, [](const Vec3& p) {
+      return Vec3(1.4 * p[0] + 0.35 * p[2] + 0.1 * p[1] * p[2], 0.85 * p[1] + 0.08 * p[0] * p[0], 0.7 * p[2] - 0.15 * p[0] * p[0] * p[0]);
+    });
+    f = fit.fit_image(unstressed,
+                      [](const Vec3& p) { return Vec3(std::sin(2 * p[0]) + p[1], p[2] * p[0] + 0.3, std::cos(p[1] + p[2]) - p[0]); });
+    all.resize(space.n_points);
+    std::iota(all.begin(), all.end(), 0);
+  }
+
+  Net reference() const {
+    const verify::BruteForce surface(space, x);
+    std::vector<verify::Casteljau> load;
+    for (const spline::Element& e : space.elements) load.emplace_back(e, f);
+    Net u(space.n_points, 3);
+    for (int i = 0; i < space.n_points; ++i) {
+      const auto& sites = space.collocation[i];
+      const Vec3 x0 = surface.point(sites.front());
+      u.row(i) = surface.integrate(x0, sites, [&](const verify::SurfacePoint& p) -> Vec3 {
+        return stokes::stokeslet(p.x - x0) * load[p.element](p.s, p.t)[0];
+      }) / (8 * std::numbers::pi);
+    }
+    return u;
+  }
+};
+
+double largest_error(const Net& u, const Net& reference) {
+  return (u - reference).rowwise().norm().maxCoeff() / reference.rowwise().norm().maxCoeff();
+}
+
+/// Root mean square over the targets, relative: the extraordinary points alone limit the largest error to order 2.7.
+double mean_error(const Net& u, const Net& reference) { return (u - reference).norm() / reference.norm(); }
+
+/// The error is below the requested one at every target. Prints what it took.
+void keeps_its_tolerance(const char* name, const Scene& scene) {
+  const Net reference = scene.reference();
+  Net u = Net::Zero(scene.space.n_points, 3);
+  for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-8, 1e-10}) {
+    stokes::SingleLayer layer(scene.space, {.tolerance = tolerance});
+    layer.apply(scene.x, scene.f, stokes::Measure::current, scene.all, u);
+    const double error = largest_error(u, reference);
+    const auto& done = layer.evaluations();
+    std::printf("%-34s %6d targets  requested %.0e  error %.1e  kernel evaluations: far %9lld  near %8lld  self %8lld\n", name,
+                scene.space.n_points, tolerance, error, done.far, done.near, done.self);
+    EXPECT_LT(error, tolerance) << name;
+  }
+}
+
+TEST(SingleLayer, KeepsTheRequestedToleranceAtTheCollocationPointsOfADeformedSurface) {
+  keeps_its_tolerance("deformed, n = 3", Scene(3));
+  keeps_its_tolerance("deformed, n = 6", Scene(6));
+}
+
+TEST(SingleLayer, KeepsTheRequestedToleranceAtPointsInsideElements) {
+  Scene scene(4);
+  const double place[3][2] = {{0.5, 0.5}, {0.05, 0.4}, {0.9, 0.95}};
+  for (int i = 0; i < scene.space.n_points; ++i) {
+    const int e = i % static_cast<int>(scene.space.elements.size());
+    scene.space.collocation[i] = {{e, place[i % 3][0], place[i % 3][1]}};
+  }
+  keeps_its_tolerance("n = 4, targets inside elements", scene);
+}
+
+/// The sphere of the cube mesh with n elements a side, and the error of the single layer of a vector spherical harmonic.
+struct Sphere {
+  spline::Space space;
+  Net x;
+  std::vector<int> all;
+
+  explicit Sphere(int n) {
+    const spline::TMesh mesh = spline::cube(n);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    x = surface::unit_sphere(mesh, surface::LeastSquaresFit(space), 10);
+    all.resize(space.n_points);
+    std::iota(all.begin(), all.end(), 0);
+  }
+
+  Net points() const {
+    Net at(space.n_points, 3);
+    for (int i = 0; i < space.n_points; ++i) at.row(i) = surface::value(space, x, space.collocation[i].front());
+    return at;
+  }
+
+  double error(const std::function<Vec3(const Vec3&)>& field, double eigenvalue) const {
+    const Net f = surface::LeastSquaresFit(space).fit_image(x, [&](const Vec3&p) { return field(p.normalized()); }), at = points();
+    Net u = Net::Zero(space.n_points, 3), exact = u;
+    stokes::SingleLayer layer(space, {.tolerance = 1e-8});
+    layer.apply(x, f, stokes::Measure::current, all, u);
+    for (int i = 0; i < space.n_points; ++i) exact.row(i) = eigenvalue * field(at.row(i).transpose().normalized());
+    return mean_error(u, exact);
+  }
+};
+
+/// Vector spherical harmonics of the solid harmonic H = x1^2 - x2^2 + x1 x3 (n = 2): grad_s Y = grad H - n Y e_r on the unit sphere.
+struct Harmonic {
+  static constexpr int n = 2;
+  static double y(const Vec3& e) { return e[0] * e[0] - e[1] * e[1] + e[0] * e[2]; }
+  static Vec3 slope(const Vec3& e) { return Vec3(2 * e[0] + e[2], -2 * e[1], e[0]) - n * y(e) * e; }
+  static Vec3 v(const Vec3& e) { return slope(e) - (n + 1) * y(e) * e; }
+  static Vec3 w(const Vec3& e) { return slope(e) + n * y(e) * e; }
+  static Vec3 x(const Vec3& e) { return e.cross(slope(e)); }
+};
+
+TEST(SingleLayer, HasTheEigenvaluesOfTheSphereToTheOrderOfTheSpace) {
+  constexpr double n = Harmonic::n;
+  const struct {
+    const char* name;
+    Vec3 (*field)(const Vec3&);
+    double eigenvalue;
+  } modes[] = {{"V", Harmonic::v, n / ((2 * n + 1) * (2 * n + 3))},
+               {"W", Harmonic::w, (n + 1) / ((2 * n + 1) * (2 * n - 1))},
+               {"X", Harmonic::x, 1 / (2 * n + 1)}};
+  const Sphere coarse(6), fine(12);
+  for (const auto& mode : modes) {
+    const double at_6 = coarse.error(mode.field, mode.eigenvalue), at_12 = fine.error(mode.field, mode.eigenvalue),
+                 order = std::log2(at_6 / at_12);
+    std::printf("%s_2: error %.2e (n = 6), %.2e (n = 12), order %.2f\n", mode.name, at_6, at_12, order);
+    EXPECT_LT(at_12, 2e-5) << mode.name;
+    EXPECT_GT(order, 3.2) << mode.name;  // h^4, held back around extraordinary points, where the normal errs with h^2.7
+  }
+}
+
+/// Traction on a prolate spheroid (semi-axes a, a, c) that moves at U: the single layer of f_i = F_i h / (4 pi a^2 c), h = n.x, is U.
+TEST(SingleLayer, OfTheTractionOnAMovingSpheroidIsItsVelocity) {
+  const double a = 0.8, c = 1.2, e = std::sqrt(1 - a * a / (c * c)), l = std::log((1 + e) / (1 - e));
+  const double along = 16 * std::numbers::pi * c * e * e * e / (-2 * e + (1 + e * e) * l);
+  const double across = 32 * std::numbers::pi * c * e * e * e / (2 * e + (3 * e * e - 1) * l);
+  const Vec3 velocity(0.6, 0, 0.8), force(across * velocity[0], 0, along * velocity[2]);
+  double error[2];
+  for (const int k : {0, 1}) {
+    const spline::TMesh mesh = spline::cube(k ? 12 : 6);
+    const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    const Net sphere = surface::unit_sphere(mesh, fit, 10);
+    const Net x = fit.fit_image(sphere, [&](const Vec3& p) -> Vec3 { return p.normalized().cwiseProduct(Vec3(a, a, c)); });
+    const Net f = fit.fit_image(sphere, [&](const Vec3& p) -> Vec3 {
+      const Vec3 unit = p.normalized();
+      return force / (4 * std::numbers::pi * a * a * c) / unit.cwiseQuotient(Vec3(a, a, c)).norm();
+    });
+    std::vector<int> all(space.n_points);
+    std::iota(all.begin(), all.end(), 0);
+    Net u = Net::Zero(space.n_points, 3);
+    stokes::SingleLayer layer(space, {.tolerance = 1e-8});
+    layer.apply(x, f, stokes::Measure::current, all, u);
+    error[k] = mean_error(u, velocity.transpose().replicate(space.n_points, 1));
+  }
+  std::printf("spheroid 1 : 1.5: error of the velocity %.2e (n = 6), %.2e (n = 12)\n", error[0], error[1]);
+  EXPECT_LT(error[1], 1e-5);
+  EXPECT_GT(std::log2(error[0] / error[1]), 3.5);
+}
+
+}  // namespace
+}  // namespace tanktread
