@@ -66,7 +66,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                         : scene.membrane.load_measure == "reference"         ? " per unstressed area (3.7), mass matrix factored once"
                                                                              : " per current area (3.6), mass matrix factored every evaluation")},
       {"volume", scene.volume.constraint},
-      {"time", scene.time.scheme + (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 36e-6 * points * points, ranks,
+      {"time", scene.time.scheme + (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks,
                                                     ranks > 1 ? "s" : "")
                                              : std::string(", explicit in the fluid: nothing is assembled"))},
       {"symmetry", "none used"},

@@ -105,7 +105,9 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   picture.point_fields.push_back({"displacement", output::nodal_values(body_.space, picture_mesh_, state.x - body_.unstressed)});
   if (!state.history.empty())
     picture.point_fields.push_back({"velocity", output::nodal_values(body_.space, picture_mesh_, state.history.front())});
-  picture.point_fields.push_back({"principal tensions", membrane.tensions(state.x, picture_mesh_.sites)});
+  const Eigen::MatrixX2d tensions = membrane.tensions(state.x, picture_mesh_.sites);
+  picture.point_fields.push_back({"smallest tension", tensions.col(0)});
+  picture.point_fields.push_back({"largest tension", tensions.col(1)});
   Eigen::VectorXd curvature(static_cast<Eigen::Index>(picture_mesh_.sites.size()));
   for (size_t i = 0; i < picture_mesh_.sites.size(); ++i)
     curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_.space, state.x, picture_mesh_.sites[i]);

@@ -118,7 +118,9 @@ Net Capsule::velocity(const Net& x) {
 void Capsule::freeze(const Net& x) {
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
-  layer_.assemble(x, stokes::Measure::reference, own_points_, frozen_);
+  frozen_.assemble(own_points_, space_.n_points, [&](std::span<const int> targets, stokes::Rows<float>& rows) {
+    layer_.assemble(x, stokes::Measure::reference, targets, rows);
+  });
 }
 
 void Capsule::linearise(const Net& x) {
@@ -133,10 +135,7 @@ Net Capsule::jacobian(const Net& delta) {
   tangent_.apply(delta, h);
   ranks_.replicate(h);
   const Net f = mass_.solve(h);
-  const Eigen::VectorXf in = Eigen::Map<const Eigen::VectorXd>(f.data(), f.size()).cast<float>();
-  const Eigen::VectorXf out = frozen_ * in;
-  for (size_t k = 0; k < own_points_.size(); ++k)
-    u.row(own_points_[k]) = out.segment<3>(3 * static_cast<Eigen::Index>(k)).cast<double>().transpose();
+  frozen_.apply(f, u);
   ranks_.replicate(u);
   return delta * flow_.gradient(Vec3::Zero()).transpose() - collocation_.solve(u) / parameters_.viscosity;
 }

@@ -8,6 +8,7 @@
 #include "base/timing.hpp"
 #include "base/types.hpp"
 #include "coupling/dynamics.hpp"
+#include "coupling/frozen_operator.hpp"
 #include "coupling/krylov.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
@@ -93,7 +94,7 @@ class Capsule : public Dynamics {
   stokes::SingleLayer layer_;
   membrane::DirectSolver collocation_, mass_, current_mass_;
   Krylov krylov_;
-  stokes::DenseRows frozen_;  // 3 rows an own point
+  FrozenOperator frozen_;
   double volume0_ = 0;
   Work work_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/errors.hpp"
 
@@ -14,8 +13,7 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
 
   for (;; ++report.rejected) {
-    if (h < options_.minimum_step && state.time + h < limit)
-      throw RunFailure("the step fell to " + std::to_string(h) + ", below Time/minimum step");
+    refuse_tiny_step(h, state.time, limit, options_);
     const double dt = step_towards(state.time, limit, h);
     const Net& k1 = state.history.front();
     const Net k2 = dynamics.velocity(state.x + dt / 2 * k1);

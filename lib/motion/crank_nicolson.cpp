@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/errors.hpp"
 
@@ -16,8 +15,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
 
   for (;; ++report.rejected) {
-    if (h < options_.minimum_step && state.time + h < limit)
-      throw RunFailure("the step fell to " + std::to_string(h) + ", below Time/minimum step");
+    refuse_tiny_step(h, state.time, limit, options_);
     const double dt = step_towards(state.time, limit, h);
     const Net& v0 = state.history.front();
     Net y = state.x + dt * v0, v = v0;

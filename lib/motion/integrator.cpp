@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "base/errors.hpp"
 #include "motion/bs3.hpp"
@@ -26,6 +27,13 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / std::max(speed, change));
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
+}
+
+void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options) {
+  if (step >= options.minimum_step || time + step >= limit) return;
+  std::ostringstream text;
+  text << "the step fell to " << step << ", below Time/minimum step " << options.minimum_step;
+  throw RunFailure(text.str());
 }
 
 double step_towards(double time, double limit, double step) {

@@ -45,6 +45,9 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options);
 /// change of slope along a short Euler step (Hairer, Norsett & Wanner, Solving ODEs I, II.4), is about a tenth of the tolerance.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
+/// Throws RunFailure when the controller asks for a step below `Time/minimum step`, unless only a sliver before `limit` is left.
+void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options);
+
 /// The step to take towards `limit` when the controller proposes `step`: the whole rest if it fits, half of it if two are needed,
 /// so that no sliver is left over.
 double step_towards(double time, double limit, double step);

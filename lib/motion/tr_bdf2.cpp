@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/errors.hpp"
 #include "motion/slopes.hpp"
@@ -58,8 +57,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
 
   for (;; ++report.rejected) {
-    if (h < options_.minimum_step && state.time + h < limit)
-      throw RunFailure("the step fell to " + std::to_string(h) + ", below Time/minimum step");
+    refuse_tiny_step(h, state.time, limit, options_);
     const double dt = step_towards(state.time, limit, h), shift = d * dt;
     Slopes slopes(state.history, memory.step);
     const Net& k1 = state.history.front();
