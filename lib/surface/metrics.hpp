@@ -38,6 +38,7 @@ std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spl
                                             const MetricFields& fields);
 
 /// The traction per current area of a load per reference area (3.7): f J0/J, with `load` on the net, `rest` and `net` the two configurations.
+/// This and the next keep references: what they are given must outlive them.
 FieldAt per_current_area(const spline::Space& space, const Net& rest, const Net& net, const Net& load);
 
 /// The field with control values `net`.
