@@ -12,6 +12,7 @@
 #include <Tpetra_Operator.hpp>
 
 #include "base/errors.hpp"
+#include "deck/foreign.hpp"
 
 namespace tanktread::coupling {
 
@@ -59,7 +60,10 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
   if (list) impl_->list->setParameters(*list);
   try {
     Belos::SolverFactory<double, MultiVector, Operator> factory;
+    if (list) deck::check_foreign("Solvers/Belos", *list, *factory.create(impl_->name, Teuchos::parameterList())->getValidParameters());
     impl_->solver = factory.create(impl_->name, impl_->list);
+  } catch (const UserError&) {
+    throw;
   } catch (const std::exception& error) {
     const std::string text = error.what();
     throw UserError("Solvers/Belos: Belos does not accept the solver '" + impl_->name + "' with the list given: " +

@@ -13,6 +13,7 @@
 #include <Tpetra_MultiVector.hpp>
 
 #include "base/errors.hpp"
+#include "deck/foreign.hpp"
 
 namespace tanktread::membrane {
 namespace {
@@ -76,6 +77,7 @@ struct DirectSolver::Impl {
     solver = Amesos2::create<Matrix, MultiVector>(options.name, matrix, x, b);
     const auto list = Teuchos::rcp(options.amesos2 ? new Teuchos::ParameterList(*options.amesos2) : new Teuchos::ParameterList);
     list->setName("Amesos2");
+    deck::check_foreign("Solvers/Amesos2", *list, *solver->getValidParameters());
     try {
       solver->setParameters(list);
     } catch (const std::exception& error) {

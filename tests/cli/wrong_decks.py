@@ -64,6 +64,12 @@ SETTINGS = [
     (["Volume/constraint=none"], ["Volume/constraint", "none", "Membrane/load measure"]),
     (["Time/fixed step=0.1", "Time/initial step=0.1"], ["Time/fixed step", "Time/initial step", "contradict"]),
     (["Expect/energy/value=1"], ["Expect/energy/tolerance", "missing"]),
+    # what the libraries that get a list know
+    (["Solvers/iterative solver=Foo"], ["Solvers/Belos", "Foo"]),
+    (["Solvers/direct solver=Foo"], ["Solvers/direct solver", "Foo", "KLU2"]),
+    (["Solvers/Belos/Maximum Iteration=30"], ["Solvers/Belos/Maximum Iteration", "was Solvers/Belos/Maximum Iterations meant?"]),
+    (["Solvers/Belos/Maximum Iterations=many"], ["Solvers/Belos/Maximum Iterations", "whole number", "many"]),
+    (["Solvers/Amesos2/Foo=1"], ["Solvers/Amesos2/Foo", "not a parameter"]),
     # not of the form Section/key=value
     (["Flow/viscosity"], ["Flow/viscosity", "Section/key=value"]),
     (["viscosity=1"], ["viscosity=1", "Section/key=value"]),
