@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include "spline/catmull_clark.hpp"
@@ -119,6 +120,8 @@ struct Builder {
       out[OneRing::C + j] = point[c.vertex];
       out[OneRing::D + j] = point[walk(f).vertex];
     }
+    if (r.height != h || std::find(out.begin(), out.end(), -1) != out.end())
+      throw std::logic_error("The rings at an extraordinary point are not uniform.");
     return out;
   }
 };

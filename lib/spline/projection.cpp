@@ -6,6 +6,7 @@
 
 #include "spline/basis.hpp"
 #include "spline/locate.hpp"
+#include "spline/normal_matrix.hpp"
 
 namespace tanktread::spline {
 
@@ -46,16 +47,7 @@ Projection::Projection(const Space& from, const Space& to) : state_(new State{fr
     if (m.size() == 0) m = Eigen::MatrixXd::Zero(s.new_basis.size(), s.new_basis.size());
     m.noalias() += s.weight * s.new_basis * s.new_basis.transpose();
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < local.size(); ++k) {
-    const auto& p = to.elements[k].points;
-    for (std::size_t j = 0; j < p.size(); ++j)
-      for (std::size_t i = 0; i < p.size(); ++i)
-        if (p[i] >= p[j]) entries.emplace_back(p[i], p[j], local[k](Eigen::Index(i), Eigen::Index(j)));
-  }
-  Eigen::SparseMatrix<double> N(to.n_points, to.n_points);
-  N.setFromTriplets(entries.begin(), entries.end());
-  state_->factor.compute(N);
+  state_->factor.compute(assemble(to, local));
 }
 
 Projection::~Projection() = default;

@@ -6,18 +6,18 @@
 
 #include "spline/bernstein.hpp"
 #include "spline/locate.hpp"
+#include "spline/normal_matrix.hpp"
 
 namespace tanktread::spline {
 
 struct Transfer::State {
   const Space& from;
   const Space& to;
-  /// For an element of `to`: the element of `from` around it, and (Bezier points on the fine element) = (row operator) (control points there).
-  struct Part {
-    int coarse;
-    int degree;                   // in which both are compared
-    Eigen::MatrixXd coarse_rows;  // (degree + 1)^2 x functions of the coarse element
-    Eigen::MatrixXd fine_rows;    // (degree + 1)^2 x functions of the fine element
+  struct Part {            // of one element of `to`
+    int coarse;            // the element of `from` around it
+    bool whole;            // which it is, placed and graded alike
+    Eigen::MatrixXd s, t;  // restriction (and elevation) of the coarse Bezier points along s and t
+    Eigen::MatrixXd fine;  // elevation of the fine ones where the coarse degree is higher; empty otherwise
   };
   std::vector<Part> parts;
   int straddling = 0;
@@ -26,16 +26,30 @@ struct Transfer::State {
 
 namespace {
 
-Eigen::MatrixXd tensor(const Eigen::MatrixXd& s, const Eigen::MatrixXd& t) {
-  Eigen::MatrixXd out(s.rows() * t.rows(), s.cols() * t.cols());
-  for (Eigen::Index j = 0; j < t.rows(); ++j)
-    for (Eigen::Index l = 0; l < t.cols(); ++l) out.block(j * s.rows(), l * s.cols(), s.rows(), s.cols()) = t(j, l) * s;
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // Bezier points, row n j + i
+
+/// Bezier points of a field on an element, C^T P.
+Points bezier_points(const Element& e, const Net& field) {
+  Points P(Eigen::Index(e.points.size()), 3);
+  for (std::size_t i = 0; i < e.points.size(); ++i) P.row(Eigen::Index(i)) = field.row(e.points[i]);
+  return e.extraction.transpose() * P;
+}
+
+/// (T x S) applied to Bezier points.
+Points along_both(const Eigen::MatrixXd& S, const Eigen::MatrixXd& T, const Points& Q) {
+  Points out(S.rows() * T.rows(), 3);
+  for (int d = 0; d < 3; ++d) {
+    const Eigen::Map<const Eigen::MatrixXd> in(Q.col(d).data(), S.cols(), T.cols());
+    Eigen::Map<Eigen::MatrixXd>(out.col(d).data(), S.rows(), T.rows()) = S * in * T.transpose();
+  }
   return out;
 }
 
-Eigen::MatrixXd gather(const Net& field, const std::vector<int>& points) {
-  Eigen::MatrixXd out(Eigen::Index(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) out.row(Eigen::Index(i)) = field.row(points[i]);
+Eigen::MatrixXd tensor(const Eigen::MatrixXd& S) {
+  const Eigen::Index m = S.rows(), n = S.cols();
+  Eigen::MatrixXd out(m * m, n * n);
+  for (Eigen::Index j = 0; j < m; ++j)
+    for (Eigen::Index l = 0; l < n; ++l) out.block(j * m, l * n, m, n) = S(j, l) * S;
   return out;
 }
 
@@ -43,37 +57,41 @@ Eigen::MatrixXd gather(const Net& field, const std::vector<int>& points) {
 
 Transfer::Transfer(const Space& from, const Space& to) : state_(new State{from, to, {}, 0, {}}) {
   const Locator locate(from);
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(to.elements.size() * 256);
-  for (const Element& e : to.elements) {
+  std::vector<Eigen::MatrixXd> normal(to.elements.size());
+  state_->parts.reserve(to.elements.size());
+  for (std::size_t k = 0; k < to.elements.size(); ++k) {
+    const Element& e = to.elements[k];
     State::Part part;
     part.coarse = locate({e.face, e.origin[0] + e.size[0] / 2, e.origin[1] + e.size[1] / 2}).element;
     const Element& c = from.elements[part.coarse];
-    double low[2], high[2];
-    for (int d = 0; d < 2; ++d) {
-      low[d] = (e.origin[d] - c.origin[d]) / c.size[d];
-      high[d] = (e.origin[d] + e.size[d] - c.origin[d]) / c.size[d];
+    part.whole = e.degree == c.degree && e.origin == c.origin && e.size == c.size;
+    if (!part.whole) {
+      double low[2], high[2];
+      for (int d = 0; d < 2; ++d) {
+        low[d] = (e.origin[d] - c.origin[d]) / c.size[d];
+        high[d] = (e.origin[d] + e.size[d] - c.origin[d]) / c.size[d];
+      }
+      const double margin = 1e-9;
+      if (std::min(low[0], low[1]) < -margin || std::max(high[0], high[1]) > 1 + margin) ++state_->straddling;
+      part.s = restriction(c.degree, low[0], high[0]);
+      part.t = restriction(c.degree, low[1], high[1]);
+      if (e.degree > c.degree) {
+        const Eigen::MatrixXd up = elevation(c.degree, e.degree);
+        part.s = up * part.s;
+        part.t = up * part.t;
+      } else if (e.degree < c.degree) {
+        part.fine = tensor(elevation(e.degree, c.degree));
+      }
     }
-    const double margin = 1e-9;
-    if (std::min(low[0], low[1]) < -margin || std::max(high[0], high[1]) > 1 + margin) ++state_->straddling;
-    part.degree = std::max(e.degree, c.degree);
-    const Eigen::MatrixXd up = elevation(c.degree, part.degree);
-    part.coarse_rows =
-        tensor(up * restriction(c.degree, low[0], high[0]), up * restriction(c.degree, low[1], high[1])) * c.extraction.transpose();
-    const Eigen::MatrixXd up_fine = elevation(e.degree, part.degree);
-    if (part.degree == e.degree)
-      part.fine_rows = e.extraction.transpose();
-    else
-      part.fine_rows = tensor(up_fine, up_fine) * e.extraction.transpose();
-    const Eigen::MatrixXd normal = part.fine_rows.transpose() * part.fine_rows;
-    for (std::size_t j = 0; j < e.points.size(); ++j)
-      for (std::size_t i = 0; i < e.points.size(); ++i)
-        if (e.points[i] >= e.points[j]) entries.emplace_back(e.points[i], e.points[j], normal(Eigen::Index(i), Eigen::Index(j)));
+    if (part.fine.size() == 0) {
+      normal[k].noalias() = e.extraction * e.extraction.transpose();
+    } else {
+      const Eigen::MatrixXd rows = part.fine * e.extraction.transpose();
+      normal[k].noalias() = rows.transpose() * rows;
+    }
     state_->parts.push_back(std::move(part));
   }
-  Eigen::SparseMatrix<double> N(to.n_points, to.n_points);
-  N.setFromTriplets(entries.begin(), entries.end());
-  state_->factor.compute(N);
+  state_->factor.compute(assemble(to, normal));
 }
 
 Transfer::~Transfer() = default;
@@ -82,20 +100,25 @@ Transfer::Transfer(Transfer&&) noexcept = default;
 int Transfer::straddling() const { return state_->straddling; }
 
 Transfer::Result Transfer::operator()(const Net& field) const {
-  const Space& to = state_->to;
-  std::vector<Eigen::MatrixXd> target(to.elements.size());
+  const Space &from = state_->from, &to = state_->to;
+  std::vector<Points> target(to.elements.size());
   Net right = Net::Zero(to.n_points, 3);
   for (std::size_t k = 0; k < to.elements.size(); ++k) {
     const auto& part = state_->parts[k];
-    target[k] = part.coarse_rows * gather(field, state_->from.elements[part.coarse].points);
-    const Eigen::MatrixXd r = part.fine_rows.transpose() * target[k];
-    for (std::size_t i = 0; i < to.elements[k].points.size(); ++i) right.row(to.elements[k].points[i]) += r.row(Eigen::Index(i));
+    const Element& e = to.elements[k];
+    target[k] = bezier_points(from.elements[part.coarse], field);
+    if (!part.whole) target[k] = along_both(part.s, part.t, target[k]);
+    const Points r = part.fine.size() == 0 ? Points(e.extraction * target[k]) : Points(e.extraction * (part.fine.transpose() * target[k]));
+    for (std::size_t i = 0; i < e.points.size(); ++i) right.row(e.points[i]) += r.row(Eigen::Index(i));
   }
   Result out{Net(to.n_points, 3), 0};
   for (int d = 0; d < 3; ++d) out.net.col(d) = state_->factor.solve(Eigen::VectorXd(right.col(d)));
-  for (std::size_t k = 0; k < to.elements.size(); ++k)
-    out.residual =
-        std::max(out.residual, (state_->parts[k].fine_rows * gather(out.net, to.elements[k].points) - target[k]).cwiseAbs().maxCoeff());
+  for (std::size_t k = 0; k < to.elements.size(); ++k) {
+    const auto& part = state_->parts[k];
+    Points now = bezier_points(to.elements[k], out.net);
+    if (part.fine.size() > 0) now = Points(part.fine * now);
+    out.residual = std::max(out.residual, (now - target[k]).cwiseAbs().maxCoeff());
+  }
   return out;
 }
 

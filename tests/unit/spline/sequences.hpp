@@ -1,0 +1,131 @@
+#pragma once
+// Random refinement sequences and what must hold after each step.
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include <Eigen/SparseLU>
+
+#include "samples.hpp"
+#include "spline/extended_mesh.hpp"
+#include "spline/extraction.hpp"
+#include "spline/refinement.hpp"
+#include "spline/transfer.hpp"
+
+namespace tanktread::spline {
+
+/// The worst of everything seen along one or more sequences.
+struct Findings {
+  int steps = 0, crossings = 0, overlaps = 0, broken_zones = 0, straddling = 0;
+  int wrong_counts = 0;       // regular elements with other than 16 functions
+  double unity = 0;           // defect of the partition of unity
+  double residual = 0;        // of the transfer of a fresh random field
+  double condition = 0;       // of Greville collocation
+  double least_diagonal = 1;  // and its smallest diagonal entry
+  int finest = 1 << 30;       // lattice units
+  int control_points = 0;
+};
+
+/// Condition number of the Greville collocation matrix in the 2-norm, by power iteration on C^T C and its inverse.
+inline double collocation_condition(const Space& s, double* least_diagonal = nullptr) {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> diagonal(s.n_points, 0);
+  for (int i = 0; i < s.n_points; ++i) {
+    const Site& site = s.collocation[i][0];
+    const Element& e = s.elements[site.element];
+    const Basis b = basis(e, site.s, site.t, 0);
+    for (std::size_t k = 0; k < e.points.size(); ++k) {
+      entries.emplace_back(i, e.points[k], b.value[Eigen::Index(k)]);
+      if (e.points[k] == i) diagonal[i] += b.value[Eigen::Index(k)];
+    }
+  }
+  Eigen::SparseMatrix<double> C(s.n_points, s.n_points);
+  C.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(C);
+  if (least_diagonal) *least_diagonal = *std::min_element(diagonal.begin(), diagonal.end());
+  if (lu.info() != Eigen::Success) return HUGE_VAL;
+  Eigen::VectorXd x = random_net(s.n_points, 1).col(0), y = x;
+  double largest = 0, smallest = 0;
+  for (int i = 0; i < 40; ++i) {
+    x = C.transpose() * (C * x.normalized());
+    y = lu.solve(lu.transpose().solve(y.normalized()).eval());
+    largest = x.norm();
+    smallest = 1 / y.norm();
+  }
+  return std::sqrt(largest / smallest);
+}
+
+/// Random elements cut both ways (1/2), across s (1/4), across t (1/4); `deep` marks go to the smallest elements.
+inline std::vector<Mark> random_marks(const TMesh& mesh, int scattered, int deep, std::mt19937& generator) {
+  const Tiling tiling = elements(mesh);
+  std::vector<int> by_size(tiling.tiles.size());
+  for (std::size_t i = 0; i < by_size.size(); ++i) by_size[i] = int(i);
+  std::stable_sort(by_size.begin(), by_size.end(), [&](int a, int b) {
+    return tiling.tiles[a].width * tiling.tiles[a].height < tiling.tiles[b].width * tiling.tiles[b].height;
+  });
+  std::vector<Mark> marks;
+  auto add = [&](int element) {
+    const unsigned way = generator() % 4;
+    marks.push_back({element, way != 3, way != 2});
+  };
+  for (int i = 0; i < scattered; ++i) add(int(generator() % by_size.size()));
+  for (int i = 0; i < deep; ++i) add(by_size[generator() % std::min<std::size_t>(4, by_size.size())]);
+  return marks;
+}
+
+/// Whether every element that is no piece at an extraordinary point has sixteen functions.
+inline int wrong_counts(const TMesh& mesh, const Space& s) {
+  const Lattice& l = *mesh.lattice;
+  const Tiling tiling = bezier_mesh(mesh);
+  std::vector<bool> irregular(tiling.tiles.size(), false);
+  for (int v : l.extraordinary)
+    for (int k = 0; k < 3; ++k) irregular[tiling.tile_of_cell[l.cell[v][k]]] = true;
+  int wrong = 0;
+  for (const Element& e : s.elements) {
+    const int x = int((e.origin[0] + e.size[0] / 2) * l.units), y = int((e.origin[1] + e.size[1] / 2) * l.units);
+    if (!irregular[tiling.tile_of_cell[l.cell_at(e.face, x, y)]] && e.points.size() != 16) ++wrong;
+  }
+  return wrong;
+}
+
+struct SequenceOptions {
+  int steps = 4;
+  double fraction = 0.02;  // of the elements, marked anywhere
+  int deep = 1;            // marks among the smallest elements
+  bool condition = false;  // of the last space
+  RepairRules rules;
+};
+
+/// One sequence; a fresh random field in every step. Carrying one field through all steps would only test that the first space is contained
+/// in all others.
+inline void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& options, Findings& found) {
+  std::mt19937 generator(seed);
+  auto now = std::make_unique<Space>(space(mesh, ExtraordinaryRule::catmull_clark));
+  for (int step = 0; step < options.steps; ++step) {
+    const int scattered = std::max(1, int(options.fraction * double(elements(mesh).tiles.size())));
+    mesh = refine(mesh, random_marks(mesh, scattered, options.deep, generator), options.rules).mesh;
+    auto next = std::make_unique<Space>(space(mesh, ExtraordinaryRule::catmull_clark));
+    const Transfer transfer(*now, *next);
+    found.residual = std::max(found.residual, transfer(random_net(now->n_points, unsigned(generator()))).residual);
+    found.straddling += transfer.straddling();
+    const Suitability s = suitability(mesh);
+    found.crossings += s.crossings;
+    found.overlaps += s.overlaps;
+    found.broken_zones += s.broken_zones;
+    found.wrong_counts += wrong_counts(mesh, *next);
+    for (const Element& e : next->elements)
+      found.unity = std::max(found.unity, (e.extraction.colwise().sum().array() - 1).abs().maxCoeff());
+    ++found.steps;
+    now = std::move(next);
+  }
+  for (const Rectangle& r : elements(mesh).tiles) found.finest = std::min({found.finest, r.width, r.height});
+  found.control_points = std::max(found.control_points, now->n_points);
+  if (options.condition) {
+    double diagonal;
+    found.condition = std::max(found.condition, collocation_condition(*now, &diagonal));
+    found.least_diagonal = std::min(found.least_diagonal, diagonal);
+  }
+}
+
+}  // namespace tanktread::spline

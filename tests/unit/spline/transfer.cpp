@@ -1,0 +1,45 @@
+#include "spline/transfer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "samples.hpp"
+#include "spline/extraction.hpp"
+#include "spline/locate.hpp"
+#include "spline/projection.hpp"
+#include "spline/refinement.hpp"
+
+namespace tanktread::spline {
+namespace {
+
+TEST(Transfer, ARefinedFieldIsTheSameFieldEverywhere) {
+  const TMesh mesh = cube(4, 2);
+  const Space coarse = space(mesh, ExtraordinaryRule::catmull_clark);
+  const Space fine = space(refine(mesh, {{0}, {5, true, false}, {40, false, true}}).mesh, ExtraordinaryRule::catmull_clark);
+  const Net net = random_net(coarse.n_points, 1);
+  const Transfer transfer(coarse, fine);
+  const auto moved = transfer(net);
+  EXPECT_LT(moved.residual, 1e-13);
+  const Locator in_coarse(coarse);
+  for (int k = 0; k < int(fine.elements.size()); ++k) {
+    const Site here{k, 0.3, 0.9};
+    EXPECT_LT((value_at(fine, moved.net, here) - value_at(coarse, net, in_coarse(place(fine, here)))).norm(), 1e-13);
+  }
+}
+
+TEST(Transfer, ResidualTellsWhenSpacesAreNotNested) {
+  const Space fine = space(cube(6), ExtraordinaryRule::g1), coarse = space(cube(3), ExtraordinaryRule::g1);
+  EXPECT_GT(Transfer(coarse, fine)(random_net(coarse.n_points, 1)).residual, 1e-3);
+  EXPECT_GT(Transfer(fine, coarse).straddling(), 0);
+}
+
+TEST(Projection, ReproducesWhatTheSpaceHolds) {
+  const Space coarse = space(cube(4), ExtraordinaryRule::catmull_clark);
+  const Space other = space(refine(cube(4, 2), {{3}, {50}}).mesh, ExtraordinaryRule::catmull_clark);
+  const Net net = random_net(coarse.n_points, 2);
+  const auto there = Projection(coarse, other)(net), back = Projection(other, coarse)(there.net);
+  for (double d : there.defect) EXPECT_LT(d, 1e-12);
+  EXPECT_LT((back.net - net).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace tanktread::spline
