@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+# The command line does what it promises: every option, every exit code, where results go and what is stored with them.
+import pathlib
+
+from harness import SOURCE, check, deck, main, run, summary
+
+SMALL = """Tanktread:
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.05}
+"""
+
+
+def _stored_deck(results):
+    import h5py
+
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return file["deck"][()].decode()
+
+
+def version_and_help_are_printed():
+    check(run("--version").stdout.startswith("tanktread "), "no version")
+    text = run("--help").stdout
+    for option in ("--set", "--output", "--check", "--resume", "--reference", "--quiet", "deck"):
+        check(option in text, f"{option} is not in the help")
+
+
+def check_prints_the_effective_deck_and_the_plan_and_writes_nothing():
+    text = run(deck(SMALL), "--set", "Flow/viscosity=2", "--check").stdout
+    check(text.startswith("Tanktread:\n") and "viscosity: 2.0" in text and "plan" in text, text)
+    check(sorted(p.name for p in pathlib.Path().iterdir()) == ["deck.yaml"], "something was written")
+
+
+def results_go_where_the_deck_s_name_says():
+    run(deck(SMALL, "small_capsule.yaml"), "--quiet")
+    check(pathlib.Path("results/small_capsule/run.h5").is_file(), list(pathlib.Path().rglob("*")))
+
+
+def later_decks_and_settings_win_and_are_stored():
+    base, over = deck(SMALL), deck("Tanktread:\n  Time: {final time: 0.04}\n  Flow: {viscosity: 3}\n", "overlay.yaml")
+    run(base, over, "--set", "Flow/viscosity=2", "--set", "Membrane/pre-inflation=0.05", "--output", "out", "--quiet")
+    text = _stored_deck("out")
+    for line in ("final time: 0.04", "viscosity: 2.0", "pre-inflation: 0.05", "capillary number: 0.3", "elements per side: 3"):
+        check(line in text, f"no '{line}' in:\n{text}")
+    final = summary("out")["final"]
+    check(final["time"] == 0.04, final["time"])
+
+
+def a_met_expectation_is_0_and_a_missed_one_1():
+    met = ["--set", "Expect/volume/value=4.18879", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "met", "--quiet"]
+    run(deck(SMALL), *met)
+    check(summary("met")["expect"][0]["passed"] is True, "not noted")
+    missed = ["--set", "Expect/volume/value=5", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "missed", "--quiet"]
+    check("Expect" in run(deck(SMALL), *missed, code=1).stderr, "not said")
+    check(summary("missed")["expect"][0]["passed"] is False, "not noted")
+    unknown = ["--set", "Expect/happiness/value=5", "--set", "Expect/happiness/tolerance=1", "--output", "unknown", "--quiet"]
+    check("happiness" in run(deck(SMALL), *unknown, code=1).stderr, "not said")
+
+
+def an_expectation_that_the_run_does_not_reach_is_missed():
+    late = ["--set", "Expect/volume/value=4.18879", "--set", "Expect/volume/tolerance=1", "--set", "Expect/volume/at=9", "--output", "late", "--quiet"]
+    check("9" in run(deck(SMALL), *late, code=1).stderr, "not said")
+
+
+def a_run_that_fails_is_3_with_one_line_and_a_checkpoint():
+    hopeless = ["--set", "Time/minimum step=0.01", "--set", "Time/initial step=0.02", "--set", "Time/tolerance=1e-12", "--output", "out", "--quiet"]
+    result = run(deck(SMALL), *hopeless, code=3)
+    check(len(result.stderr.splitlines()) == 1, result.stderr)
+    check(list(pathlib.Path("out").glob("snapshot_*.hdf")), "no checkpoint")
+
+
+def a_resumed_run_may_change_its_end_but_not_its_mesh():
+    run(deck(SMALL), "--output", "out", "--quiet")
+    refused = run("--resume", "out", "--set", "Surface/elements per side=4", code=2).stderr
+    check("Surface/elements per side" in refused and "it was 3" in refused and "now is 4" in refused, refused)
+    run("--resume", "out", "--set", "Time/final time=0.07", "--quiet")
+    check(summary("out")["final"]["time"] == 0.07, "not gone on")
+    check("final time: 0.07" in _stored_deck("out"), "the stored deck is the old one")
+
+
+def xml_decks_are_read():
+    text = '<ParameterList name="Tanktread"><ParameterList name="Flow"><Parameter name="viscosity" type="double" value="7"/></ParameterList></ParameterList>\n'
+    check("viscosity: 7.0" in run(deck(text, "deck.xml"), "--check").stdout, "not read")
+
+
+def the_manual_names_every_key_of_an_effective_deck():
+    manual = run("--reference").stdout
+    for line in run(SOURCE / "inputs/shear_paper.yaml", "--check").stdout.split("\nplan")[0].splitlines():
+        key = line.strip().split(":")[0]
+        if line.startswith("    ") and not line.startswith("      "):
+            check(f"`{key}`" in manual or line.endswith(":"), f"{key} is not in the manual")
+
+
+main()
