@@ -12,7 +12,8 @@ struct CubeMesh {
   spline::TMesh mesh;
   spline::Space space;
 
-  explicit CubeMesh(int n) : mesh(spline::cube(n)), space(spline::space(mesh, spline::ExtraordinaryRule::g1)) {}
+  explicit CubeMesh(int n, spline::ExtraordinaryRule rule = spline::ExtraordinaryRule::g1)
+      : mesh(spline::cube(n)), space(spline::space(mesh, rule)) {}
   Net shape(const ParticleShape& shape) const { return initial_shape(space, mesh, shape); }
   Net sphere() const {
     ParticleShape shape;
