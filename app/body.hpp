@@ -20,7 +20,7 @@ struct Body {
   spline::TMesh mesh;
   spline::Space space;
   Net rest;            ///< control net of the resting shape, where the run starts
-  Net unstressed;      ///< smaller by the pre-inflation (method.md, section 3)
+  Net unstressed;      ///< smaller by the pre-inflation
   stokes::AmbientFlow flow;
   membrane::Law law;
   double radius = 1;   ///< R_C

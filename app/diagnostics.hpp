@@ -1,5 +1,5 @@
 #pragma once
-// The series of a run (interface.md, Results): their names, units, descriptions, and one row of them.
+// The series of a run: their names, units, descriptions, and one row of them.
 
 #include <string>
 #include <vector>

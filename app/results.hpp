@@ -30,7 +30,7 @@ struct Resumed {
   Standing standing;
 };
 
-/// The files of a run (interface.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw
+/// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw
 /// RunFailure when the disk refuses.
 class Results {
  public:

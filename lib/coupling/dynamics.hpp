@@ -5,7 +5,7 @@
 
 namespace tanktread::coupling {
 
-/// The system of method.md, section 4. Nets are replicated; every call is collective.
+/// The system (4.2). Nets are replicated; every call is collective.
 class Dynamics {
  public:
   virtual ~Dynamics() = default;

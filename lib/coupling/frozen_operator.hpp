@@ -11,8 +11,8 @@
 namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, as those of the Stokeslet and of the stresslet are: six entries a block, each
-/// rounded to 16 bits (the upper half of a float, relative error 2^-9). An operator that leaves out (dA/dx) f contracts by a tenth (time.md,
-/// section 3), so the rounding cannot be seen, and a product, which is bound by memory, takes a third of the time of floats.
+/// rounded to 16 bits (the upper half of a float, relative error 2^-9). An operator that leaves out (dA/dx) f contracts by a tenth,
+/// more or less, so the rounding cannot be seen, and a product, which is bound by memory, takes a third of the time of floats.
 class FrozenOperator {
  public:
   /// Rows of the own targets of a net of n points; `assemble(targets, rows)` fills three float rows a target, for a few targets at a time.

@@ -5,7 +5,7 @@
 namespace tanktread::motion {
 
 /// Bogacki & Shampine 1989, explicit, third order with an embedded second: three velocity evaluations a step, the last slope is the
-/// first one of the next. Stable for dt rho <= 2.51 with rho the stiffness of time.md, section 3.
+/// first one of the next. Stable for dt rho <= 2.51 with rho the stiffness (4.5).
 class Bs3 : public Integrator {
  public:
   explicit Bs3(const TimeOptions& options) : options_(options) {}

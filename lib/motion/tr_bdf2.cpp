@@ -83,7 +83,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     if (!solved) memory.contraction = std::min(0.5, contraction);
     const bool accepted = solved && (error <= 1 || options_.fixed_step);
     if (!solved && options_.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
-    // PI controller (time.md, section 6); the contraction rate grows with the step and is kept below its limit too.
+    // PI controller; the contraction rate grows with the step and is kept below its limit too.
     double factor = 0.5;
     if (solved) {
       const double e = std::max(error, 1e-3), old = memory.error > 0 && accepted ? std::max(memory.error, 1e-3) : e;

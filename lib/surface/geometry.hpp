@@ -26,7 +26,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
 struct Measures {
   double area = 0, volume = 0;
   Vec3 centroid;        ///< P-43
-  Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (method.md, section 6)
+  Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
 /// Semi-axes (descending), axes (columns) of the ellipsoid with the same second moments, a_i = sqrt(5 m_i / V).
@@ -36,7 +36,7 @@ struct Ellipsoid {
 };
 Ellipsoid ellipsoid_of_inertia(const Measures& measures);
 
-/// What the series report (method.md, section 6). D in the x1 x3 plane; inclination in degrees.
+/// What the series report (6.2). D in the x1 x3 plane; inclination in degrees.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3
@@ -50,7 +50,7 @@ class Geometry {
 
   const BezierMap& bezier() const { return map_; }
 
-  /// V(x) = 1/3 oint x.n dG (P-42), exact for polynomial elements.
+  /// V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements.
   double volume(const Net& net) const;
 
   /// The flux vector b_A = int N_A n dG = dV/dx_A (2.8), exact. Of these elements only: a row is complete when they hold all elements that

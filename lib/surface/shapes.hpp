@@ -14,7 +14,7 @@ namespace tanktread::surface {
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// The biconcave disc of a red cell with unit radius and axis x3, as an image of the unit sphere:
-///   (x1, x2, x3) -> (x1, x2, x3/2 (0.21 + 2.0 r^2 - 1.12 r^4)),  r^2 = x1^2 + x2^2        (reference.md; Evans & Fung 1972)
+///   (x1, x2, x3) -> (x1, x2, x3/2 (0.21 + 2.0 r^2 - 1.12 r^4)),  r^2 = x1^2 + x2^2        (Evans & Fung 1972)
 Vec3 red_cell(const Vec3& on_unit_sphere);
 
 /// The resting shape of a deck, in place. Nothing is scaled after the fit, so the volume errs as the fit does; lengths refer to the deck's radius.

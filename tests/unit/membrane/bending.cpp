@@ -94,7 +94,7 @@ TEST(Bending, EnergyOfASphereConvergesToTheExactOne) {
   }
 }
 
-/// The biconcave disc z = 1/2 sqrt(1 - r^2) (0.21 + 2 r^2 - 1.12 r^4): Helfrich's energy by quadrature of its meridian (reference.md).
+/// The biconcave disc z = 1/2 sqrt(1 - r^2) (0.21 + 2 r^2 - 1.12 r^4): Helfrich's energy by quadrature of its meridian.
 double energy_of_the_disc() {
   // r = sin a, z = cos a (0.21 + 2 sin^2 a - 1.12 sin^4 a)/2; principal curvatures of the meridian and of the parallel
   double sum = 0;

@@ -46,7 +46,7 @@ void expect_at_most(double value, double table) {
   EXPECT_GT(value, 0.3 * table);
 }
 
-TEST(Shapes, SphereErrsNoMoreThanTheMeasuredTable) {  // splines.md C.11, space.md section 4
+TEST(Shapes, SphereErrsNoMoreThanTheMeasuredTable) {
   const double rms[] = {6e-4, 4e-5, 2.4e-6};
   double normal_before = 0;
   for (int k = 0; k < 3; ++k) {
@@ -64,14 +64,14 @@ TEST(Shapes, SphereErrsNoMoreThanTheMeasuredTable) {  // splines.md C.11, space.
   EXPECT_GT(std::log2(normal_before / finest.normal), 2.5);
 }
 
-TEST(Shapes, CatmullClarkPointsErrNoMoreThanTheMeasuredTable) {  // splines.md C.11, space G
+TEST(Shapes, CatmullClarkPointsErrNoMoreThanTheMeasuredTable) {
   const Errors e = errors(CubeMesh(24, spline::ExtraordinaryRule::catmull_clark), Vec3::Ones());
   expect_at_most(e.radial, 6.1e-7);
   expect_at_most(e.normal, 6.7e-5);
   expect_at_most(e.largest_normal, 3.8e-4);
 }
 
-TEST(Shapes, NormalOfThePapersSpheroidErrsNoMoreThanTheMeasuredTable) {  // splines.md C.11: V = 1, b/a = 1.5
+TEST(Shapes, NormalOfThePapersSpheroidErrsNoMoreThanTheMeasuredTable) {  // V = 1, b/a = 1.5
   const double table[] = {1.42e-2, 1.80e-3, 2.51e-4, 3.96e-5};
   for (int k = 0; k < 4; ++k) expect_at_most(errors(CubeMesh(3 << k), {0.5419260701, 0.5419260701, 0.8128891052}).normal, table[k]);
 }
