@@ -25,7 +25,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
 /// Integral measures, by Gauss quadrature exact for the polynomials involved (volume, centroid, moments); the area by the same points.
 struct Measures {
   double area = 0, volume = 0;
-  Vec3 centroid;        ///< P-43
+  Vec3 centroid;        ///< P-42
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
