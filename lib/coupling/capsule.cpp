@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "base/errors.hpp"
-#include "spline/basis.hpp"
+#include "coupling/collocation.hpp"
 #include "surface/partition.hpp"
 
 namespace tanktread::coupling {
@@ -13,19 +12,6 @@ namespace {
 double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 
 }  // namespace
-
-Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < space.n_points; ++i) {
-    const spline::Site& site = space.collocation[static_cast<size_t>(i)].front();
-    const spline::Element& element = space.elements[static_cast<size_t>(site.element)];
-    const Eigen::VectorXd values = spline::basis(element, site.s, site.t, 0).value;
-    for (size_t a = 0; a < element.points.size(); ++a) entries.emplace_back(i, element.points[a], values[static_cast<Eigen::Index>(a)]);
-  }
-  Eigen::SparseMatrix<double> matrix(space.n_points, space.n_points);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
 
 Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases)

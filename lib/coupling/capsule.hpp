@@ -99,7 +99,4 @@ class Capsule : public Dynamics {
   Work work_;
 };
 
-/// Matrix R_iA = N_A(xi_i) of the collocation sites, shape (N, N).
-Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space);
-
 }  // namespace tanktread::coupling

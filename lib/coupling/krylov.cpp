@@ -1,6 +1,8 @@
 #include "coupling/krylov.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <sstream>
 #include <utility>
 
 #include <BelosSolverFactory_Tpetra.hpp>
@@ -45,18 +47,38 @@ class FunctionOperator : public Operator {
   mutable std::vector<double> buffer_;
 };
 
+/// Numbers at the ends of the lines "Iter 3, [ 1] : 1.2e-04" that Belos writes.
+std::vector<double> residuals(const std::string& log) {
+  std::vector<double> found;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t colon = line.rfind(':');
+    if (line.find("Iter ") != std::string::npos && line.find("] :") != std::string::npos) found.push_back(std::strtod(line.c_str() + colon + 1, nullptr));
+  }
+  return found;
+}
+
 }  // namespace
 
 struct Krylov::Impl {
   Teuchos::RCP<Teuchos::ParameterList> list = Teuchos::rcp(new Teuchos::ParameterList("Belos"));
   Teuchos::RCP<Solver> solver;
   std::string name;
+  std::ostringstream log;
 };
 
 Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list) : impl_(std::make_unique<Impl>()) {
   impl_->name = std::move(solver);
   impl_->list->set("Maximum Iterations", 200);
-  if (impl_->name == "GMRES" || impl_->name == "BLOCK GMRES" || impl_->name == "FLEXIBLE GMRES") impl_->list->set("Num Blocks", 200);
+  impl_->list->set("Verbosity", static_cast<int>(Belos::StatusTestDetails));  // heard by `log`, for the residual history
+  impl_->list->set("Output Style", static_cast<int>(Belos::Brief));
+  impl_->list->set("Output Frequency", 1);
+  impl_->list->set("Output Stream", Teuchos::RCP<std::ostream>(Teuchos::rcpFromRef(impl_->log)));
+  if (impl_->name.find("GMRES") != std::string::npos) {
+    impl_->list->set("Num Blocks", 200);
+    impl_->list->set("Implicit Residual Scaling", "Norm of RHS");
+    impl_->list->set("Explicit Residual Scaling", "Norm of RHS");
+  }
   if (list) impl_->list->setParameters(*list);
   try {
     Belos::SolverFactory<double, MultiVector, Operator> factory;
@@ -76,7 +98,7 @@ Krylov::~Krylov() = default;
 SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
   if (b.squaredNorm() == 0) {
     x.setZero();
-    return {0, true, 0};
+    return {0, true, 0, {}};
   }
   const auto comm = Tpetra::getDefaultComm();
   const auto map = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(b.size()), 0, comm, Tpetra::LocallyReplicated));
@@ -89,11 +111,22 @@ SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::V
   problem->setProblem();
   const auto now = Teuchos::rcp(new Teuchos::ParameterList(*impl_->list));
   now->set("Convergence Tolerance", tolerance);
+  impl_->log.str({});
   impl_->solver->setParameters(now);
   impl_->solver->setProblem(problem);
   const bool converged = impl_->solver->solve() == Belos::Converged;
   std::copy_n(lhs->getData(0).getRawPtr(), x.size(), x.data());
-  return {impl_->solver->getNumIters(), converged, impl_->solver->achievedTol()};
+  return {impl_->solver->getNumIters(), converged, impl_->solver->achievedTol(), residuals(impl_->log.str())};
+}
+
+void require_convergence(const SolveReport& report, const std::string& system, double tolerance) {
+  if (report.converged) return;
+  std::ostringstream text;
+  text << "the solver did not bring " << system << " to the relative residual " << tolerance << "; residuals:";
+  const size_t n = report.history.size(), shown = 12;
+  for (size_t i = 0; i < n; ++i)
+    if (i == 0 || i + 1 == n || i % std::max<size_t>(1, n / shown) == 0) text << " " << report.history[i] << " (" << i << ")";
+  throw RunFailure(text.str());
 }
 
 }  // namespace tanktread::coupling

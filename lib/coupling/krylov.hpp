@@ -19,7 +19,11 @@ struct SolveReport {
   int iterations = 0;
   bool converged = false;
   double achieved = 0;          ///< relative residual that Belos reports
+  std::vector<double> history;  ///< relative residual after each iteration
 };
+
+/// Throws RunFailure with the residual history when `report` is of a solve of `system` that did not reach `tolerance`.
+void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
 /// Belos, called through its factory, on locally replicated Tpetra vectors: every rank does the same arithmetic on the whole short
 /// vector, so dot products need no message and an iteration count cannot differ between ranks or rank counts. The operator may be
@@ -33,7 +37,7 @@ class Krylov {
   Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list);
   ~Krylov();
 
-  /// Solves apply(x) = b to the relative residual `tolerance`, starting from x. Collective. Does not throw when it stops short; see the report.
+  /// Solves apply(x) = b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw when it stops short; see the report.
   SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
  private:

@@ -19,6 +19,7 @@ struct VolumeOptions {
 struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of the implicit step
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
+  double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
   membrane::DirectSolverOptions direct;
 
   void declare(deck::Section& section);

@@ -46,7 +46,23 @@ TEST(Krylov, TellsWhenItStopsShort) {
   EXPECT_TRUE(krylov.solve(shift, b, x, 1e-8).converged);
   const Krylov::Apply singular = [&](const double*, double* out) { std::fill(out, out + n, 0.0); };
   x.setZero();
-  EXPECT_FALSE(krylov.solve(singular, b, x, 1e-8).converged);
+  const SolveReport report = krylov.solve(singular, b, x, 1e-8);
+  EXPECT_FALSE(report.converged);
+  EXPECT_THROW(require_convergence(report, "nothing", 1e-8), RunFailure);
+}
+
+TEST(Krylov, KeepsTheResidualHistory) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Krylov::Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  const SolveReport report = Krylov("GMRES", nullptr).solve(apply, Eigen::VectorXd::Ones(n), x, 1e-8);
+  ASSERT_GT(report.history.size(), 2u);
+  EXPECT_NEAR(report.history.front(), 1, 1e-12);
+  for (size_t i = 1; i < report.history.size(); ++i) EXPECT_LE(report.history[i], report.history[i - 1]);  // GMRES never rises
+  EXPECT_LE(report.history.back(), 1e-8);
 }
 
 TEST(Krylov, ZeroRightHandSideCostsNothing) {

@@ -1,0 +1,83 @@
+#include "coupling/resistance.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "coupling/collocation.hpp"
+#include "membrane/mass.hpp"
+#include "surface/geometry.hpp"
+#include "surface/partition.hpp"
+
+namespace tanktread::coupling {
+
+Resistance::Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
+                       const SolverOptions& solvers, Ranks& ranks, Phases& phases)
+    : space_(space),
+      surface_(surface),
+      viscosity_(viscosity),
+      ranks_(ranks),
+      phases_(phases),
+      layer_(space, quadrature),
+      collocation_(solvers.direct),
+      krylov_(solvers.krylov, solvers.belos),
+      tolerance_(solvers.tolerance) {
+  const auto clock = phases_.time("assembly");
+  own_points_ = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
+  ranks_.own(own_points_, space.n_points);
+  collocation_.factor(collocation_matrix(space));
+  mass_ = membrane::MassMatrix(space, 8).update(surface);  // eight points: the area is no polynomial
+
+  const surface::Geometry geometry(space);
+  flux_ = geometry.volume_gradient(surface);
+  membrane::DirectSolver mass(solvers.direct);
+  mass.factor(mass_);
+  normal_ = mass.solve(flux_);
+  // The single layer of a uniform density on a sphere of radius a is 2 a / 3 times the density.
+  const double radius = std::cbrt(3 * geometry.volume(surface) / (4 * M_PI));
+  weight_ = 2 * radius / 3 / flux_.cwiseProduct(normal_).sum();
+
+  layer_.set_reference(surface);
+  layer_.assemble(surface, stokes::Measure::reference, own_points_, rows_);
+}
+
+/// R^-1 A f + s c (b.f)/(b.c)
+Net Resistance::apply(const Net& f) const {
+  const Eigen::VectorXd out = rows_ * Eigen::Map<const Eigen::VectorXd>(f.data(), f.size());
+  Net u(f.rows(), 3);
+  for (size_t k = 0; k < own_points_.size(); ++k) u.row(own_points_[k]) = out.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+  ranks_.replicate(u);
+  return collocation_.solve(u) + weight_ * flux_.cwiseProduct(f).sum() * normal_;
+}
+
+Net Resistance::force_density(const Net& u) {
+  const auto clock = phases_.time("resistance solve");
+  const Eigen::Index n = u.rows();
+  const auto operation = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = apply(Eigen::Map<const Net>(in, n, 3)); };
+  const Net rhs = viscosity_ * u;
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
+  const SolveReport report = krylov_.solve(operation, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), f, tolerance_);
+  iterations_ += report.iterations;
+  require_convergence(report, "the first-kind system of the rigid surface", tolerance_);
+  return Eigen::Map<const Net>(f.data(), n, 3);
+}
+
+Vec3 Resistance::force(const Net& f) const {
+  const Net weighted = mass_ * f;  // rows int N_A f dG; they sum to the integral
+  return weighted.colwise().sum().transpose();
+}
+
+Vec3 Resistance::torque(const Net& f, const Vec3& centre) const {
+  const Net weighted = mass_ * f;
+  Vec3 torque = Vec3::Zero();
+  for (Eigen::Index a = 0; a < f.rows(); ++a)
+    torque += (surface_.row(a).transpose() - centre).cross(weighted.row(a).transpose());  // x = sum N_A x_A
+  return torque;
+}
+
+Mat3 Resistance::stresslet(const Net& f, const Vec3& centre) const {
+  const Net weighted = mass_ * f;
+  const Mat3 moment = weighted.transpose() * (surface_.rowwise() - centre.transpose());
+  return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+}
+
+}  // namespace tanktread::coupling

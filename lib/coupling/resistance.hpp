@@ -1,0 +1,60 @@
+#pragma once
+// A rigid surface in a fluid: the force density that gives a velocity on it.
+
+#include <vector>
+
+#include "base/timing.hpp"
+#include "base/types.hpp"
+#include "coupling/krylov.hpp"
+#include "coupling/options.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/direct_solver.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "stokes/single_layer.hpp"
+
+namespace tanktread::coupling {
+
+/// The first-kind equation of a fixed rigid surface, collocated:  (1/mu) A f = u on the surface, f the force per area on the fluid   (2.4)
+///
+/// A n = 0, so f is only known up to a multiple of n (a constant pressure inside); and u must carry no flux. Both are said openly:
+/// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is A + s R c b^T / (b.c), which is regular and gives the f with
+/// no net normal force, int f.n dG = 0, and takes up whatever flux the discrete u has.
+class Resistance {
+ public:
+  /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own; nothing moves afterwards.
+  Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
+             const SolverOptions& solvers, Ranks& ranks, Phases& phases);
+
+  /// Control values of f for velocities at control values u. Throws RunFailure, with the residuals, when the solver stops short.
+  Net force_density(const Net& u);
+
+  Vec3 force(const Net& f) const;                         ///< int f dG
+  Vec3 torque(const Net& f, const Vec3& centre) const;    ///< int (x - centre) x f dG
+  Mat3 stresslet(const Net& f, const Vec3& centre) const; ///< symmetric, traceless part of int f (x - centre) dG
+
+  const stokes::SingleLayer& single_layer() const { return layer_; }
+  long solver_iterations() const { return iterations_; }
+
+ private:
+  Net apply(const Net& f) const;
+
+  const spline::Space& space_;
+  Net surface_;
+  double viscosity_;
+  Ranks& ranks_;
+  Phases& phases_;
+  std::vector<int> own_points_;
+  stokes::SingleLayer layer_;
+  membrane::DirectSolver collocation_;
+  Eigen::SparseMatrix<double> mass_;
+  Net flux_, normal_;  // b and c
+  double weight_ = 0;  // s / (b.c)
+  stokes::Rows<double> rows_;
+  Krylov krylov_;
+  double tolerance_;
+  long iterations_ = 0;
+};
+
+}  // namespace tanktread::coupling
