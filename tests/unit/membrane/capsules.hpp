@@ -2,6 +2,7 @@
 // Spheres and smoothly deformed capsules, shared by the tests of this room.
 
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 #include <vector>
