@@ -16,7 +16,7 @@ inline double ellipse(double re, double im) {
   return half + std::sqrt(std::max(0., half * half - 1));
 }
 
-/// Smallest n with rho^(-2 n) <= error (splines.md, F.2), at least 1 and at most 1000.
+/// Smallest n with rho^(-2 n) <= error, at least 1 and at most 1000.
 inline int order_for(double error, double rho) {
   if (error >= 1) return 1;
   const double n = -std::log(error) / (2 * std::log(rho));

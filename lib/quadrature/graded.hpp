@@ -16,7 +16,7 @@ struct Demand {
 };
 
 /// Adds to `rule` tensor Gauss rules on parts of the unit square, halved along the longer physical edge until moderate orders are
-/// enough: the order of each direction from the Bernstein ellipse of the part (splines.md, F.2).
+/// enough: the order of each direction from the Bernstein ellipse of the part.
 /// `bezier`: Bezier points of the element, component c of point b at c (p + 1)^2 + b.
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule);
 

@@ -18,7 +18,7 @@ struct Shear {
 /// The bin of g_ab = x_,a . x_,b; the unit metric where that is not one.
 Shear shear(double g_ss, double g_st, double g_tt);
 
-/// Polar rule about (s, t) in the closed unit square (splines.md, F.1): up to four triangles with their apex there, in the plane of
+/// Polar rule about (s, t) in the closed unit square: up to four triangles with their apex there, in the plane of
 /// the metric `radial` Gauss points outwards and, in mu with arc coordinate h sinh(mu), so many angular ones that an integrand with
 /// poles at mu = +- i pi / 2 (the directions in which r^2 = 0) keeps `tolerance`. Measured on deformed surfaces
 /// (tests/verify/layers.cpp), the order must be the one for tolerance^1.25 exp(-range of mu / 2).

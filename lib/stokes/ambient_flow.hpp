@@ -23,7 +23,7 @@ class AmbientFlow {
   /// L_ij = dv_i/dx_j at a point, units 1/time.
   const Mat3& gradient(const Vec3& /*x*/) const { return gradient_; }
 
-  /// The rate of Ca, units 1/time: the shear rate, or the largest singular value of the gradient of `linear` (method.md, section 3).
+  /// The rate of Ca, units 1/time: the shear rate, or the largest singular value of the gradient of `linear`.
   double rate() const { return rate_; }
 
  private:

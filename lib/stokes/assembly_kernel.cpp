@@ -20,26 +20,31 @@ struct Block {
 };
 
 // g[block (6 k + c) + l]
-template <class Real>
+template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;
   Real use[n];
   for (int l = 0; l < n; ++l) use[l] = skip >> l & 1 ? 0 : 1;
   for (int k = 0; k < panel.n_nodes; ++k, g += 6 * n) {
     const double x = panel.x[k], y = panel.y[k], z = panel.z[k];
-    const Real weight = static_cast<Real>(panel.weight[k]);
+    const Real weight = Double ? 0 : static_cast<Real>(panel.weight[k]);
+    Real normal[3] = {};
+    if (Double)
+      for (int c = 0; c < 3; ++c) normal[c] = static_cast<Real>(panel.normal[c][k]);
     for (int l = 0; l < n; ++l) {
       const Real rx = static_cast<Real>(x - target[l]), ry = static_cast<Real>(y - target[n + l]),
                  rz = static_cast<Real>(z - target[2 * n + l]);
       const Real square = rx * rx + ry * ry + rz * rz;
-      const Real inverse = square > 0 ? 1 / std::sqrt(square) : 0;
-      const Real weighted = use[l] * weight * inverse, cube = weighted * inverse * inverse;
-      g[l] = weighted + cube * rx * rx;
-      g[n + l] = cube * rx * ry;
-      g[2 * n + l] = cube * rx * rz;
-      g[3 * n + l] = weighted + cube * ry * ry;
-      g[4 * n + l] = cube * ry * rz;
-      g[5 * n + l] = weighted + cube * rz * rz;
+      const Real inverse = square > 0 ? use[l] / std::sqrt(square) : 0, second = inverse * inverse;
+      const Real height = rx * normal[0] + ry * normal[1] + rz * normal[2];
+      const Real isotropic = Double ? 0 : weight * inverse;
+      const Real dyadic = Double ? -6 * height * (second * second * inverse) : isotropic * second;
+      g[l] = isotropic + dyadic * rx * rx;
+      g[n + l] = dyadic * rx * ry;
+      g[2 * n + l] = dyadic * rx * rz;
+      g[3 * n + l] = isotropic + dyadic * ry * ry;
+      g[4 * n + l] = dyadic * ry * rz;
+      g[5 * n + l] = isotropic + dyadic * rz * rz;
     }
   }
 }
@@ -76,7 +81,10 @@ void add_products(const PanelNodes<Real>& panel, const Real* g, int part, Real* 
 
 template <class Real>
 void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums) {
-  kernel_values(panel, target, skip, scratch);
+  if (panel.weight)
+    kernel_values<Real, false>(panel, target, skip, scratch);
+  else
+    kernel_values<Real, true>(panel, target, skip, scratch);
   for (int part = 0; part < Block<Real>::packs; ++part) add_products(panel, scratch, part, sums);
 }
 

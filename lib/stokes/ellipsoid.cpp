@@ -20,20 +20,28 @@ Vec3 Ellipsoid::force(double viscosity, const Vec3& velocity) const {
   return 16 * pi * viscosity * velocity.array() / (chi + alpha.array() * semi_axes.array().square());
 }
 
-Vec3 Ellipsoid::torque(double viscosity, const Vec3& angular_velocity) const {
+/// K omega
+Vec3 Ellipsoid::rotlet(double viscosity, const Vec3& angular_velocity) const {
   const Vec3 s = semi_axes.cwiseAbs2();
-  Vec3 t;
+  Vec3 k;
   for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    t[i] = 16 * pi * viscosity / 3 * (s[j] + s[k]) * angular_velocity[i] / (s[j] * alpha[j] + s[k] * alpha[k]);
+    const int j = (i + 1) % 3, l = (i + 2) % 3;
+    k[i] = 16 * pi * viscosity / 3 * angular_velocity[i] / (s[j] * alpha[j] + s[l] * alpha[l]);
   }
-  return t;
+  return k;
 }
 
-Vec3 Ellipsoid::force_density(double viscosity, const Vec3& velocity, const Vec3& x) const {
-  const double h = 1 / std::sqrt((x.array() / semi_axes.array().square()).square().sum());
-  return force(viscosity, velocity) * h / (4 * pi * semi_axes.prod());
+Vec3 Ellipsoid::torque(double viscosity, const Vec3& angular_velocity) const {
+  const Vec3 s = semi_axes.cwiseAbs2();
+  return (s.sum() - s.array()) * rotlet(viscosity, angular_velocity).array();
 }
+
+Vec3 Ellipsoid::force_density(double viscosity, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& x) const {
+  const double h = 1 / (x.array() / semi_axes.array().square()).matrix().norm();
+  return h / (4 * pi * semi_axes.prod()) * (force(viscosity, velocity) + 3 * rotlet(viscosity, angular_velocity).cross(x));
+}
+
+Vec3 Ellipsoid::point(const Vec3& x) const { return x / (x.array() / semi_axes.array()).matrix().norm(); }
 
 Vec3 Ellipsoid::normal(const Vec3& x) const { return (x.array() / semi_axes.array().square()).matrix().normalized(); }
 

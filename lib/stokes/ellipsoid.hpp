@@ -19,15 +19,21 @@ struct Ellipsoid {
   /// Torque that it exerts when it turns with omega: T_3 = (16 pi mu/3)(a^2 + b^2) omega_3 / (a^2 alpha_1 + b^2 alpha_2), cyclic.
   Vec3 torque(double viscosity, const Vec3& angular_velocity) const;
 
-  /// Force per area that it exerts at a point x of the surface when it translates: f = F h/(4 pi abc), h = (sum x_i^2/a_i^4)^(-1/2).
-  Vec3 force_density(double viscosity, const Vec3& velocity, const Vec3& x) const;
+  /// Force per area that it exerts at a point x of the surface, h = (sum x_i^2/a_i^4)^(-1/2) = n.x:
+  /// f = h/(4 pi abc) (F + 3 (K omega) x x), with K_3 = T_3 / (omega_3 (a^2 + b^2)), cyclic. The moment of the second part is that of a
+  /// uniform stress, as Jeffery found; its antisymmetric part is the torque, the symmetric one follows from that by the reciprocal theorem.
+  Vec3 force_density(double viscosity, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& x) const;
 
-  /// Outward unit normal in the direction of x.
+  /// The point of the surface in the direction of x, and the outward unit normal there.
+  Vec3 point(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
   Vec3 semi_axes;
   double chi = 0;
   Vec3 alpha;
+
+ private:
+  Vec3 rotlet(double viscosity, const Vec3& angular_velocity) const;
 };
 
 }  // namespace tanktread::stokes

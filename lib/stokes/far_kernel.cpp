@@ -59,4 +59,39 @@ void node_sum(const PointForces& forces, const double* x0, double* u) {
   u[0] = ux, u[1] = uy, u[2] = uz;
 }
 
+void far_sum(const Stresslets& nodes, const double* target, double* u) {
+  for (int p = 0; p < packs; ++p) {
+    Pack t[6], ux{}, uy{}, uz{};
+    for (int c = 0; c < 6; ++c) t[c] = load(target + far_block * c + lanes * p);
+    for (int k = 0; k < nodes.n; ++k) {
+      const Pack rx = nodes.x[k] - t[0], ry = nodes.y[k] - t[1], rz = nodes.z[k] - t[2];
+      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), square = inverse * inverse;
+      const Pack velocity = rx * (nodes.vx[k] - t[3]) + ry * (nodes.vy[k] - t[4]) + rz * (nodes.vz[k] - t[5]);
+      const Pack normal = rx * nodes.nx[k] + ry * nodes.ny[k] + rz * nodes.nz[k];
+      const Pack strength = -6 * velocity * normal * (square * square * inverse);
+      ux += strength * rx;
+      uy += strength * ry;
+      uz += strength * rz;
+    }
+    store(ux, u + lanes * p);
+    store(uy, u + far_block + lanes * p);
+    store(uz, u + 2 * far_block + lanes * p);
+  }
+}
+
+void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u) {
+  double ux = 0, uy = 0, uz = 0;
+  for (int k = 0; k < nodes.n; ++k) {
+    const double rx = nodes.x[k] - x0[0], ry = nodes.y[k] - x0[1], rz = nodes.z[k] - x0[2];
+    const double square = rx * rx + ry * ry + rz * rz, inverse = square > 0 ? 1 / std::sqrt(square) : 0;
+    const double velocity = rx * (nodes.vx[k] - v0[0]) + ry * (nodes.vy[k] - v0[1]) + rz * (nodes.vz[k] - v0[2]);
+    const double normal = rx * nodes.nx[k] + ry * nodes.ny[k] + rz * nodes.nz[k];
+    const double strength = -6 * velocity * normal * inverse * inverse * inverse * inverse * inverse;
+    ux += strength * rx;
+    uy += strength * ry;
+    uz += strength * rz;
+  }
+  u[0] = ux, u[1] = uy, u[2] = uz;
+}
+
 }  // namespace tanktread::stokes

@@ -11,6 +11,17 @@ struct PointForces {
   PointForces part(int first, int count) const { return {count, x + first, y + first, z + first, fx + first, fy + first, fz + first}; }
 };
 
+/// Regularised stresslets: positions, velocities, and normals times the area of the node.
+struct Stresslets {
+  int n = 0;
+  const double *x = nullptr, *y = nullptr, *z = nullptr, *vx = nullptr, *vy = nullptr, *vz = nullptr;
+  const double *nx = nullptr, *ny = nullptr, *nz = nullptr;
+
+  Stresslets part(int first, int count) const {
+    return {count, x + first, y + first, z + first, vx + first, vy + first, vz + first, nx + first, ny + first, nz + first};
+  }
+};
+
 /// Targets that share one pass over the nodes.
 constexpr int far_block = 16;
 
@@ -20,5 +31,9 @@ void far_sum(const PointForces& forces, const double* target, double* u);
 
 /// The same for one target x0[3], u[3]: what a pair with a better rule takes back.
 void node_sum(const PointForces& forces, const double* x0, double* u);
+
+/// u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 the place, 3, 4, 5 the velocity v0 there.
+void far_sum(const Stresslets& nodes, const double* target, double* u);
+void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
 }  // namespace tanktread::stokes

@@ -14,7 +14,7 @@
 
 namespace tanktread::stokes {
 
-/// Near rules by tolerance (method.md, section 2; splines.md, F.2). A pure function of the present shape: no memory of earlier ones.
+/// Near rules by tolerance. A pure function of the present shape: no memory of earlier ones.
 class NearField {
  public:
   /// `tolerance`: accuracy relative to int dG / r over the whole surface, about sqrt(4 pi area).

@@ -34,6 +34,16 @@ struct Points {
       along_t += dt[j] * row;
     }
   }
+
+  // r = x - x0, and r . (x_,s x x_,t)
+  Pack height(const double* x, int n_b, const double* x0, Pack (&r)[3]) const {
+    Pack a[3], b[3];
+    for (int c = 0; c < 3; ++c) {
+      r[c] = value(x + n_b * c) - x0[c];
+      gradient(x + n_b * c, a[c], b[c]);
+    }
+    return r[0] * (a[1] * b[2] - a[2] * b[1]) + r[1] * (a[2] * b[0] - a[0] * b[2]) + r[2] * (a[0] * b[1] - a[1] * b[0]);
+  }
 };
 
 Pack root(const Pack& a) {
@@ -72,7 +82,7 @@ struct Sums {
   }
 
   static void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* g, double* moment) {
-    const int n = Degree ? Degree + 1 : table.degree + 1, n_b = n * n;
+    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
       const Pack rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
@@ -81,6 +91,45 @@ struct Sums {
       g[6 * k] = weighted + cube * rx * rx, g[6 * k + 1] = cube * rx * ry, g[6 * k + 2] = cube * rx * rz;
       g[6 * k + 3] = weighted + cube * ry * ry, g[6 * k + 4] = cube * ry * rz, g[6 * k + 5] = weighted + cube * rz * rz;
     }
+    project(table, g, moment);
+  }
+
+  static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
+    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    Pack ux{}, uy{}, uz{};
+    for (int k = 0; k < table.packs(); ++k) {
+      const Points<Degree> points(table, k);
+      Pack r[3];
+      const Pack normal = points.height(x, n_b, x0, r) * table.weights[k];
+      const Pack velocity =
+          r[0] * (points.value(v) - v0[0]) + r[1] * (points.value(v + n_b) - v0[1]) + r[2] * (points.value(v + 2 * n_b) - v0[2]);
+      const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
+      const Pack strength = -6 * velocity * normal * (square * square * inverse);
+      ux += strength * r[0];
+      uy += strength * r[1];
+      uz += strength * r[2];
+    }
+    u[0] = sum(ux), u[1] = sum(uy), u[2] = sum(uz);
+  }
+
+  static void double_moments(const PointTable& table, const double* x, const double* x0, Pack* g, double* moment) {
+    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    for (int k = 0; k < table.packs(); ++k) {
+      const Points<Degree> points(table, k);
+      Pack r[3];
+      const Pack normal = points.height(x, n_b, x0, r) * table.weights[k];
+      const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
+      const Pack strength = -6 * normal * (square * square * inverse);
+      int c = 6 * k;
+      for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j) g[c++] = strength * r[i] * r[j];
+    }
+    project(table, g, moment);
+  }
+
+  // moment[6 b + c] = sum over the points of g[6 k + c] B_b
+  static void project(const PointTable& table, const Pack* g, double* moment) {
+    const int n = Degree ? Degree + 1 : table.degree + 1;
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
         Pack total[6] = {};
@@ -113,6 +162,14 @@ void single_sum(const PointTable& table, const double* x, const double* f, const
 
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment) {
   with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, weight, x0, scratch, moment); });
+}
+
+void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
+  with_degree(table.degree, [&](auto sums) { sums.double_sum(table, x, v, x0, v0, u); });
+}
+
+void double_moments(const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment) {
+  with_degree(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, scratch, moment); });
 }
 
 }  // namespace tanktread::stokes

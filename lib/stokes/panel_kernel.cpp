@@ -1,7 +1,6 @@
 #include "stokes/panel_kernel.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tanktread::stokes {
 namespace {
@@ -48,12 +47,11 @@ void combine(int n_b, int n, const double* table, const double* coefficient, dou
   combine_all<0>(n_b, n, table, coefficient, value);
 }
 
-void weigh_areas(int n, const double* a, const double* gauss, double* __restrict weight) {
+void weigh_normals(int n, const double* a, const double* gauss, double* __restrict nx, double* __restrict ny, double* __restrict nz) {
   for (int k = 0; k < n; ++k) {
-    const double nx = a[n + k] * a[5 * n + k] - a[2 * n + k] * a[4 * n + k];
-    const double ny = a[2 * n + k] * a[3 * n + k] - a[k] * a[5 * n + k];
-    const double nz = a[k] * a[4 * n + k] - a[n + k] * a[3 * n + k];
-    weight[k] = gauss[k] * std::sqrt(nx * nx + ny * ny + nz * nz);
+    nx[k] = gauss[k] * (a[n + k] * a[5 * n + k] - a[2 * n + k] * a[4 * n + k]);
+    ny[k] = gauss[k] * (a[2 * n + k] * a[3 * n + k] - a[k] * a[5 * n + k]);
+    nz[k] = gauss[k] * (a[k] * a[4 * n + k] - a[n + k] * a[3 * n + k]);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "stokes/panels.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
@@ -63,8 +64,8 @@ void node_values(const Panels& panels, const std::vector<double>& bezier, std::v
   }
 }
 
-void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight) {
-  weight.resize(panels.n_nodes());
+void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]) {
+  for (auto& component : normal) component.resize(panels.n_nodes());
   std::vector<double> tangents;
   for (int e = 0; e < panels.size(); ++e) {
     const NodeTable& t = *panels[e].table;
@@ -74,8 +75,17 @@ void node_weights(const Panels& panels, const std::vector<double>& bezier, std::
       combine(t.n_bernstein, t.n_nodes, t.along_s.data(), points, &tangents[c * t.n_nodes]);
       combine(t.n_bernstein, t.n_nodes, t.along_t.data(), points, &tangents[(3 + c) * t.n_nodes]);
     }
-    weigh_areas(t.n_nodes, tangents.data(), t.weights.data(), &weight[panels[e].first_node]);
+    const int first = panels[e].first_node;
+    weigh_normals(t.n_nodes, tangents.data(), t.weights.data(), &normal[0][first], &normal[1][first], &normal[2][first]);
   }
+}
+
+void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight) {
+  std::vector<double> normal[3];
+  node_normals(panels, bezier, normal);
+  weight.resize(panels.n_nodes());
+  for (int k = 0; k < panels.n_nodes(); ++k)
+    weight[k] = std::sqrt(normal[0][k] * normal[0][k] + normal[1][k] * normal[1][k] + normal[2][k] * normal[2][k]);
 }
 
 }  // namespace tanktread::stokes

@@ -54,6 +54,9 @@ class Panels {
 /// Values of a field at all far nodes, one array a component, from its Bezier points.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 
+/// Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that a node stands for.
+void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]);
+
 /// Gauss weight times |x_,s x x_,t| at all far nodes.
 void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight);
 

@@ -40,18 +40,20 @@ SelfField::SelfField(const spline::Space& space, const quadrature::Options& opti
   }
 }
 
-bool SelfField::choose(SelfPair& pair, int degree, const double* bezier) {
+const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
+  const int degree = panels[pair.panel].table->degree, n = degree + 1;
   quadrature::Shear shear;
   if (options_.rule != "fixed") {
-    const int n = degree + 1;
-    const double* b = pair.bernstein.data();
-    const Vec3 a1 = product(b + 2 * n, b + n, n, bezier), a2 = product(b, b + 3 * n, n, bezier);
+    const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
+    const Vec3 a1 = product(b + 2 * n, b + n, n, points), a2 = product(b, b + 3 * n, n, points);
     shear = quadrature::shear(a1.dot(a1), a1.dot(a2), a2.dot(a2));
   }
-  if (pair.table && shear == pair.shear) return false;
-  pair.shear = shear;
-  pair.table = &made(pair, degree, shear);
-  return true;
+  if (!pair.table || shear != pair.shear) {
+    pair.shear = shear;
+    pair.table = &made(pair, degree, shear);
+    pair.weights.clear();
+  }
+  return *pair.table;
 }
 
 const PointTable& SelfField::made(const SelfPair& pair, int degree, quadrature::Shear shear) {
@@ -65,10 +67,33 @@ const PointTable& SelfField::made(const SelfPair& pair, int degree, quadrature::
   return *table;
 }
 
-Vec3 SelfField::point(int i, const Panels& panels, const std::vector<double>& bezier) const {
+void SelfField::forget_weights() {
+  for (SelfPair& pair : pairs_) pair.weights.clear();
+}
+
+Vec3 SelfField::value(int i, const Panels& panels, const std::vector<double>& bezier) const {
   const SelfPair& pair = pairs_[first_[i]];
   const int n = panels[pair.panel].table->degree + 1;
-  return product(pair.bernstein.data(), pair.bernstein.data() + n, n, &bezier[panels[pair.panel].first_bezier]);
+  const double* b = pair.bernstein.data();
+  return product(b, b + n, n, &bezier[panels[pair.panel].first_bezier]);
+}
+
+std::pair<Vec3, Vec3> SelfField::tangents(int i, const Panels& panels, const std::vector<double>& bezier) const {
+  const SelfPair& pair = pairs_[first_[i]];
+  const int n = panels[pair.panel].table->degree + 1;
+  const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
+  return {product(b + 2 * n, b + n, n, points), product(b, b + 3 * n, n, points)};
+}
+
+std::pair<int, Eigen::VectorXd> SelfField::basis(int i, const Panels& panels) const {
+  const SelfPair& pair = pairs_[first_[i]];
+  const Panel& panel = panels[pair.panel];
+  const int n = panel.table->degree + 1, n_b = n * n;
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(panel.functions);
+  const double* extraction = panels.extraction(pair.panel);
+  for (int a = 0; a < panel.functions; ++a)
+    for (int b = 0; b < n_b; ++b) values[a] += extraction[n_b * a + b] * pair.bernstein[b % n] * pair.bernstein[n + b / n];
+  return {pair.panel, values};
 }
 
 }  // namespace tanktread::stokes

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "quadrature/options.hpp"
@@ -32,11 +33,18 @@ class SelfField {
   /// The pairs of collocation point i.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
-  /// Gives the pair the rule for the panel's present metric. True when the rule is another one than before.
-  bool choose(SelfPair& pair, int degree, const double* bezier);
+  /// The rule for the pair's panel in its present metric. Weights kept for another rule are thrown away.
+  const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
 
-  /// The collocation point itself, from its first panel.
-  Vec3 point(int i, const Panels& panels, const std::vector<double>& bezier) const;
+  /// Throws away all weights kept.
+  void forget_weights();
+
+  /// Value at collocation point i of the field with these Bezier points, and its derivatives by s and t, from its first panel.
+  Vec3 value(int i, const Panels& panels, const std::vector<double>& bezier) const;
+  std::pair<Vec3, Vec3> tangents(int i, const Panels& panels, const std::vector<double>& bezier) const;
+
+  /// The functions that live on the first panel of collocation point i: panel and N_A there.
+  std::pair<int, Eigen::VectorXd> basis(int i, const Panels& panels) const;
 
  private:
   const PointTable& made(const SelfPair& pair, int degree, quadrature::Shear shear);

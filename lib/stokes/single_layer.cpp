@@ -4,6 +4,9 @@
 #include <cassert>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
+#include "stokes/identity_kernel.hpp"
 #include "stokes/pair_kernel.hpp"
 
 namespace tanktread::stokes {
@@ -14,63 +17,46 @@ constexpr double factor = 1 / (8 * std::numbers::pi);
 /// Nodes that all targets meet before the next ones are loaded: 48 bytes each.
 constexpr int nodes_in_cache = 4096;
 
-/// Gauss points a direction of the far rule. Measured on capsules in shear at n = 6 and 12 (space.md, section 3; tests/verify/layers.cpp).
-int far_order(const quadrature::Options& options) {
-  if (options.rule == "fixed") return options.points;
-  if (options.tolerance >= 1e-4) return 3;
-  if (options.tolerance >= 1e-6) return 4;
-  if (options.tolerance >= 1e-8) return 6;
-  if (options.tolerance >= 1e-9) return 7;
-  return options.tolerance >= 1e-10 ? 9 : 11;
-}
-
 }  // namespace
 
-SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options)
-    : options_(options),
-      n_points_(space.n_points),
-      panels_(space, std::vector<int>(space.elements.size(), far_order(options))),
-      near_field_(panels_, options.tolerance, far_order(options)),
-      self_field_(space, options) {}
+SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, options) {}
 
 void SingleLayer::set_reference(const Net& unstressed) {
-  panels_.bezier(unstressed, bezier_unstressed_);
-  node_weights(panels_, bezier_unstressed_, weight_unstressed_);
-  for (int i = 0; i < n_points_; ++i)
-    for (SelfPair& pair : self_field_[i]) pair.table = nullptr;
+  surface_.panels.bezier(unstressed, bezier_unstressed_);
+  node_weights(surface_.panels, bezier_unstressed_, weight_unstressed_);
+  surface_.self_field.forget_weights();
 }
 
 void SingleLayer::place(const Net& x, Measure measure, std::span<const int> targets) {
-  panels_.bezier(x, bezier_);
-  node_values(panels_, bezier_, node_);
-  if (measure == Measure::current) {
-    node_weights(panels_, bezier_, weight_present_);
-    weight_ = &weight_present_, area_ = &bezier_;
-  } else {
-    assert(!weight_unstressed_.empty() && "set_reference() comes first");
-    weight_ = &weight_unstressed_, area_ = &bezier_unstressed_;
-  }
-  if (options_.rule != "fixed") near_field_.update(bezier_);
-  at_.clear();
-  for (const int i : targets) at_.push_back(self_field_.point(i, panels_, bezier_));
+  assert((measure == Measure::current || !weight_unstressed_.empty()) && "set_reference() comes first");
+  measure_ = measure;
+  surface_.place(x);
+  if (measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_present_);
+  if (surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
+  surface_.collocation_points(targets, at_);
 }
 
 PointForces SingleLayer::forces() const {
-  return {panels_.n_nodes(), node_[0].data(), node_[1].data(), node_[2].data(), force_[0].data(), force_[1].data(), force_[2].data()};
+  const auto& node = surface_.node;
+  return {n_nodes(), node[0].data(), node[1].data(), node[2].data(), force_[0].data(), force_[1].data(), force_[2].data()};
 }
 
 void SingleLayer::apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u) {
   {
     const auto clock = phases_.time("setup");
     place(x, measure, targets);
-    panels_.bezier(f, bezier_f_);
-    node_values(panels_, bezier_f_, force_);
+    surface_.panels.bezier(f, bezier_f_);
+    node_values(surface_.panels, bezier_f_, force_);
+    const auto& weight = measure == Measure::current ? weight_present_ : weight_unstressed_;
     for (auto& component : force_)
-      for (int k = 0; k < panels_.n_nodes(); ++k) component[k] *= (*weight_)[k];
+      for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
   }
   add_far(targets, u);
   add_near(targets, u);
-  add_self(targets, measure, u);
+  if (surface_.options.rule == "desingularised")
+    subtract_identities(targets, u);
+  else
+    add_self(targets, u);
   for (const int i : targets) u.row(i) *= factor;
 }
 
@@ -93,61 +79,118 @@ void SingleLayer::add_far(std::span<const int> targets, Net& u) {
   evaluations_.far += static_cast<long long>(n) * all.n;
 }
 
-void SingleLayer::list_near(int target, const Vec3& at) {
-  near_.clear();
-  if (options_.rule == "fixed") return;
-  near_field_.list(at, self_field_[target], near_);
+/// Weights of a rule on panel e, area included. On a panel that the target lies on those of the unstressed surface are kept.
+const Pack* SingleLayer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
+  const auto& surface = measure_ == Measure::current ? surface_.bezier : bezier_unstressed_;
+  const bool kept = pair && measure_ == Measure::reference;
+  std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
+  if (kept && !weights.empty()) return weights.data();
+  weights.resize(table.packs());
+  area_weights(table, &surface[surface_.panels[e].first_bezier], weights.data());
+  return weights.data();
 }
 
 void SingleLayer::add_near(std::span<const int> targets, Net& u) {
   const auto clock = phases_.time("near");
   const PointForces all = forces();
-  double far[3], own[3];
-  for (std::size_t k = 0; k < targets.size(); ++k) {
-    list_near(targets[k], at_[k]);
-    for (const int e : near_) {
-      const Panel& panel = panels_[e];
-      const PointTable& table = near_field_.rule(e, at_[k]);
-      point_weights_.resize(table.packs());
-      area_weights(table, &(*area_)[panel.first_bezier], point_weights_.data());
-      single_sum(table, &bezier_[panel.first_bezier], &bezier_f_[panel.first_bezier], point_weights_.data(), at_[k].data(), own);
-      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far);
-      for (int c = 0; c < 3; ++c) u(targets[k], c) += own[c] - far[c];
+  Vec3 far, own;
+  for (std::size_t k = 0; k < targets.size(); ++k)
+    for (const int e : surface_.near(targets[k], at_[k])) {
+      const Panel& panel = surface_.panels[e];
+      const PointTable& table = surface_.near_field.rule(e, at_[k]);
+      const Pack* weights = area_weights_of(e, table, nullptr);
+      single_sum(table, &surface_.bezier[panel.first_bezier], &bezier_f_[panel.first_bezier], weights, at_[k].data(), own.data());
+      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
+      u.row(targets[k]) += (own - far).transpose();
       evaluations_.near += table.points + panel.table->n_nodes;
     }
-  }
 }
 
-const Pack* SingleLayer::self_weights(SelfPair& pair, Measure measure) {
-  const Panel& panel = panels_[pair.panel];
-  const bool is_new = self_field_.choose(pair, panel.table->degree, &bezier_[panel.first_bezier]);
-  if (measure == Measure::current) {
-    if (is_new) pair.weights.clear();
-    point_weights_.resize(pair.table->packs());
-    area_weights(*pair.table, &bezier_[panel.first_bezier], point_weights_.data());
-    return point_weights_.data();
-  }
-  if (is_new || pair.weights.empty()) {
-    pair.weights.resize(pair.table->packs());
-    area_weights(*pair.table, &bezier_unstressed_[panel.first_bezier], pair.weights.data());
-  }
-  return pair.weights.data();
-}
-
-void SingleLayer::add_self(std::span<const int> targets, Measure measure, Net& u) {
+void SingleLayer::add_self(std::span<const int> targets, Net& u) {
   const auto clock = phases_.time("self");
   const PointForces all = forces();
-  double far[3], own[3];
-  for (std::size_t k = 0; k < targets.size(); ++k) {
-    for (SelfPair& pair : self_field_[targets[k]]) {
-      const Panel& panel = panels_[pair.panel];
-      const Pack* weights = self_weights(pair, measure);
-      single_sum(*pair.table, &bezier_[panel.first_bezier], &bezier_f_[panel.first_bezier], weights, at_[k].data(), own);
-      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far);
-      for (int c = 0; c < 3; ++c) u(targets[k], c) += own[c] - far[c];
-      evaluations_.self += pair.table->points + panel.table->n_nodes;
+  Vec3 far, own;
+  for (std::size_t k = 0; k < targets.size(); ++k)
+    for (SelfPair& pair : surface_.own(targets[k])) {
+      const Panel& panel = surface_.panels[pair.panel];
+      const PointTable& table = surface_.self_field.rule(pair, surface_.panels, surface_.bezier);
+      const Pack* weights = area_weights_of(pair.panel, table, &pair);
+      single_sum(table, &surface_.bezier[panel.first_bezier], &bezier_f_[panel.first_bezier], weights, at_[k].data(), own.data());
+      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
+      u.row(targets[k]) += (own - far).transpose();
+      evaluations_.self += table.points + panel.table->n_nodes;
+    }
+}
+
+/// M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,
+///   M f = sum_q w [G (f_n n + f_t (n0.n) + n0 (f_t.n)) - (n0.r) T f_t n],
+/// which is 0 for an exact rule. f is measured as the density is.
+Mat3 SingleLayer::identities(int target, const Vec3& at) const {
+  const auto normal_of = [&](const std::vector<double>& bezier) -> Vec3 {
+    const auto [a1, a2] = surface_.self_field.tangents(target, surface_.panels, bezier);
+    return a1.cross(a2);
+  };
+  const Vec3 a = normal_of(surface_.bezier), n0 = a.normalized();
+  const auto& node = surface_.node;
+  const IdentitySums s = identity_sums(n_nodes(), node[0].data(), node[1].data(), node[2].data(), normal_[0].data(), normal_[1].data(),
+                                       normal_[2].data(), at.data(), n0.data());
+  const Mat3 tangential = Mat3::Identity() - n0 * n0.transpose();
+  const Mat3 m = Vec3(s.pressure) * n0.transpose() + Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.shear) * tangential;
+  return measure_ == Measure::current ? m : Mat3(m * (normal_of(bezier_unstressed_).norm() / a.norm()));
+}
+
+void SingleLayer::subtract_identities(std::span<const int> targets, Net& u) {
+  const auto clock = phases_.time("self");
+  for (std::size_t k = 0; k < targets.size(); ++k)
+    u.row(targets[k]) -= (identities(targets[k], at_[k]) * surface_.self_field.value(targets[k], surface_.panels, bezier_f_)).transpose();
+  evaluations_.self += static_cast<long long>(targets.size()) * n_nodes();
+}
+
+/// The single layer as dense_rows() wants it.
+struct SingleLayer::Moments {
+  SingleLayer& layer;
+  std::vector<Pack> scratch;
+
+  void own_moments(const Vec3& x0, int e, const PointTable& table, SelfPair* pair, double* moments) {
+    scratch.resize(static_cast<std::size_t>(6) * table.packs());
+    const Pack* weights = layer.area_weights_of(e, table, pair);
+    single_moments(table, &layer.surface_.bezier[layer.surface_.panels[e].first_bezier], weights, x0.data(), scratch.data(), moments);
+  }
+
+  template <class Real>
+  void far_nodes(PanelNodes<Real>& nodes, int first) const {
+    nodes.weight = (layer.measure_ == Measure::current ? layer.weight_present_ : layer.weight_unstressed_).data() + first;
+  }
+
+  template <class Real>
+  void finish(int, const Vec3&, Real*) const {}
+
+  template <class Real>
+  void subtract_identities(std::span<const int> targets, Rows<Real>& a) const {
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      const Mat3 m = factor * layer.identities(targets[k], layer.at_[k]);
+      const auto [panel, basis] = layer.surface_.self_field.basis(targets[k], layer.surface_.panels);
+      for (int b = 0; b < basis.size(); ++b)
+        a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * layer.surface_.panels.points(panel)[b]) -=
+            (basis[b] * m).template cast<Real>();
     }
   }
+
+  template <class Real>
+  void assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<Real>& a) {
+    const auto clock = layer.phases_.time("assembly");
+    layer.place(x, measure, targets);
+    dense_rows(layer.surface_, targets, layer.at_, *this, layer.evaluations_, a);
+    if (layer.surface_.options.rule == "desingularised") subtract_identities(targets, a);
+  }
+};
+
+void SingleLayer::assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<float>& a) {
+  Moments{*this, {}}.assemble(x, measure, targets, a);
+}
+
+void SingleLayer::assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<double>& a) {
+  Moments{*this, {}}.assemble(x, measure, targets, a);
 }
 
 }  // namespace tanktread::stokes

@@ -7,29 +7,25 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
-#include "stokes/assembly_kernel.hpp"
+#include "stokes/dense_rows.hpp"
 #include "stokes/far_kernel.hpp"
 #include "stokes/kernels.hpp"
-#include "stokes/near_field.hpp"
-#include "stokes/panels.hpp"
-#include "stokes/self_field.hpp"
+#include "stokes/layer_surface.hpp"
 
 namespace tanktread::stokes {
 
 /// What a density is measured on: per area of the unstressed surface (3.7), or per present area (3.6).
 enum class Measure { reference, current };
 
-/// Rows of a dense operator, as the Jacobian keeps them (float) or as a test needs them (double).
-template <class Real>
-using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using DenseRows = Rows<float>;
-
 /// The single layer of a closed spline surface at its own collocation points x_i, without the viscosity:
 ///
 ///   u_i = (1 / 8 pi) int G(x, x_i) f dG,   f = sum_B f_B N_B                              (2.1), (2.2)
 ///
-/// by a far sum over Gauss nodes, with rules of their own for panels that a collocation point lies on or is close to
-/// (splines.md, F), to the accuracy of the options. Each row depends on the shape only, not on the other rows asked for.
+/// by a far sum over Gauss nodes, with rules of their own for panels that a collocation point lies on or is close to, to the accuracy
+/// of the options. Each row depends on the shape only, not on the other rows asked for.
+///
+/// Rule `desingularised`: Gauss nodes alone; what is singular is subtracted by two identities of a closed surface, int G n dG = 0 and
+/// that of the flow (n0.r) f_t, after Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012 (our choice of the flow).
 class SingleLayer {
  public:
   SingleLayer(const spline::Space& space, const quadrature::Options& options);
@@ -49,35 +45,26 @@ class SingleLayer {
   const Phases& phases() const { return phases_; }
 
   /// Far nodes of the whole surface: bare interactions of an apply are targets times this.
-  int n_nodes() const { return panels_.n_nodes(); }
+  int n_nodes() const { return surface_.panels.n_nodes(); }
 
  private:
+  struct Moments;
   void place(const Net& x, Measure measure, std::span<const int> targets);
   void add_far(std::span<const int> targets, Net& u);
   void add_near(std::span<const int> targets, Net& u);
-  void add_self(std::span<const int> targets, Measure measure, Net& u);
-  void list_near(int target, const Vec3& at);
-  const Pack* self_weights(SelfPair& pair, Measure measure);
+  void add_self(std::span<const int> targets, Net& u);
+  void subtract_identities(std::span<const int> targets, Net& u);
+  const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
+  Mat3 identities(int target, const Vec3& at) const;
   PointForces forces() const;
 
-  template <class Real>
-  void assemble_rows(const Net& x, Measure measure, std::span<const int> targets, Rows<Real>& a);
-  template <class Real>
-  void add_own_rules(int target, const Vec3& at, Measure measure, Real* sums);
-
-  quadrature::Options options_;
-  int n_points_;
-  Panels panels_;
-  NearField near_field_;
-  SelfField self_field_;
-  std::vector<double> bezier_unstressed_, bezier_, bezier_f_;     // Bezier points: unstressed and present surface, density
-  std::vector<double> weight_unstressed_, weight_present_;        // of the far nodes, areas included
-  std::vector<double> node_[3], force_[3];                        // far nodes: position, density times weight
-  const std::vector<double>*weight_ = nullptr, *area_ = nullptr;  // the weights in use and the Bezier points of their surface
-  std::vector<Vec3> at_;                                          // the targets of this call
-  std::vector<int> near_;
-  std::vector<Pack> point_weights_, scratch_;
-  std::vector<double> moments_;
+  LayerSurface surface_;
+  Measure measure_ = Measure::current;
+  std::vector<double> bezier_unstressed_, bezier_f_;        // Bezier points: unstressed surface, density
+  std::vector<double> weight_unstressed_, weight_present_;  // of the far nodes, areas included
+  std::vector<double> force_[3], normal_[3];                // far nodes: density times weight, normal times weight
+  std::vector<Vec3> at_;                                    // the targets of this call
+  std::vector<Pack> point_weights_;
   Evaluations evaluations_;
   Phases phases_;
 };

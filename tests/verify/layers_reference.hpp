@@ -1,6 +1,7 @@
 #pragma once
 // Layer potentials by brute force, sharing nothing with the program's rules but the surface: far 12 x 12 Gauss on every element, close
-// elements cut in four again and again towards the target, and polar rules of 20 x 32 points in the metric at the target on the elements that hold it.
+// elements cut in four again and again towards the target, and polar rules of 20 x 32 points in the metric at the target on the
+// elements that hold it.
 
 #include <array>
 #include <cmath>

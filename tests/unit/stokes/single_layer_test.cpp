@@ -47,7 +47,7 @@ const Scene& scene() {
 double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
 
 TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
-  for (const char* rule : {"adaptive", "fixed"}) {
+  for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
     for (const Measure measure : {Measure::reference, Measure::current}) {
       SingleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
       layer.set_reference(scene().unstressed);

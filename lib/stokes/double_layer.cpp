@@ -1,0 +1,108 @@
+#include "stokes/double_layer.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "stokes/pair_kernel.hpp"
+
+namespace tanktread::stokes {
+
+namespace {
+
+/// The rules are chosen for int G f dG; this kernel, steeper by one order, errs up to two and a half times as much (tests/verify/layers.cpp).
+quadrature::Options sharper(quadrature::Options options) {
+  options.tolerance /= 4;
+  return options;
+}
+
+}  // namespace
+
+DoubleLayer::DoubleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, sharper(options)) {}
+
+void DoubleLayer::place(const Net& x, std::span<const int> targets) {
+  surface_.place(x);
+  node_normals(surface_.panels, surface_.bezier, normal_);
+  surface_.collocation_points(targets, at_);
+}
+
+void DoubleLayer::apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv) {
+  place(x, targets);
+  Panels& panels = surface_.panels;
+  panels.bezier(v, bezier_v_);
+  node_values(panels, bezier_v_, velocity_);
+  const auto& node = surface_.node;
+  const Stresslets all{panels.n_nodes(),    node[0].data(),      node[1].data(),    node[2].data(),    velocity_[0].data(),
+                       velocity_[1].data(), velocity_[2].data(), normal_[0].data(), normal_[1].data(), normal_[2].data()};
+  const int n = static_cast<int>(targets.size());
+  std::vector<Vec3> v0;
+  for (const int i : targets) v0.push_back(surface_.self_field.value(i, panels, bezier_v_));
+
+  double block[6 * far_block], sums[3 * far_block];
+  for (int first = 0; first < n; first += far_block) {
+    for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
+      for (int c = 0; c < 3; ++c) {
+        block[far_block * c + l] = at_[std::min(first + l, n - 1)][c];
+        block[far_block * (3 + c) + l] = v0[std::min(first + l, n - 1)][c];
+      }
+    far_sum(all, block, sums);
+    for (int l = 0; l < std::min(far_block, n - first); ++l)
+      for (int c = 0; c < 3; ++c) hv(targets[first + l], c) = sums[far_block * c + l];
+  }
+  evaluations_.far += static_cast<long long>(n) * all.n;
+
+  for (int k = 0; k < n; ++k) {
+    const auto replace = [&](int e, const PointTable& table, long long& count) {
+      const Panel& panel = panels[e];
+      Vec3 own, far;
+      double_sum(table, &surface_.bezier[panel.first_bezier], &bezier_v_[panel.first_bezier], at_[k].data(), v0[k].data(), own.data());
+      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), v0[k].data(), far.data());
+      hv.row(targets[k]) += (own - far).transpose();
+      count += table.points + panel.table->n_nodes;
+    };
+    for (const int e : surface_.near(targets[k], at_[k])) replace(e, surface_.near_field.rule(e, at_[k]), evaluations_.near);
+    for (SelfPair& pair : surface_.own(targets[k]))
+      replace(pair.panel, surface_.self_field.rule(pair, panels, surface_.bezier), evaluations_.self);
+    hv.row(targets[k]) /= 8 * std::numbers::pi;
+  }
+}
+
+/// The double layer as dense_rows() wants it.
+struct DoubleLayer::Moments {
+  DoubleLayer& layer;
+  std::vector<Pack> scratch;
+
+  void own_moments(const Vec3& x0, int e, const PointTable& table, SelfPair*, double* moments) {
+    scratch.resize(static_cast<std::size_t>(6) * table.packs());
+    double_moments(table, &layer.surface_.bezier[layer.surface_.panels[e].first_bezier], x0.data(), scratch.data(), moments);
+  }
+
+  template <class Real>
+  void far_nodes(PanelNodes<Real>& nodes, int first) const {
+    for (int c = 0; c < 3; ++c) nodes.normal[c] = layer.normal_[c].data() + first;
+  }
+
+  /// - N_B(x_i) sum_C A_iC: what is subtracted from the integrand, by the same rules.
+  template <class Real>
+  void finish(int target, const Vec3&, Real* sums) const {
+    double total[6] = {};
+    for (int p = 0; p < layer.surface_.n_points; ++p)
+      for (int c = 0; c < 6; ++c) total[c] += sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(p) + c)];
+    const auto [panel, basis] = layer.surface_.self_field.basis(target, layer.surface_.panels);
+    for (int b = 0; b < basis.size(); ++b)
+      for (int c = 0; c < 6; ++c)
+        sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(layer.surface_.panels.points(panel)[b]) + c)] -=
+            static_cast<Real>(basis[b] * total[c]);
+  }
+
+  template <class Real>
+  void assemble(const Net& x, std::span<const int> targets, Rows<Real>& a) {
+    layer.place(x, targets);
+    dense_rows(layer.surface_, targets, layer.at_, *this, layer.evaluations_, a);
+  }
+};
+
+void DoubleLayer::assemble(const Net& x, std::span<const int> targets, Rows<float>& a) { Moments{*this, {}}.assemble(x, targets, a); }
+
+void DoubleLayer::assemble(const Net& x, std::span<const int> targets, Rows<double>& a) { Moments{*this, {}}.assemble(x, targets, a); }
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/dense_rows.hpp"
+#include "stokes/far_kernel.hpp"
+#include "stokes/kernels.hpp"
+#include "stokes/layer_surface.hpp"
+
+namespace tanktread::stokes {
+
+/// The double layer of a closed spline surface at its own collocation points x_i, regularised, so that no principal value is taken:
+///
+///   (H v)_i = (1 / 8 pi) int (v_j(x) - v_j(x_i)) T_ijk n_k dG,   v = sum_B v_B N_B         (2.1), (2.2)
+///
+/// n out of the surface. H v is the principal value plus v/2; rigid-body motions give 0 (2.3). Rules as for the single layer; under
+/// `desingularised` the difference in the integrand is all that is done about the singularity.
+class DoubleLayer {
+ public:
+  DoubleLayer(const spline::Space& space, const quadrature::Options& options);
+
+  /// Rows `targets` of H v, shape (N, 3), for the velocity with control values v on the surface x.
+  void apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv);
+
+  /// The operator itself: three rows a target, in the order of `targets`; shape (3 targets, 3 N).
+  void assemble(const Net& x, std::span<const int> targets, Rows<float>& a);
+  void assemble(const Net& x, std::span<const int> targets, Rows<double>& a);
+
+  /// Kernel evaluations of all calls so far.
+  const Evaluations& evaluations() const { return evaluations_; }
+
+ private:
+  struct Moments;
+  void place(const Net& x, std::span<const int> targets);
+
+  LayerSurface surface_;
+  std::vector<double> bezier_v_, velocity_[3], normal_[3];  // of the far nodes; normals times weights
+  std::vector<Vec3> at_;
+  Evaluations evaluations_;
+};
+
+}  // namespace tanktread::stokes

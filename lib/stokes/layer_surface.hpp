@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/near_field.hpp"
+#include "stokes/panels.hpp"
+#include "stokes/self_field.hpp"
+
+namespace tanktread::stokes {
+
+/// The present surface as a layer operator integrates over it: panels, far nodes, and which rule each target needs on which panel.
+class LayerSurface {
+ public:
+  LayerSurface(const spline::Space& space, const quadrature::Options& options);
+
+  /// Takes a shape.
+  void place(const Net& x);
+
+  /// Collocation points of the shape.
+  void collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const;
+
+  /// The panels that collocation point i lies on and that have a rule of their own for it: all but under the rule `desingularised`.
+  std::span<SelfPair> own(int i) { return options.rule == "desingularised" ? std::span<SelfPair>() : self_field[i]; }
+
+  /// Panels that need a near rule for the collocation point i at x0; those that it lies on are not among them.
+  const std::vector<int>& near(int i, const Vec3& x0);
+  /// The same for a point off the surface.
+  const std::vector<int>& near(const Vec3& x0);
+
+  quadrature::Options options;
+  int n_points;
+  Panels panels;
+  NearField near_field;
+  SelfField self_field;
+  std::vector<double> bezier;   ///< Bezier points of the shape
+  std::vector<double> node[3];  ///< far nodes
+
+ private:
+  std::vector<int> near_;
+};
+
+}  // namespace tanktread::stokes

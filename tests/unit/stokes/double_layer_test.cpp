@@ -1,0 +1,90 @@
+#include "stokes/double_layer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "spline/extraction.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// A deformed surface of the smallest cube mesh.
+struct Scene {
+  spline::Space space;
+  Net x, v;
+  std::vector<int> all;
+
+  Scene() {
+    const spline::TMesh mesh = spline::cube(3);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    const Net sphere = surface::unit_sphere(mesh, fit);
+    x = fit.fit_image(sphere, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1] + 0.1 * p[0] * p[0], 0.75 * p[2]); });
+    v = fit.fit_image(sphere, [](const Vec3& p) { return Vec3(p[1] - 0.3, p[2] * p[0], p[0] * p[0]); });
+    all.resize(space.n_points);
+    std::iota(all.begin(), all.end(), 0);
+  }
+
+  Net apply(const Net& velocity, const quadrature::Options& options) const {
+    DoubleLayer layer(space, options);
+    Net u = Net::Zero(space.n_points, 3);
+    layer.apply(x, velocity, all, u);
+    return u;
+  }
+};
+
+const Scene& scene() {
+  static const Scene one;
+  return one;
+}
+
+double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
+
+TEST(DoubleLayer, AssembledRowsTimesAVelocityAreTheSum) {
+  for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
+    DoubleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
+    Net u = Net::Zero(scene().space.n_points, 3), rows = u;
+    layer.apply(scene().x, scene().v, scene().all, u);
+    Rows<double> a;
+    layer.assemble(scene().x, scene().all, a);
+    rows.reshaped<Eigen::RowMajor>() = a * scene().v.reshaped<Eigen::RowMajor>();
+    EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << rule;  // round-off of sums in another order
+  }
+}
+
+// A translation drops out of the integrand. int T_ijk n_k (omega x r)_j dG = 0 in and on the surface (2.3).
+TEST(DoubleLayer, GivesNothingForRigidBodyMotions) {
+  Net translation = Net::Zero(scene().space.n_points, 3), rotation = translation;
+  translation.rowwise() = Eigen::RowVector3d(1, -2, 3);
+  for (int i = 0; i < scene().space.n_points; ++i) rotation.row(i) = Vec3(0.3, 0.9, -0.2).cross(Vec3(scene().x.row(i))).transpose();
+  EXPECT_LT(largest(scene().apply(translation, {.tolerance = 1e-4})), 1e-13);
+  EXPECT_LT(largest(scene().apply(rotation, {.tolerance = 1e-10})), 1e-10 * largest(rotation));
+}
+
+TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
+  const Net exact = scene().apply(scene().v, {.tolerance = 1e-10});
+  const double at_6 = largest(scene().apply(scene().v, {.rule = "desingularised", .points = 6}) - exact) / largest(exact);
+  const double at_12 = largest(scene().apply(scene().v, {.rule = "desingularised", .points = 12}) - exact) / largest(exact);
+  EXPECT_LT(at_12, 1e-3);
+  EXPECT_GT(at_6 / at_12, 3.5);  // an integrand that is bounded and no more: at least the square of the spacing
+}
+
+TEST(SingleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
+  const auto apply = [](const quadrature::Options& options) {
+    SingleLayer layer(scene().space, options);
+    Net u = Net::Zero(scene().space.n_points, 3);
+    layer.apply(scene().x, scene().v, Measure::current, scene().all, u);
+    return u;
+  };
+  const Net exact = apply({.tolerance = 1e-10});
+  const double at_6 = largest(apply({.rule = "desingularised", .points = 6}) - exact) / largest(exact);
+  const double at_12 = largest(apply({.rule = "desingularised", .points = 12}) - exact) / largest(exact);
+  EXPECT_LT(at_12, 1e-3);
+  EXPECT_GT(at_6 / at_12, 3.5);  // as above
+}
+
+}  // namespace
+}  // namespace tanktread::stokes
