@@ -34,6 +34,9 @@ class Resistance {
   Vec3 torque(const Net& f, const Vec3& centre) const;    ///< int (x - centre) x f dG
   Mat3 stresslet(const Net& f, const Vec3& centre) const; ///< symmetric, traceless part of int f (x - centre) dG
 
+  /// Control values c of n, by projection: the density that no velocity tells of.
+  const Net& normal() const { return normal_; }
+
   const stokes::SingleLayer& single_layer() const { return layer_; }
   long solver_iterations() const { return iterations_; }
 
