@@ -23,10 +23,15 @@ std::string text(const char* format, auto... values) {
 
 }  // namespace
 
+spline::Space space(const Scene& scene, const spline::TMesh& mesh) {
+  const bool g1 = scene.surface.extraordinary_points == "g1";
+  return spline::space(mesh, g1 ? spline::ExtraordinaryRule::g1 : spline::ExtraordinaryRule::catmull_clark);
+}
+
 Body body(const Scene& scene) {
   Body b;
-  b.mesh = spline::cube(scene.surface.elements_per_side);
-  b.space = spline::space(b.mesh, spline::ExtraordinaryRule::g1);
+  b.mesh = spline::cube(scene.surface.elements_per_side, scene.adaptation.enabled ? scene.adaptation.levels : 0);
+  b.space = space(scene, b.mesh);
   b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
   b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
   b.flow = stokes::AmbientFlow(scene.flow);
@@ -39,6 +44,8 @@ Body body(const Scene& scene) {
 std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases) {
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
+  parameters.viscosity_ratio = scene.particle.viscosity_ratio;
+  parameters.bending = {scene.membrane.bending_modulus, scene.membrane.bending_reference == "unstressed"};
   parameters.radius = body.radius;
   parameters.law = body.law;
   parameters.strong_load = scene.membrane.load == "strong";
@@ -57,9 +64,12 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   return {
       {"surface", text("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
                        body.space.description.c_str())},
-      {"unknowns", text("%d positions; velocity is a sum (2.4), no system is solved for it", 3 * body.space.n_points)},
+      {"unknowns", text("%d positions", 3 * body.space.n_points)},
       {"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"},
-      {"viscosity", "ratio 1: no double layer"},
+      {"viscosity", scene.particle.viscosity_ratio == 1
+                        ? std::string("ratio 1: no double layer, no system for the velocity")
+                        : text("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
+                               scene.solvers.double_layer.c_str(), 3 * body.space.n_points)},
       {"membrane", scene.membrane.law + ", load " + scene.membrane.load +
                        (scene.membrane.load == "strong"                      ? " at the collocation sites (P-3)"
                         : scene.membrane.law == "surface tension"            ? " per current area (3.6)"
@@ -69,6 +79,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
       {"time", scene.time.scheme + (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks,
                                                     ranks > 1 ? "s" : "")
                                              : std::string(", explicit in the fluid: nothing is assembled"))},
+      {"mesh", scene.adaptation.enabled ? "refined as the particle deforms (P-37)" : "fixed"},
       {"symmetry", "none used"},
   };
 }

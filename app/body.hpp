@@ -28,6 +28,9 @@ struct Body {
 };
 Body body(const Scene& scene);
 
+/// The spline space that the deck wants on a mesh.
+spline::Space space(const Scene& scene, const spline::TMesh& mesh);
+
 /// The coupled system that the scene needs, and no more.
 std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases);
 

@@ -38,6 +38,7 @@ const std::vector<Column>& columns() {
       {"evaluations", "1", "velocity evaluations so far"},
       {"assemblies", "1", "assemblies of the frozen layer operator so far"},
       {"solver_iterations", "1", "iterations of the linear solver so far"},
+      {"velocity_iterations", "1", "iterations of the systems that velocities come from so far (viscosity ratio other than 1)"},
       {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"},
   };
   return all;
@@ -48,7 +49,7 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
   const surface::Measures measures = capsule.geometry().measures(state.x);
   const surface::Deformation shape = capsule.geometry().deformation(state.x, measures);
   const membrane::TensionSummary tension = capsule.membrane().tension_summary(state.x);
-  const Mat3 stresslet = capsule.stresslet(state.x);
+  const Mat3 stresslet = capsule.stresslet(state.x, state.history.front());
   const coupling::Work& work = capsule.work();
   return {state.time,
           report.step,
@@ -78,6 +79,7 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           static_cast<double>(work.evaluations),
           static_cast<double>(work.assemblies),
           static_cast<double>(work.solver_iterations),
+          static_cast<double>(work.velocity_iterations),
           wall_seconds};
 }
 

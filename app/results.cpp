@@ -17,18 +17,48 @@ namespace {
 void store(const Standing& standing, output::Checkpoint& checkpoint) {
   checkpoint.numbers["step number"] = standing.step;
   checkpoint.numbers["wall seconds"] = standing.wall_seconds;
+  checkpoint.numbers["refinements"] = standing.refinements;
+  checkpoint.numbers["coarsenings"] = standing.coarsenings;
   checkpoint.numbers["evaluations"] = static_cast<double>(standing.work.evaluations);
   checkpoint.numbers["assemblies"] = static_cast<double>(standing.work.assemblies);
   checkpoint.numbers["tangents"] = static_cast<double>(standing.work.tangents);
   checkpoint.numbers["solves"] = static_cast<double>(standing.work.solves);
   checkpoint.numbers["solver iterations"] = static_cast<double>(standing.work.solver_iterations);
+  checkpoint.numbers["velocity iterations"] = static_cast<double>(standing.work.velocity_iterations);
 }
 
 Standing stored_standing(const output::Checkpoint& checkpoint) {
   const auto count = [&](const char* name) { return static_cast<long>(checkpoint.numbers.at(name)); };
   return {static_cast<int>(count("step number")),
           checkpoint.numbers.at("wall seconds"),
-          {count("evaluations"), count("assemblies"), count("tangents"), count("solves"), count("solver iterations")}};
+          {count("evaluations"), count("assemblies"), count("tangents"), count("solves"), count("solver iterations"),
+           count("velocity iterations")},
+          static_cast<int>(count("refinements")),
+          static_cast<int>(count("coarsenings"))};
+}
+
+/// The edges of the T-mesh; the lattice follows from the deck.
+void store(const spline::TMesh& mesh, output::Checkpoint& checkpoint) {
+  checkpoint.arrays["mesh edges"] = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
+                                        mesh.edges.data(), static_cast<Eigen::Index>(mesh.edges.size())).cast<double>();
+  checkpoint.arrays["mesh spacing"] =
+      Eigen::Map<const Eigen::VectorXi>(mesh.spacing.data(), static_cast<Eigen::Index>(mesh.spacing.size())).cast<double>();
+}
+
+/// The body on the stored mesh; none where the checkpoint holds no mesh.
+std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint) {
+  const auto edges = checkpoint.arrays.find("mesh edges");
+  if (edges == checkpoint.arrays.end()) return {};
+  auto body = std::make_unique<Body>(first);
+  const Eigen::MatrixXd &spacing = checkpoint.arrays.at("mesh spacing"), &bits = edges->second;
+  if (static_cast<size_t>(bits.size()) != body->mesh.edges.size())
+    throw UserError("Adaptation/levels cannot change when a run goes on: the checkpoint's mesh has another lattice.");
+  for (Eigen::Index i = 0; i < bits.size(); ++i) body->mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
+  for (Eigen::Index i = 0; i < spacing.size(); ++i) body->mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
+  body->space = space(scene, body->mesh);
+  body->unstressed = checkpoint.arrays.at("unstressed");
+  body->rest = checkpoint.arrays.at("initial");
+  return body;
 }
 
 }  // namespace
@@ -54,7 +84,7 @@ std::map<std::string, std::string> Results::origin() const {
 }
 
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks)
-    : scene_(scene), request_(request), body_(body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+    : scene_(scene), request_(request), body_(&body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
   if (!writes_) return;
   if (request.resume) {
     output::tidy_directory(directory_);
@@ -64,14 +94,19 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
     series_.emplace(directory_);
     for (const Column& column : columns()) record_->declare(column.name, column.unit, column.description);
   }
-  picture_mesh_ = output::lagrange_mesh(body.space, body.unstressed);
+  remesh(body);
+}
+
+void Results::remesh(const Body& body) {
+  body_ = &body;
+  if (writes_) picture_mesh_ = output::lagrange_mesh(body.space, body.unstressed);
 }
 
 std::optional<Resumed> Results::resumed() {
   if (!request_.resume) return {};
   const auto saved = output::newest_checkpoint(directory_);  // every rank reads it: one file, read-only
   if (!saved) throw UserError("--resume " + directory_.string() + ": there is no checkpoint in this directory");
-  const Resumed resumed{output::stored_state(saved->checkpoint), stored_standing(saved->checkpoint)};
+  Resumed resumed{output::stored_state(saved->checkpoint), stored_standing(saved->checkpoint), stored_body(scene_, *body_, saved->checkpoint)};
   last_saved_ = resumed.standing.step;
   if (writes_) {
     record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
@@ -96,21 +131,22 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   output::Checkpoint checkpoint;
   output::store(state, checkpoint);
   store(standing, checkpoint);
-  checkpoint.arrays["unstressed"] = body_.unstressed;
-  checkpoint.arrays["initial"] = body_.rest;
+  checkpoint.arrays["unstressed"] = body_->unstressed;
+  checkpoint.arrays["initial"] = body_->rest;
   checkpoint.texts["deck"] = request_.deck_text;
+  if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
 
-  output::Picture picture = output::picture(body_.space, picture_mesh_, state.x);
-  picture.point_fields.push_back({"load", output::nodal_values(body_.space, picture_mesh_, load)});
-  picture.point_fields.push_back({"displacement", output::nodal_values(body_.space, picture_mesh_, state.x - body_.unstressed)});
+  output::Picture picture = output::picture(body_->space, picture_mesh_, state.x);
+  picture.point_fields.push_back({"load", output::nodal_values(body_->space, picture_mesh_, load)});
+  picture.point_fields.push_back({"displacement", output::nodal_values(body_->space, picture_mesh_, state.x - body_->unstressed)});
   if (!state.history.empty())
-    picture.point_fields.push_back({"velocity", output::nodal_values(body_.space, picture_mesh_, state.history.front())});
+    picture.point_fields.push_back({"velocity", output::nodal_values(body_->space, picture_mesh_, state.history.front())});
   const Eigen::MatrixX2d tensions = membrane.tensions(state.x, picture_mesh_.sites);
   picture.point_fields.push_back({"smallest tension", tensions.col(0)});
   picture.point_fields.push_back({"largest tension", tensions.col(1)});
   Eigen::VectorXd curvature(static_cast<Eigen::Index>(picture_mesh_.sites.size()));
   for (size_t i = 0; i < picture_mesh_.sites.size(); ++i)
-    curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_.space, state.x, picture_mesh_.sites[i]);
+    curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_->space, state.x, picture_mesh_.sites[i]);
   picture.point_fields.push_back({"mean curvature", curvature});
   output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, picture);
   series_->add(standing.step, state.time);

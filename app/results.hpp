@@ -22,12 +22,14 @@ struct Standing {
   int step = 0;               ///< steps so far; `run.h5` holds step + 1 rows
   double wall_seconds = 0;    ///< of earlier parts
   coupling::Work work;
+  int refinements = 0, coarsenings = 0;
 };
 
-/// A run to go on with.
+/// A run to go on with. The body is there when its mesh had been adapted.
 struct Resumed {
   motion::State state;
   Standing standing;
+  std::unique_ptr<Body> body;
 };
 
 /// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw
@@ -38,6 +40,9 @@ class Results {
 
   /// The newest checkpoint of the directory when the run is resumed; the record is cut back to it. Throws UserError when there is none.
   std::optional<Resumed> resumed();
+
+  /// The body that is drawn from now on.
+  void remesh(const Body& body);
 
   /// One finished step: a row of the record, written at once.
   void record(const std::vector<double>& row);
@@ -60,7 +65,7 @@ class Results {
 
   const Scene& scene_;
   const RunRequest& request_;
-  const Body& body_;
+  const Body* body_;
   const coupling::Ranks& ranks_;
   bool writes_;
   std::filesystem::path directory_;

@@ -9,8 +9,7 @@ namespace tanktread {
 
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
-  const deck::Rule only_one{"equal to 1 (the double layer of other ratios is not built yet)", [](double ratio) { return ratio == 1.0; }};
-  section.key("viscosity ratio", viscosity_ratio, only_one, "1", "lambda: viscosity inside over viscosity outside");
+  section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1", "lambda: viscosity inside over viscosity outside");
   section.key("motion", motion, deck::Choice{"deforming"}, "`deforming`: by the velocity of the fluid on its surface");
 }
 
@@ -22,6 +21,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
+  root.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");
   root.section("Expect", expect, "expected results");

@@ -7,6 +7,7 @@
 #include "coupling/options.hpp"
 #include "deck/expectation.hpp"
 #include "membrane/options.hpp"
+#include "motion/adaptation.hpp"
 #include "motion/options.hpp"
 #include "output/options.hpp"
 #include "quadrature/options.hpp"
@@ -33,6 +34,7 @@ struct Scene {
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
   motion::TimeOptions time;
+  motion::AdaptationOptions adaptation;
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "app/adaptation.hpp"
 #include "app/body.hpp"
 #include "app/diagnostics.hpp"
 #include "app/results.hpp"
@@ -39,15 +40,16 @@ class Watch {
   double before_ = 0;
 };
 
-output::Entries<long> counts(const Standing& standing, const coupling::Capsule& capsule) {
-  const coupling::Work& work = capsule.work();
-  const stokes::Evaluations kernel = capsule.single_layer().evaluations();
+output::Entries<long> counts(const Standing& standing, const coupling::Work& work, const stokes::Evaluations& kernel) {
   return {{"steps", standing.step},
+          {"refinements", standing.refinements},
+          {"coarsenings", standing.coarsenings},
           {"evaluations", work.evaluations},
           {"assemblies", work.assemblies},
           {"tangents", work.tangents},
           {"linear_solves", work.solves},
           {"solver_iterations", work.solver_iterations},
+          {"velocity_iterations", work.velocity_iterations},
           {"kernel_evaluations_far", static_cast<long>(kernel.far)},
           {"kernel_evaluations_near", static_cast<long>(kernel.near)},
           {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
@@ -64,8 +66,8 @@ double next_stop(const Scene& scene, double time) {
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), body_(body(scene)), capsule_(capsule(scene, body_, ranks_, phases_)),
-        results_(scene, request, body_, ranks_), scheme_(motion::integrator(scene.time)) {}
+      : scene_(scene), request_(request), body_(std::make_unique<Body>(body(scene))), capsule_(capsule(scene, *body_, ranks_, phases_)),
+        results_(scene, request, *body_, ranks_), scheme_(motion::integrator(scene.time)) {}
 
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(scene_, ranks_.size()).c_str(), stdout);
@@ -85,19 +87,59 @@ class Run {
 
  private:
   void begin() {
-    if (const auto resumed = results_.resumed()) {
+    if (auto resumed = results_.resumed()) {
       state_ = resumed->state;
       standing_ = resumed->standing;
+      if (resumed->body) settle(std::move(resumed->body));
       if (state_.frozen.size() > 0) capsule_->freeze(state_.frozen);
       capsule_->work() = standing_.work;
       watch_.add(standing_.wall_seconds);
       return;
     }
-    state_.x = body_.rest;
+    state_.x = body_->rest;
     state_.history = {capsule_->velocity(state_.x)};
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(*capsule_, state_, scene_.time);
     record();
     save();
+  }
+
+  /// Goes on with the particle on another mesh.
+  void settle(std::unique_ptr<Body> body) {
+    const coupling::Work work = capsule_->work();
+    kernel_evaluations_ = kernel_evaluations();
+    capsule_.reset();
+    body_ = std::move(body);
+    capsule_ = capsule(scene_, *body_, ranks_, phases_);
+    capsule_->work() = work;
+    results_.remesh(*body_);
+  }
+
+  /// Cuts or merges elements where the rule says so (P-37).
+  void adapt() {
+    if (!scene_.adaptation.enabled || standing_.step % scene_.adaptation.interval != 0) return;
+    const auto clock = phases_.time("adaptation");
+    auto change = adapted(scene_, *body_, state_, capsule_->load(state_.x), capsule_->measure() == stokes::Measure::reference);
+    if (!change) return;
+    if (change->finer && change->change > 1e-12) warn_of_change(change->change);
+    state_ = std::move(change->state);
+    settle(std::move(change->body));
+    capsule_->restore_volume(state_.x);
+    if (state_.frozen.size() > 0) capsule_->freeze(state_.frozen);
+    (change->finer ? standing_.refinements : standing_.coarsenings) += 1;
+    if (body_->space.n_points >= scene_.adaptation.largest_number_of_points && !warned_of_size_ && ranks_.rank() == 0)
+      std::fprintf(stderr, "tanktread: refinement ends at %d control points, Adaptation/largest number of points\n", body_->space.n_points);
+    warned_of_size_ = warned_of_size_ || body_->space.n_points >= scene_.adaptation.largest_number_of_points;
+  }
+
+  void warn_of_change(double change) {
+    if (ranks_.rank() == 0)
+      std::fprintf(stderr, "tanktread: refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested\n",
+                   state_.time, change);
+  }
+
+  stokes::Evaluations kernel_evaluations() const {
+    const stokes::Evaluations now = capsule_->kernel_evaluations();
+    return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
   }
 
   void step() {
@@ -112,12 +154,13 @@ class Run {
       throw RunFailure(failure.what() + std::string(where));
     }
     ++standing_.step;
+    adapt();
     record();
   }
 
   void record() {
     const auto clock = phases_.time("diagnostics");
-    row_ = row(scene_, body_, *capsule_, state_, report_, ranks_.first(watch_.seconds()));
+    row_ = row(scene_, *body_, *capsule_, state_, report_, ranks_.first(watch_.seconds()));
     const auto output = phases_.time("output");
     results_.record(row_);
   }
@@ -139,8 +182,8 @@ class Run {
   }
 
   int end(const std::string& reason) {
-    const output::Entries<long> work = counts(standing_, *capsule_);
-    const bool passed = results_.finish(plan(scene_, body_, ranks_.size()), work, phases_);
+    const output::Entries<long> work = counts(standing_, capsule_->work(), kernel_evaluations());
+    const bool passed = results_.finish(plan(scene_, *body_, ranks_.size()), work, phases_);
     if (ranks_.rank() == 0) {
       if (!request_.quiet) std::fputs(output::closing_table(phases_, work, results_.directory()).c_str(), stdout);
       if (!reason.empty()) std::fprintf(stderr, "tanktread: %s at time %.6g\n", reason.c_str(), state_.time);
@@ -154,8 +197,10 @@ class Run {
   Watch watch_;
   Phases phases_;
   coupling::Ranks ranks_;
-  Body body_;
+  std::unique_ptr<Body> body_;
   std::unique_ptr<coupling::Capsule> capsule_;
+  stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
+  bool warned_of_size_ = false;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
   motion::State state_;

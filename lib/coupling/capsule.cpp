@@ -22,12 +22,11 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       phases_(phases),
       geometry_(space),
       mass_matrix_(space),
-      membrane_(space, unstressed, parameters.law),
+      membrane_(space, unstressed, parameters.law, 4, parameters.bending),
       tangent_(membrane_),
       layer_(space, parameters.quadrature),
       collocation_(parameters.solvers.direct),
       mass_(parameters.solvers.direct),
-      current_mass_(parameters.solvers.direct),
       krylov_(parameters.solvers.krylov, parameters.solvers.belos) {
   const surface::Share share = surface::share(space, surface::partition(space, ranks.size()), ranks.rank());
   own_points_ = share.points;
@@ -36,6 +35,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   collocation_.factor(collocation_matrix(space));
   mass_.factor(mass_matrix_.update(unstressed));
   layer_.set_reference(unstressed);
+  if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
   volume0_ = geometry_.volume(initial);
 }
 
@@ -65,8 +65,7 @@ Net Capsule::load(const Net& x) {
   const Net d = energy_gradient(x);
   const auto projection = phases_.time("projection");
   if (parameters_.measure == stokes::Measure::reference) return mass_.solve(d);
-  current_mass_.factor(mass_matrix_.update(x));
-  return current_mass_.solve(d);
+  return mass_.solve(mass_matrix_.update(x), d);
 }
 
 Net Capsule::flux_vector(const Net& x) {
@@ -83,7 +82,7 @@ Net Capsule::velocity(const Net& x) {
   Net u(x.rows(), 3);
   {
     const auto clock = phases_.time("single layer");
-    layer_.apply(x, f, parameters_.strong_load ? stokes::Measure::current : parameters_.measure, own_points_, u);
+    layer_.apply(x, f, measure(), own_points_, u);
   }
   {
     const auto clock = phases_.time("exchange");
@@ -94,11 +93,46 @@ Net Capsule::velocity(const Net& x) {
     const auto clock = phases_.time("projection");
     v -= collocation_.solve(u) / parameters_.viscosity;
   }
-  if (parameters_.volume.constraint != "none") {
-    const Net b = flux_vector(x), c = mass_.solve(b);
-    v -= dot(b, v) / dot(b, c) * c;
-  }
-  return v;
+  const bool constrained = parameters_.volume.constraint != "none";
+  const Net b = constrained ? flux_vector(x) : Net(), c = constrained ? mass_.solve(b) : Net();
+  if (constrained) v -= dot(b, v) / dot(b, c) * c;
+  return double_layer_ ? solve_velocity(x, b, c, v) : v;
+}
+
+/// B v = v - (1 - lambda) R^-1 (H v), from what the double layer gives at the sites.
+Net Capsule::viscous(const Net& v, const Net& hv) const { return v - (1 - parameters_.viscosity_ratio) * collocation_.solve(hv); }
+
+/// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free.
+Net Capsule::solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs) {
+  const auto clock = phases_.time("double layer");
+  const Eigen::Index n = x.rows();
+  const bool assembled = parameters_.solvers.double_layer == "assembled";
+  if (assembled) double_layer_->assemble(x, own_points_, double_rows_);
+  const auto project = [&](Net& v) {
+    if (b.size() > 0) v -= dot(b, v) / dot(b, c) * c;
+  };
+  const auto apply = [&](const double* in, double* out) {
+    Net v = Eigen::Map<const Net>(in, n, 3), hv(n, 3);
+    project(v);
+    if (assembled) {
+      const Eigen::VectorXd rows = double_rows_ * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
+      for (size_t k = 0; k < own_points_.size(); ++k) hv.row(own_points_[k]) = rows.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    } else {
+      double_layer_->apply(x, v, own_points_, hv);
+    }
+    ranks_.replicate(hv);
+    v = viscous(v, hv);
+    project(v);
+    Eigen::Map<Net>(out, n, 3) = v;
+  };
+  Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
+  const Eigen::VectorXd right = v;
+  const SolveReport report = krylov_.solve(apply, right, v, parameters_.solvers.tolerance);
+  work_.velocity_iterations += report.iterations;
+  if (v.allFinite()) require_convergence(report, "the velocity at viscosity ratio " + std::to_string(parameters_.viscosity_ratio), parameters_.solvers.tolerance);
+  Net solution = Eigen::Map<const Net>(v.data(), n, 3);
+  project(solution);
+  return solution;
 }
 
 void Capsule::freeze(const Net& x) {
@@ -107,6 +141,9 @@ void Capsule::freeze(const Net& x) {
   frozen_.assemble(own_points_, space_.n_points, [&](std::span<const int> targets, stokes::Rows<float>& rows) {
     layer_.assemble(x, stokes::Measure::reference, targets, rows);
   });
+  if (!double_layer_) return;
+  frozen_double_.assemble(own_points_, space_.n_points,
+                          [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(x, targets, rows); });
 }
 
 void Capsule::linearise(const Net& x) {
@@ -115,27 +152,34 @@ void Capsule::linearise(const Net& x) {
   tangent_.update(x, own_elements_);
 }
 
-/// J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                      (4.3)
-Net Capsule::jacobian(const Net& delta) {
+/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
+Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3), u(delta.rows(), 3);
   tangent_.apply(delta, h);
   ranks_.replicate(h);
-  const Net f = mass_.solve(h);
-  frozen_.apply(f, u);
+  frozen_.apply(mass_.solve(h), u);
   ranks_.replicate(u);
   return delta * flow_.gradient(Vec3::Zero()).transpose() - collocation_.solve(u) / parameters_.viscosity;
 }
 
+/// (B - shift B J) delta = B r, with everything that B holds frozen.
 Net Capsule::solve(double shift, const Net& r, double tolerance) {
   const auto clock = phases_.time("implicit solve");
   const Eigen::Index n = r.rows();
+  const auto inertia = [&](const Net& v) -> Net {
+    if (!double_layer_) return v;
+    Net hv(n, 3);
+    frozen_double_.apply(v, hv);
+    ranks_.replicate(hv);
+    return viscous(v, hv);
+  };
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
-    Eigen::Map<Net>(out, n, 3) = delta - shift * jacobian(delta);
+    Eigen::Map<Net>(out, n, 3) = inertia(delta) - shift * energy_part(delta);
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
-  const Eigen::VectorXd rhs = Eigen::Map<const Eigen::VectorXd>(r.data(), r.size());
-  const SolveReport report = krylov_.solve(apply, rhs, solution, tolerance);
+  const Net rhs = inertia(r);
+  const SolveReport report = krylov_.solve(apply, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
   work_.solver_iterations += report.iterations;
   return Eigen::Map<const Net>(solution.data(), n, 3);
@@ -153,9 +197,17 @@ double Capsule::norm(const Net& displacement) const {
   return displacement.norm() / (parameters_.radius * std::sqrt(static_cast<double>(displacement.rows())));
 }
 
-Mat3 Capsule::stresslet(const Net& x) {
-  const Mat3 moment = energy_gradient(x).transpose() * x;
+Mat3 Capsule::stresslet(const Net& x, const Net& v) {
+  Mat3 moment = energy_gradient(x).transpose() * x;  // int df x dG, since x = sum N_A x_A
+  if (double_layer_) moment -= 2 * (1 - parameters_.viscosity_ratio) * parameters_.viscosity * v.transpose() * geometry_.volume_gradient(x);
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+}
+
+stokes::Evaluations Capsule::kernel_evaluations() const {
+  stokes::Evaluations sum = layer_.evaluations();
+  if (!double_layer_) return sum;
+  const stokes::Evaluations& other = double_layer_->evaluations();
+  return {sum.far + other.far, sum.near + other.near, sum.self + other.self};
 }
 
 double Capsule::volume_error(const Net& x) const { return geometry_.volume(x) / volume0_ - 1; }

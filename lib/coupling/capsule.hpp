@@ -1,7 +1,8 @@
 #pragma once
-// A capsule or drop of the outer fluid's viscosity in unbounded flow: fluid and membrane meet here.
+// A capsule or drop in unbounded flow: fluid and membrane meet here.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,12 +14,14 @@
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
 #include "membrane/direct_solver.hpp"
+#include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
 #include "membrane/options.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/ambient_flow.hpp"
+#include "stokes/double_layer.hpp"
 #include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
 
@@ -31,13 +34,16 @@ struct Work {
   long tangents = 0;           ///< of the membrane
   long solves = 0;             ///< linear solves of the implicit step
   long solver_iterations = 0;  ///< of all of them
+  long velocity_iterations = 0;  ///< of the systems that velocities come from when the viscosities differ
 };
 
 /// What a capsule is made of and how it is solved.
 struct CapsuleParameters {
-  double viscosity = 1;  ///< mu of both fluids
+  double viscosity = 1;        ///< mu of the outer fluid
+  double viscosity_ratio = 1;  ///< lambda
   double radius = 1;     ///< R_C
   membrane::Law law;
+  membrane::Bending bending;
   bool strong_load = false;                                      ///< (P-3) at the collocation sites instead of (3.5)
   stokes::Measure measure = stokes::Measure::reference;          ///< of the weak load: (3.7) or (3.6)
   VolumeOptions volume;
@@ -45,9 +51,12 @@ struct CapsuleParameters {
   quadrature::Options quadrature;
 };
 
-/// dx/dt = v(x), lambda = 1, no wall: nothing has to be assembled or solved for the velocity (2.4), (4.2)
+/// dx/dt = v(x) without a wall (2.4), (4.2):
 ///
-///   v(x) = v_inf - R^{-1} A M0^{-1} dE/dx,  then v <- v - (b.v / b.c) c,  b = dV/dx, c = M0^{-1} b         (2.8)
+///   B v = v_inf - R^{-1} A M0^{-1} dE/dx,   B = I - (1 - lambda) R^{-1} H,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b    (2.8)
+///
+/// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
+/// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
 class Capsule : public Dynamics {
  public:
   /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`; the volume of `initial` is the one to be kept.
@@ -65,13 +74,15 @@ class Capsule : public Dynamics {
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say.
   Net load(const Net& x);
 
-  /// Particle stresslet S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x dG (lambda = 1), force times length.
-  Mat3 stresslet(const Net& x);
+  /// Particle stresslet S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG for the velocity v,
+  /// force times length. Batchelor 1970; Pozrikidis 1992, section 5.1.
+  Mat3 stresslet(const Net& x, const Net& v);
 
   double volume_error(const Net& x) const;  ///< V/V0 - 1
   const membrane::Membrane& membrane() const { return membrane_; }
-  const stokes::SingleLayer& single_layer() const { return layer_; }
+  stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const surface::Geometry& geometry() const { return geometry_; }
+  stokes::Measure measure() const { return parameters_.strong_load ? stokes::Measure::current : parameters_.measure; }  ///< of the load
   const Work& work() const { return work_; }
   Work& work() { return work_; }
 
@@ -79,7 +90,9 @@ class Capsule : public Dynamics {
   Net ambient(const Net& x) const;
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
-  Net jacobian(const Net& delta);
+  Net energy_part(const Net& delta);
+  Net viscous(const Net& v, const Net& hv) const;
+  Net solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs);
 
   const spline::Space& space_;
   stokes::AmbientFlow flow_;
@@ -92,9 +105,12 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   stokes::SingleLayer layer_;
-  membrane::DirectSolver collocation_, mass_, current_mass_;
+  std::optional<stokes::DoubleLayer> double_layer_;  // lambda != 1
+  membrane::DirectSolver collocation_;
+  membrane::MassSolver mass_;
   Krylov krylov_;
-  FrozenOperator frozen_;
+  FrozenOperator frozen_, frozen_double_;
+  stokes::Rows<double> double_rows_;
   double volume0_ = 0;
   Work work_;
 };

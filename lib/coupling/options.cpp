@@ -15,6 +15,8 @@ void SolverOptions::declare(deck::Section& section) {
   section.foreign("Belos", belos, "list handed to the iterative solver as it is");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual of the systems that a velocity (viscosity ratio other than 1) or a traction (rigid particle) comes from");
+  section.key("double layer", double_layer, deck::Choice{"assembled", "matrix-free"},
+              "viscosity ratio other than 1: `assembled` once a velocity, or summed in every iteration of its solver");
   direct.declare(section);
 }
 

@@ -20,6 +20,7 @@ struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of the implicit step
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
   double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
+  std::string double_layer = "assembled";         ///< once a velocity, for all iterations; or matrix-free: summed in each of them
   membrane::DirectSolverOptions direct;
 
   void declare(deck::Section& section);

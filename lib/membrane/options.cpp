@@ -23,9 +23,14 @@ void Options::declare(deck::Section& section) {
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
               "the weak load per area of the unstressed surface (3.7), or of the current one (3.6), the paper's and a drop's");
+  section.key("bending modulus", bending_modulus, deck::not_negative(), "force x length", "E_b of Helfrich's energy; 0: no resistance to bending");
+  section.key("bending reference", bending_reference, deck::Choice{"unstressed", "flat"},
+              "curvature at which no bending moment acts: that of the unstressed surface, or none");
 }
 
 void Options::check() const {
+  if (bending_modulus > 0 && load == "strong")
+    throw UserError("Membrane/bending modulus and Membrane/load `strong` contradict each other: bending exists in the weak form only.");
   if (capillary_number && shear_modulus)
     throw UserError("Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
   if (capillary_number && surface_tension)

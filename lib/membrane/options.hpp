@@ -23,6 +23,8 @@ struct Options {
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< the weak load per area of the unstressed surface (3.7) or of the current one (3.6)
+  double bending_modulus = 0;              ///< E_b, force x length; 0: none
+  std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
 
   void declare(deck::Section& section);
 

@@ -11,10 +11,37 @@
 namespace tanktread::surface {
 
 void MeshOptions::declare(deck::Section& section) {
-  section.key("mesh", mesh, deck::Choice{"cube"}, "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points");
+  section.key("mesh", mesh, deck::Choice{"cube", "polar"},
+              "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points; `polar`: structured, two poles, (r + 1)m + 2 control points");
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1", "n: 6n^2 elements on the cube mesh");
-  section.key("extraordinary points", extraordinary_points, deck::Choice{"g1"},
-              "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point");
+  section.key("extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
+              "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point; `catmull-clark`, bicubic "
+              "pieces towards the point, unchanged by refinement");
+  section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1", "m: elements around the pole axis of the polar mesh");
+  section.key("meridional elements", meridional_elements, deck::between(4, 200), "1", "r: elements from pole to pole");
+  section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"}, "the particle's own axis on which the poles lie");
+  section.key("poles", poles, deck::Choice{"bezier transform", "plain", "c1"},
+              "`bezier transform`: the paper's, degenerate elements replaced by others (P-A.1, P-A.2); `plain`: degenerate elements as they are; `c1`: "
+              "tangent planes continuous at the poles, (r - 1)m + 6 control points");
+  section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
+              "times that the elements at the poles are halved in azimuth before the transform");
+  const std::vector<std::string> of_cube{"elements per side", "extraordinary points"};
+  const std::vector<std::string> of_polar{"azimuthal elements", "meridional elements", "pole axis", "poles", "pole subdivisions"};
+  for (const std::string& key : polar() ? of_cube : of_polar)
+    if (section.given(key))
+      throw UserError(section.path(key) + " belongs to Surface/mesh `" + (polar() ? "cube" : "polar") + "`, but Surface/mesh is `" + mesh + "`.");
+  if (section.given("pole subdivisions") && poles != "bezier transform")
+    throw UserError(section.path("pole subdivisions") + " belongs to Surface/poles `bezier transform`, but Surface/poles is `" + poles + "`.");
+}
+
+spline::PolarMesh MeshOptions::polar_mesh() const {
+  const auto rule = poles == "plain" ? spline::PoleRule::plain : poles == "c1" ? spline::PoleRule::c1 : spline::PoleRule::bezier_transform;
+  return {azimuthal_elements, meridional_elements, rule, pole_subdivisions};
+}
+
+double MeshOptions::n_points() const {
+  const double n = elements_per_side, m = azimuthal_elements, r = meridional_elements;
+  return !polar() ? 6 * n * n + 2 : poles == "c1" ? (r - 1) * m + 6 : (r + 1) * m + 2;
 }
 
 void ParticleShape::declare(deck::Section& section) {

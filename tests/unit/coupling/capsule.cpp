@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/capsule.hpp"
+#include "coupling/collocation.hpp"
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
@@ -117,10 +118,46 @@ TEST(Capsule, JacobianIsTheDerivativeOfTheVelocityAtRest) {
   EXPECT_LT((solved - delta).norm(), 4e-3 * delta.norm());  // entries of the frozen operator are rounded to 2^-9
 }
 
+TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays) {
+  Fixture f;
+  const Net x = f.deformed();
+  f.parameters.volume.constraint = "none";
+  f.parameters.quadrature.tolerance = 1e-7;
+  f.parameters.solvers.tolerance = 1e-10;
+  const Net w = f.capsule().velocity(x);  // v_inf - S df: the right-hand side of (2.4)
+  for (const double ratio : {0.2, 5.0})
+    for (const char* way : {"assembled", "matrix-free"}) {
+      f.parameters.viscosity_ratio = ratio;
+      f.parameters.solvers.double_layer = way;
+      const Net v = f.capsule().velocity(x);
+      stokes::DoubleLayer layer(f.space, f.parameters.quadrature);
+      Net hv(x.rows(), 3), at_sites(x.rows(), 3), right(x.rows(), 3);
+      std::vector<int> all(static_cast<size_t>(x.rows()));
+      for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+      layer.apply(x, v, all, hv);
+      const Eigen::SparseMatrix<double> r = collocation_matrix(f.space);
+      at_sites = r * v, right = r * w;
+      EXPECT_LT((at_sites - (1 - ratio) * hv - right).norm(), 1e-8 * right.norm()) << ratio << " " << way;
+    }
+}
+
+// A drop that is only turned: a rigid-body motion carries no stress, whatever is inside.
+TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
+  Fixture f("linear");
+  Mat3 spin = Mat3::Zero();
+  spin(0, 2) = 0.7, spin(2, 0) = -0.7;
+  f.flow.gradient = spin;
+  for (const double ratio : {0.01, 100.0}) {
+    f.parameters.viscosity_ratio = ratio;
+    const Net v = f.capsule().velocity(f.sphere);
+    EXPECT_LT((v - f.sphere * spin.transpose()).norm(), 1e-6 * v.norm()) << ratio;  // tolerance 1e-8 of the solver over 1/ratio
+  }
+}
+
 TEST(Capsule, StressletIsSymmetricAndTraceless) {
   Fixture f;
   Capsule capsule = f.capsule();
-  const Mat3 s = capsule.stresslet(f.deformed());
+  const Mat3 s = capsule.stresslet(f.deformed(), f.deformed());
   EXPECT_NEAR(s.trace(), 0, 1e-12);
   EXPECT_EQ(s, s.transpose());
   EXPECT_GT(s(0, 0), 0);  // stretched along x1: the membrane resists

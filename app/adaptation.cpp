@@ -1,0 +1,105 @@
+#include "app/adaptation.hpp"
+
+#include <algorithm>
+
+#include "motion/adaptation.hpp"
+#include "spline/coarsening.hpp"
+#include "spline/projection.hpp"
+#include "spline/refinement.hpp"
+#include "spline/transfer.hpp"
+#include "surface/metrics.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// The body and the state carried over by `move`, which gives a net on the new space.
+template <class Move>
+Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::State& state, const Move& move) {
+  Adapted result{std::move(target), state, true, 0};
+  result.body->rest = move(body.rest);
+  result.body->unstressed = move(body.unstressed);
+  result.state.x = move(state.x);
+  for (Net& slope : result.state.history) slope = move(slope);
+  if (state.frozen.size() > 0) result.state.frozen = move(state.frozen);
+  return result;
+}
+
+std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMesh mesh) {
+  auto target = std::make_unique<Body>(body);
+  target->mesh = std::move(mesh);
+  target->space = space(scene, target->mesh);
+  return target;
+}
+
+std::optional<Adapted> refined(const Scene& scene, const Body& body, const motion::State& state, const std::vector<spline::Mark>& marks) {
+  spline::Refinement refinement = spline::refine(body.mesh, marks);
+  if (refinement.mesh.edges == body.mesh.edges) return {};
+  auto target = on_mesh(scene, body, std::move(refinement.mesh));
+  const spline::Transfer transfer(body.space, target->space);
+  double residual = 0;
+  Adapted result = carried(body, std::move(target), state, [&](const Net& field) {
+    const auto moved = transfer(field);
+    residual = std::max(residual, moved.residual);
+    return moved.net;
+  });
+  result.change = residual / body.radius;
+  return result;
+}
+
+/// Elements of the T-mesh in which some Bezier element's defect is above the tolerance.
+std::vector<bool> elements_over(const Body& body, const std::vector<double>& defect, double tolerance) {
+  const spline::Tiling tiling = spline::elements(body.mesh);
+  const spline::Lattice& lattice = *body.mesh.lattice;
+  std::vector<bool> over(tiling.tiles.size(), false);
+  for (size_t e = 0; e < defect.size(); ++e) {
+    if (defect[e] <= tolerance) continue;
+    const spline::Element& element = body.space.elements[e];
+    const int x = static_cast<int>((element.origin[0] + element.size[0] / 2) * lattice.units);
+    const int y = static_cast<int>((element.origin[1] + element.size[1] / 2) * lattice.units);
+    over[static_cast<size_t>(tiling.tile_of_cell[static_cast<size_t>(lattice.cell_at(element.face, x, y))])] = true;
+  }
+  return over;
+}
+
+/// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
+std::optional<Adapted> coarsened(const Scene& scene, const Body& body, const motion::State& state, std::vector<spline::Merge> merges) {
+  for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
+    spline::Coarsening coarsening = spline::coarsen(body.mesh, merges);
+    auto target = on_mesh(scene, body, std::move(coarsening.mesh));
+    if (target->space.n_points >= body.space.n_points) return {};
+    const spline::Projection projection(body.space, target->space);
+    std::vector<double> defect(body.space.elements.size(), 0.0);
+    for (const Net* net : {&body.unstressed, &state.x}) {
+      const std::vector<double> found = projection(*net).defect;
+      for (size_t e = 0; e < defect.size(); ++e) defect[e] = std::max(defect[e], found[e]);
+    }
+    const double change = *std::max_element(defect.begin(), defect.end());
+    if (change <= scene.adaptation.coarsening_tolerance) {
+      Adapted result = carried(body, std::move(target), state, [&](const Net& field) { return projection(field).net; });
+      result.finer = false;
+      result.change = change / body.radius;
+      return result;
+    }
+    const std::vector<bool> spoilt = elements_over(body, defect, scene.adaptation.coarsening_tolerance);
+    std::erase_if(merges, [&](const spline::Merge& merge) { return spoilt[static_cast<size_t>(merge.element)]; });
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<Adapted> adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
+  surface::MetricFields fields;
+  if (scene.adaptation.reference_traction_variation)
+    fields.traction = per_unstressed_area ? surface::per_current_area(body.space, body.unstressed, state.x, load) : surface::field_of_net(body.space, load);
+  if (scene.adaptation.reference_velocity_variation && !state.history.empty())
+    fields.velocity = surface::field_of_net(body.space, state.history.front());
+  const auto metrics = surface::element_metrics(body.mesh, body.space, state.x, fields);
+  if (body.space.n_points < scene.adaptation.largest_number_of_points)
+    if (auto result = refined(scene, body, state, motion::marks(metrics, scene.adaptation))) return result;
+  if (!scene.adaptation.coarsen) return {};
+  return coarsened(scene, body, state, motion::merges(metrics, scene.adaptation));
+}
+
+}  // namespace tanktread
