@@ -1,0 +1,44 @@
+#pragma once
+// The structured closed surface: a periodic cubic in azimuth times an open cubic along the meridian, with a pole at either end.
+
+#include <vector>
+
+#include "spline/space.hpp"
+
+namespace tanktread::spline {
+
+/// What the surface is around a pole.
+enum class PoleRule {
+  plain,             ///< one C0 function a pole; elements that are collapsed to the pole on one side
+  bezier_transform,  ///< the same functions, their elements replaced by non-degenerate ones (pole_transform.hpp); the paper's
+  c1,                ///< three functions on a control triangle a pole, tangent planes continuous; elements as in `plain`
+};
+
+/// m elements around and r from pole to pole, uniform knots: (r + 1) m + 2 control points, or (r - 1) m + 6 under `c1`.
+struct PolarMesh {
+  int azimuthal = 32;   ///< m >= 4
+  int meridional = 16;  ///< r >= 4
+  PoleRule poles = PoleRule::bezier_transform;
+  int subdivisions = 2;  ///< of the elements at the poles in azimuth before the transform, 2^subdivisions
+};
+
+/// Where a control point stands: azimuth in elements, 0 <= v < m, and way along the meridian in elements, 0 (pole behind) <= u <= r (pole ahead).
+/// The generalised Greville places; the three of a pole under `c1` stand off it by `c1_site`, 120 degrees apart.
+struct PolarAnchor {
+  double u = 0, v = 0;
+};
+std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
+
+/// Where the sites of the three functions of a pole under `c1` lie, in elements from the pole.
+constexpr double c1_site = 0.5;
+
+/// The space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth, t
+/// along the meridian towards the pole ahead; those of the transform last. A pole of `plain` lies on a whole side of m elements, and its site is
+/// at s = 1/2 of each. `face` is 0 and `origin`, `size` are in parts of m and r; the pieces of the transform have their share of the size.
+///
+/// Under `c1` (Speleers and Toshniwal 2021), with rows 0 and 1 next to the pole and azimuths f_j = 2 pi j / m of their functions:
+///
+///   N_l = 1/3 sum_j N_0j + sum_j (1 + cos(f_j - 2 pi l / 3)) / 3 N_1j,   l = 0, 1, 2
+Space space(const PolarMesh& mesh);
+
+}  // namespace tanktread::spline
