@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "surface/cube_sphere.hpp"
+#include "surface/polar_sphere.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -40,15 +41,23 @@ Vec3 red_cell(const Vec3& x) {
   return {x[0], x[1], x[2] / 2 * (0.21 + 2.0 * r2 - 1.12 * r2 * r2)};
 }
 
-Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {
-  const LeastSquaresFit fit(space);
-  Net net = unit_sphere(mesh, fit);
+Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape) {
+  Net net = unit_sphere;
   if (shape.shape == "red cell") net = fit.fit_image(net, [](const Vec3& x) { return red_cell(x.normalized()); });
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
   const Mat3 map = shape.rotation() * semi_axes.asDiagonal();
   net = net * map.transpose();
   net.rowwise() += shape.center.transpose();
   return net;
+}
+
+Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {
+  const LeastSquaresFit fit(space);
+  return resting_shape(fit, unit_sphere(mesh, fit), shape);
+}
+
+Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape) {
+  return resting_shape(LeastSquaresFit(space), unit_sphere(mesh, space, axis), shape);
 }
 
 }  // namespace tanktread::surface

@@ -2,6 +2,7 @@
 // Control nets of resting shapes, fitted to the order of the space.
 
 #include "base/types.hpp"
+#include "spline/polar.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/fit.hpp"
@@ -17,7 +18,12 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits 
 ///   (x1, x2, x3) -> (x1, x2, x3/2 (0.21 + 2.0 r^2 - 1.12 r^4)),  r^2 = x1^2 + x2^2        (Evans & Fung 1972)
 Vec3 red_cell(const Vec3& on_unit_sphere);
 
-/// The resting shape of a deck, in place. Nothing is scaled after the fit, so the volume errs as the fit does; lengths refer to the deck's radius.
+/// The resting shape of a deck, in place, from a fitted unit sphere. Nothing is scaled after the fit, so the volume errs as the fit does; lengths
+/// refer to the deck's radius.
+Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape);
+
+/// The same on the cube mesh, and on the structured one with its poles on the particle's own axis x_{axis+1}.
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
+Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
 }  // namespace tanktread::surface
