@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "spline/polar.hpp"
 
 namespace tanktread::deck {
 class Section;
@@ -13,11 +14,23 @@ namespace tanktread::surface {
 
 /// The spline space of the particle's surface: `Surface/*` of the deck.
 struct MeshOptions {
-  std::string mesh = "cube";                ///< 6 n^2 elements, eight extraordinary points
+  std::string mesh = "cube";                ///< 6 n^2 elements, eight extraordinary points; or polar, two poles
   int elements_per_side = 6;                ///< n
   std::string extraordinary_points = "g1";  ///< rule at points where three elements meet
+  int azimuthal_elements = 32;              ///< m
+  int meridional_elements = 16;             ///< r
+  std::string pole_axis = "x3";             ///< the particle's own
+  std::string poles = "bezier transform";   ///< rule at the poles
+  int pole_subdivisions = 2;                ///< in azimuth, before the transform
 
   void declare(deck::Section& section);
+
+  bool polar() const { return mesh == "polar"; }
+  spline::PolarMesh polar_mesh() const;
+  int axis() const { return pole_axis[1] - '1'; }
+
+  /// Control points of the mesh that the deck asks for.
+  double n_points() const;
 };
 
 /// The resting shape of the particle: keys of `Particle/*`.
