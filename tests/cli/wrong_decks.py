@@ -21,13 +21,12 @@ SETTINGS = [
     (["Membrane/viscosity ratio=1"], ["Membrane/viscosity ratio", "Particle/viscosity ratio"]),
     (["Time/end=3"], ["Time/end", "not a key", "final time"]),
     (["Expect/energy/value=1", "Expect/energy/tolerance=1", "Expect/energy/tol=1"], ["Expect/energy/tol", "not a key"]),
-    # what is promised, but not built yet
-    (["Tube/radius=1"], ["Tube", "not a key"]),
-    (["Adaptation/enabled=true"], ["Adaptation", "not a key"]),
-    (["Surface/mesh=polar"], ["Surface/mesh", "cube", "polar"]),
-    (["Flow/type=duct"], ["Flow/type", "simple shear", "duct"]),
-    (["Particle/motion=free"], ["Particle/motion", "deforming", "free"]),
-    (["Particle/viscosity ratio=5"], ["Particle/viscosity ratio", "equal to 1", "5"]),
+    (["Zebra/stripes=1"], ["Zebra", "not a key", "Flow"]),
+    # unknown words
+    (["Surface/mesh=icosahedron"], ["Surface/mesh", "cube", "icosahedron"]),
+    (["Flow/type=waterfall"], ["Flow/type", "simple shear", "waterfall"]),
+    (["Particle/motion=backwards"], ["Particle/motion", "deforming", "backwards"]),
+    (["Particle/viscosity ratio=-1"], ["Particle/viscosity ratio", "-1"]),
     # wrong types
     (['Flow/viscosity="1"'], ["Flow/viscosity", "a number", '"1"']),
     (["Flow/shear rate=fast"], ["Flow/shear rate", "a number", "1/time", "fast"]),
