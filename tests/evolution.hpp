@@ -1,0 +1,58 @@
+#pragma once
+// A deck integrated in memory, without files, for tests that look at what a whole run comes to.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/body.hpp"
+#include "app/scene.hpp"
+#include "deck/document.hpp"
+#include "motion/integrator.hpp"
+
+namespace tanktread {
+
+/// A scene, its body, and the run so far. Settings are `Section/key=value`, as behind `--set`.
+class Evolution {
+ public:
+  explicit Evolution(const std::vector<std::string>& settings) {
+    deck::Document deck = deck::read({}, settings);
+    deck.declare(scene);
+    scene.check();
+    body = tanktread::body(scene);
+    capsule = tanktread::capsule(scene, body, ranks_, phases_);
+    scheme_ = motion::integrator(scene.time);
+    state.x = body.rest;
+    state.history = {capsule->velocity(state.x)};
+    state.step = motion::first_step(*capsule, state, scene.time);
+  }
+  Evolution(const Evolution&) = delete;
+
+  /// One step, not beyond `limit`. Throws RunFailure.
+  motion::StepReport step(double limit) {
+    const motion::StepReport report = scheme_->advance(*capsule, state, limit);
+    ++steps;
+    return report;
+  }
+
+  /// Integrates to a time. Throws RunFailure.
+  void to(double time) {
+    while (state.time < time) step(time);
+  }
+
+  surface::Deformation deformation() const { return capsule->geometry().deformation(state.x); }
+  double energy() const { return capsule->membrane().energy(state.x); }
+
+  Scene scene;
+  Body body;
+  std::unique_ptr<coupling::Capsule> capsule;
+  motion::State state;
+  int steps = 0;
+
+ private:
+  coupling::Ranks ranks_;
+  Phases phases_;
+  std::unique_ptr<motion::Integrator> scheme_;
+};
+
+}  // namespace tanktread
