@@ -1,10 +1,12 @@
 #include "coupling/resistance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
 #include "coupling/collocation.hpp"
 #include "membrane/mass.hpp"
+#include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
 
@@ -15,6 +17,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
     : space_(space),
       surface_(surface),
       viscosity_(viscosity),
+      quadrature_(quadrature),
       ranks_(ranks),
       phases_(phases),
       layer_(space, quadrature),
@@ -56,9 +59,50 @@ Net Resistance::force_density(const Net& u) {
   const Net rhs = viscosity_ * u;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
   const SolveReport report = krylov_.solve(operation, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), f, tolerance_);
-  iterations_ += report.iterations;
+  iterations_ += last_iterations_ = report.iterations;
   require_convergence(report, "the first-kind system of the rigid surface", tolerance_);
   return Eigen::Map<const Net>(f.data(), n, 3);
+}
+
+stokes::Evaluations Resistance::kernel_evaluations() const {
+  const stokes::Evaluations assembly = layer_.evaluations();
+  return {assembly.far + residual_evaluations_.far, assembly.near + residual_evaluations_.near, assembly.self + residual_evaluations_.self};
+}
+
+Eigen::VectorXd Resistance::residual_work(const Net& u, const Net& f, std::span<const Net> z) {
+  const auto clock = phases_.time("reciprocal correction");
+  std::vector<spline::Site> sites;
+  std::vector<double> weights;
+  for (int e = 0; e < static_cast<int>(space_.elements.size()); ++e) {
+    // The residual on an element is like h^4 times a quartic: as many points a direction as the degree integrate it.
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(space_.elements[static_cast<size_t>(e)].degree);
+    for (int q = 0; q < rule.size(); ++q) {
+      sites.push_back({e, rule.s[q], rule.t[q]});
+      weights.push_back(rule.weights[q]);
+    }
+  }
+  // The layer has as many targets as control points: the sites take their turns.
+  const size_t n = static_cast<size_t>(space_.n_points);
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(z.size()));
+  spline::Space turn = space_;
+  for (size_t first = 0; first < sites.size(); first += n) {
+    for (size_t i = 0; i < n; ++i) turn.collocation[i] = {sites[std::min(first + i, sites.size() - 1)]};
+    stokes::SingleLayer layer(turn, quadrature_);
+    layer.set_reference(surface_);
+    Net v(u.rows(), 3);
+    layer.apply(surface_, f, stokes::Measure::reference, own_points_, v);
+    ranks_.replicate(v);
+    residual_evaluations_.far += layer.evaluations().far;
+    residual_evaluations_.near += layer.evaluations().near;
+    residual_evaluations_.self += layer.evaluations().self;
+    for (size_t i = 0; i < n && first + i < sites.size(); ++i) {
+      const spline::Site& site = sites[first + i];
+      const Vec3 rest = surface::value(space_, u, site) - v.row(static_cast<Eigen::Index>(i)).transpose() / viscosity_;
+      const double area = weights[first + i] * surface::point(space_, surface_, site).jacobian;
+      for (size_t k = 0; k < z.size(); ++k) work[static_cast<Eigen::Index>(k)] += area * surface::value(space_, z[k], site).dot(rest);
+    }
+  }
+  return work;
 }
 
 Vec3 Resistance::force(const Net& f) const {

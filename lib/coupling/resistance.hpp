@@ -1,6 +1,7 @@
 #pragma once
 // A rigid surface in a fluid: the force density that gives a velocity on it.
 
+#include <span>
 #include <vector>
 
 #include "base/timing.hpp"
@@ -30,6 +31,12 @@ class Resistance {
   /// Control values of f for velocities at control values u. Throws RunFailure, with the residuals, when the solver stops short.
   Net force_density(const Net& u);
 
+  /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
+  /// weighted. By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
+  /// translation (a rotation) of unit size it is what the force (the torque) of f lacks. The remaining error is the fitted surface's own.
+  /// `u`: control values of an affine field.
+  Eigen::VectorXd residual_work(const Net& u, const Net& f, std::span<const Net> z);
+
   Vec3 force(const Net& f) const;                         ///< int f dG
   Vec3 torque(const Net& f, const Vec3& centre) const;    ///< int (x - centre) x f dG
   Mat3 stresslet(const Net& f, const Vec3& centre) const; ///< symmetric, traceless part of int f (x - centre) dG
@@ -37,8 +44,10 @@ class Resistance {
   /// Control values c of n, by projection: the density that no velocity tells of.
   const Net& normal() const { return normal_; }
 
-  const stokes::SingleLayer& single_layer() const { return layer_; }
+  stokes::Evaluations kernel_evaluations() const;  ///< of everything so far
+  int last_iterations() const { return last_iterations_; }
   long solver_iterations() const { return iterations_; }
+  const Net& surface() const { return surface_; }
 
  private:
   Net apply(const Net& f) const;
@@ -46,6 +55,7 @@ class Resistance {
   const spline::Space& space_;
   Net surface_;
   double viscosity_;
+  quadrature::Options quadrature_;
   Ranks& ranks_;
   Phases& phases_;
   std::vector<int> own_points_;
@@ -58,6 +68,8 @@ class Resistance {
   Krylov krylov_;
   double tolerance_;
   long iterations_ = 0;
+  int last_iterations_ = 0;
+  stokes::Evaluations residual_evaluations_;
 };
 
 }  // namespace tanktread::coupling

@@ -1,0 +1,131 @@
+#include "coupling/rigid_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// The five strains, and the components of a trace-free symmetric matrix in them.
+Mat3 unit_strain(int k) {
+  Mat3 e = Mat3::Zero();
+  if (k < 2) {
+    e(k, k) = 1;
+    e(k + 1, k + 1) = -1;
+  } else {
+    const int i = k == 4 ? 1 : 0, j = k == 2 ? 1 : 2;
+    e(i, j) = e(j, i) = 1;
+  }
+  return e;
+}
+
+Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
+  Eigen::Matrix<double, 5, 1> c;
+  c << e(0, 0), e(0, 0) + e(1, 1), e(0, 1), e(0, 2), e(1, 2);
+  return c;
+}
+
+Eigen::Quaterniond quaternion(const Net& place) { return {place(2, 0), place(1, 0), place(1, 1), place(1, 2)}; }
+
+/// Half the curl of a flow with gradient L_ij = dv_i/dx_j.
+Vec3 angular_velocity(const Mat3& l) { return 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1)); }
+
+}  // namespace
+
+Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& centre) {
+  Net u(surface.rows(), 3);
+  for (Eigen::Index a = 0; a < u.rows(); ++a)
+    u.row(a) = (motion.velocity + motion.angular_velocity.cross(surface.row(a).transpose() - centre)).transpose();
+  return u;
+}
+
+RigidModes::RigidModes(Resistance& body, const Vec3& centre) {
+  const Net& surface = body.surface();
+  for (int k = 0; k < 11; ++k) {
+    RigidMotion motion;
+    if (k < 3) motion.velocity = Vec3::Unit(k);
+    if (k >= 3 && k < 6) motion.angular_velocity = Vec3::Unit(k - 3);
+    const Net u = k < 6 ? rigid_velocity(surface, motion, centre) : Net((surface.rowwise() - centre.transpose()) * unit_strain(k - 6));
+    density.push_back(body.force_density(u));
+    largest_iterations = std::max(largest_iterations, body.last_iterations());
+    response.col(k) << body.force(density.back()), body.torque(density.back(), centre);
+    stresslet[static_cast<size_t>(k)] = body.stresslet(density.back(), centre);
+  }
+}
+
+Net placed(const Vec3& centre) {
+  Net place = Net::Zero(3, 3);
+  place.row(0) = centre.transpose();
+  place(2, 0) = 1;
+  return place;
+}
+
+Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
+
+Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
+
+FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow)
+    : surface_(body.surface()), centre_(centre), radius_(radius), flow_(flow), modes_(body, centre) {
+  drift_ = modes_.response.leftCols<6>().partialPivLu().solve(modes_.response.rightCols<5>());
+}
+
+/// Amplitudes of the modes in the body's axes: what the body moves by relative to the flow, and the strain that it resists.
+Eigen::Matrix<double, 11, 1> FreeBody::amplitudes(const Net& place) const {
+  const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
+  Eigen::Matrix<double, 11, 1> a;
+  a.tail<5>() = -strain_components(0.5 * (l + l.transpose()));
+  a.head<6>() = -drift_ * a.tail<5>();
+  return a;
+}
+
+RigidMotion FreeBody::motion(const Net& place) const {
+  const Eigen::Matrix<double, 11, 1> a = amplitudes(place);
+  const Mat3 turn = rotation_of(place);
+  const Vec3 centre = centre_of(place);
+  return {flow_.velocity(centre) + turn * a.segment<3>(0), angular_velocity(flow_.gradient(centre)) + turn * a.segment<3>(3)};
+}
+
+Net FreeBody::velocity(const Net& place) {
+  ++evaluations_;
+  const RigidMotion now = motion(place);
+  const Eigen::Quaterniond q = quaternion(place);
+  const Eigen::Quaterniond rate = Eigen::Quaterniond(0, now.angular_velocity[0], now.angular_velocity[1], now.angular_velocity[2]) * q;
+  Net slope = Net::Zero(3, 3);
+  slope.row(0) = now.velocity.transpose();
+  slope.row(1) = 0.5 * rate.vec().transpose();
+  slope(2, 0) = 0.5 * rate.w();
+  return slope;
+}
+
+void FreeBody::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
+
+double FreeBody::norm(const Net& displacement) const {
+  return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
+}
+
+Net FreeBody::surface(const Net& place) const {
+  Net x = (surface_.rowwise() - centre_.transpose()) * rotation_of(place).transpose();
+  x.rowwise() += place.row(0);
+  return x;
+}
+
+Net FreeBody::force_density(const Net& place) const {
+  const Eigen::Matrix<double, 11, 1> a = amplitudes(place);
+  Net f = Net::Zero(surface_.rows(), 3);
+  for (int k = 0; k < 11; ++k) f += a[k] * modes_.density[static_cast<size_t>(k)];
+  return f * rotation_of(place).transpose();
+}
+
+Mat3 FreeBody::stresslet(const Net& place) const {
+  const Eigen::Matrix<double, 11, 1> a = amplitudes(place);
+  Mat3 s = Mat3::Zero();
+  for (int k = 0; k < 11; ++k) s -= a[k] * modes_.stresslet[static_cast<size_t>(k)];
+  const Mat3 turn = rotation_of(place);
+  return turn * s * turn.transpose();
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,72 @@
+#pragma once
+// A rigid body that no force and no torque acts on, carried by any affine flow.
+
+#include <array>
+#include <vector>
+
+#include "base/types.hpp"
+#include "coupling/dynamics.hpp"
+#include "coupling/resistance.hpp"
+#include "stokes/ambient_flow.hpp"
+
+namespace tanktread::coupling {
+
+/// v = U + Omega x (x - centre)
+struct RigidMotion {
+  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
+};
+
+/// Control values of U + Omega x (x - centre) on the surface with control net `surface`: exact, for the basis sums to one.
+Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& centre);
+
+/// Resistance to the six rigid motions and the five strains of unit size, in the axes that the body has in `surface`. Whatever an affine
+/// flow does to the body is a combination of these eleven solutions.
+struct RigidModes {
+  RigidModes(Resistance& body, const Vec3& centre);
+
+  std::vector<Net> density;                  ///< force densities on the fluid: three translations, three rotations, five strains
+  Eigen::Matrix<double, 6, 11> response;     ///< force and torque of each
+  std::array<Mat3, 11> stresslet;            ///< of each
+  int largest_iterations = 0;                ///< of the eleven solves
+};
+
+/// Where a rigid body is, as a net of three rows: the centre; the vector and, first in its row, the scalar part of the quaternion that turns
+/// the body from its initial place.
+Net placed(const Vec3& centre);
+Vec3 centre_of(const Net& place);
+Mat3 rotation_of(const Net& place);
+
+/// Centre and orientation of a free rigid body as dx/dt = v(x):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf/2 + Omega',
+/// where (U', Omega') makes force and torque vanish in the strain of the flow. A few small matrices a call.
+class FreeBody : public Dynamics {
+ public:
+  /// `surface`: the body at its initial place; `radius`: R_C.
+  FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow);
+
+  Net velocity(const Net& place) override;
+  void freeze(const Net&) override {}
+  void linearise(const Net&) override {}
+  Net solve(double, const Net& r, double) override { return r; }  ///< J = 0: the motion is not stiff
+  void restore_volume(Net& place) override;                       ///< a rigid body has its volume; here the quaternion gets back its length
+  double norm(const Net& displacement) const override;            ///< displacement of the centre over R_C and angle, as one length
+
+  RigidMotion motion(const Net& place) const;
+  Net surface(const Net& place) const;        ///< control net of the surface in space
+  Net force_density(const Net& place) const;  ///< on the fluid, control values
+  Mat3 stresslet(const Net& place) const;     ///< of the particle: int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on it
+  const RigidModes& modes() const { return modes_; }
+  long evaluations() const { return evaluations_; }
+
+ private:
+  Eigen::Matrix<double, 11, 1> amplitudes(const Net& place) const;
+
+  Net surface_;
+  Vec3 centre_;
+  double radius_;
+  stokes::AmbientFlow flow_;
+  RigidModes modes_;
+  Eigen::Matrix<double, 6, 5> drift_;  ///< rigid motion relative to the flow, for each strain
+  long evaluations_ = 0;
+};
+
+}  // namespace tanktread::coupling
