@@ -92,7 +92,8 @@ std::optional<Adapted> coarsened(const Scene& scene, const Body& body, const mot
 std::optional<Adapted> adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
   surface::MetricFields fields;
   if (scene.adaptation.reference_traction_variation)
-    fields.traction = per_unstressed_area ? surface::per_current_area(body.space, body.unstressed, state.x, load) : surface::field_of_net(body.space, load);
+    fields.traction = per_unstressed_area ? surface::per_current_area(body.space, body.unstressed, state.x, load)
+                                          : surface::field_of_net(body.space, load);
   if (scene.adaptation.reference_velocity_variation && !state.history.empty())
     fields.velocity = surface::field_of_net(body.space, state.history.front());
   const auto metrics = surface::element_metrics(body.mesh, body.space, state.x, fields);

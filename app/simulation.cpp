@@ -219,7 +219,9 @@ int simulate(const Scene& scene, const RunRequest& request) {
 
 std::string plan_text(const Scene& scene, int ranks) {
   std::ostringstream text;
-  for (const auto& [what, how] : plan(scene, body(scene), ranks)) text << "  " << what << std::string(12 - std::min<size_t>(11, what.size()), ' ') << how << "\n";
+  for (const auto& [what, how] : plan(scene, body(scene), ranks)) {
+    text << "  " << what << std::string(12 - std::min<size_t>(11, what.size()), ' ') << how << "\n";
+  }
   return "plan\n" + text.str();
 }
 

@@ -129,7 +129,9 @@ Net Capsule::solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs) {
   const Eigen::VectorXd right = v;
   const SolveReport report = krylov_.solve(apply, right, v, parameters_.solvers.tolerance);
   work_.velocity_iterations += report.iterations;
-  if (v.allFinite()) require_convergence(report, "the velocity at viscosity ratio " + std::to_string(parameters_.viscosity_ratio), parameters_.solvers.tolerance);
+  if (v.allFinite()) {
+    require_convergence(report, "the velocity at viscosity ratio " + std::to_string(parameters_.viscosity_ratio), parameters_.solvers.tolerance);
+  }
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
   return solution;

@@ -53,7 +53,9 @@ std::vector<double> residuals(const std::string& log) {
   std::istringstream lines(log);
   for (std::string line; std::getline(lines, line);) {
     const size_t colon = line.rfind(':');
-    if (line.find("Iter ") != std::string::npos && line.find("] :") != std::string::npos) found.push_back(std::strtod(line.c_str() + colon + 1, nullptr));
+    if (line.find("Iter ") != std::string::npos && line.find("] :") != std::string::npos) {
+      found.push_back(std::strtod(line.c_str() + colon + 1, nullptr));
+    }
   }
   return found;
 }

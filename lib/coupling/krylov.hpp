@@ -37,7 +37,8 @@ class Krylov {
   Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list);
   ~Krylov();
 
-  /// Solves apply(x) = b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw when it stops short; see the report.
+  /// Solves apply(x) = b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw when it
+  /// stops short; see the report.
   SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
  private:

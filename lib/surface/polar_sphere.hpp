@@ -14,7 +14,8 @@ namespace tanktread::surface {
 ///   int |grad eps|^2 + eps^2 dG,   eps = (|x|^2 - 1) / 2,
 ///
 /// over the surface itself, where grad eps is the part of x in the tangent plane, the error of the normal. The minimum takes the best
-/// distribution of the elements along the meridian too: the error in the normal is 0.6 of that of a least-squares fit of places, in the radius a half.
+/// distribution of the elements along the meridian too: the error in the normal is 0.6 of that of a least-squares fit of places, in the
+/// radius a half.
 Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int axis = 2);
 
 }  // namespace tanktread::surface
