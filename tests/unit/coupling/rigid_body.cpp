@@ -41,7 +41,8 @@ struct Fixture {
     shape.center = Vec3(0.3, -0.1, 0.2);
     quadrature::Options quadrature;
     quadrature.tolerance = 1e-7;
-    resistance = std::make_unique<Resistance>(space, surface::initial_shape(space, mesh, shape), viscosity, quadrature, SolverOptions{}, ranks, phases);
+    resistance = std::make_unique<Resistance>(space, surface::initial_shape(space, mesh, shape), viscosity,
+                                              quadrature, SolverOptions{}, ranks, phases);
     stokes::FlowOptions flow;
     flow.type = "linear";
     flow.gradient = some_gradient();
