@@ -50,7 +50,7 @@ TEST_P(SmallDeformation, GrowsWithTheCapillaryNumberAsTheoryHasIt) {
     const double finest = slope(c, 0.0025);
     limit = (8 * finest - 6 * fine + middle) / 3;
   }
-  EXPECT_NEAR(limit / c.limit(), 1, c.is_drop() ? 1e-3 : 4e-4);  // n = 6: 6e-4 for drops, 3e-4 at C = 10, otherwise below 1e-4
+  EXPECT_NEAR(limit / c.limit(), 1, c.is_drop() ? 1e-3 : 2e-4);  // n = 6: 6e-4 and 1.2e-4 measured
 }
 
 INSTANTIATE_TEST_SUITE_P(FlowsAndLaws, SmallDeformation,
