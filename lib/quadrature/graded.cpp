@@ -71,7 +71,7 @@ void graded(std::span<const double> bezier, int degree, const Vec3& target, cons
     parts.pop_back();
     const auto [flat, bulge] = element.patch(p);
     const Sight seen = sight(flat, target);
-    const double error = demand.allowed * std::max(seen.distance, smallest) / flat.area();
+    const double error = demand.error(flat.area(), std::max(seen.distance, smallest * flat.u.norm()));
     const int n_s = std::max(order_for(error, seen.rho_u), order_for(demand.tolerance, rho_smooth / p.width));
     const int n_t = std::max(order_for(error, seen.rho_v), order_for(demand.tolerance, rho_smooth / p.height));
     const bool enough = std::max(n_s, n_t) <= largest && bulge <= 0.25 * seen.distance;

@@ -25,18 +25,38 @@ void DoubleLayer::place(const Net& x, std::span<const int> targets) {
   surface_.collocation_points(targets, at_);
 }
 
+void DoubleLayer::take(const Net& v) {
+  surface_.panels.bezier(v, bezier_v_);
+  node_values(surface_.panels, bezier_v_, velocity_);
+}
+
 void DoubleLayer::apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv) {
   place(x, targets);
+  take(v);
+  std::vector<Vec3> v0;
+  for (const int i : targets) v0.push_back(surface_.self_field.value(i, surface_.panels, bezier_v_));
+  integrate(targets, v0, hv);
+}
+
+std::vector<Mat3> DoubleLayer::solid_angle(const Net& x, std::span<const int> targets) {
+  place(x, targets);
+  std::vector<Mat3> angle(targets.size());
+  Net column = Net::Zero(surface_.n_points, 3);
+  for (int j = 0; j < 3; ++j) {
+    take(Vec3::Unit(j).transpose().replicate(surface_.n_points, 1));
+    integrate(targets, std::vector<Vec3>(targets.size(), Vec3::Zero()), column);
+    for (std::size_t k = 0; k < targets.size(); ++k) angle[k].col(j) = column.row(targets[k]).transpose();
+  }
+  return angle;
+}
+
+/// (1 / 8 pi) int (v_j - v0_j) T_ijk n_k dG at the targets of place().
+void DoubleLayer::integrate(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv) {
   Panels& panels = surface_.panels;
-  panels.bezier(v, bezier_v_);
-  node_values(panels, bezier_v_, velocity_);
   const auto& node = surface_.node;
   const Stresslets all{panels.n_nodes(),    node[0].data(),      node[1].data(),    node[2].data(),    velocity_[0].data(),
                        velocity_[1].data(), velocity_[2].data(), normal_[0].data(), normal_[1].data(), normal_[2].data()};
   const int n = static_cast<int>(targets.size());
-  std::vector<Vec3> v0;
-  for (const int i : targets) v0.push_back(surface_.self_field.value(i, panels, bezier_v_));
-
   double block[6 * far_block], sums[3 * far_block];
   for (int first = 0; first < n; first += far_block) {
     for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target

@@ -15,11 +15,11 @@ int far_order(const quadrature::Options& options) {
 
 }  // namespace
 
-LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how)
+LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how, bool steep)
     : options(how),
       n_points(space.n_points),
       panels(space, std::vector<int>(space.elements.size(), far_order(how))),
-      near_field(panels, how.tolerance, far_order(how)),
+      near_field(panels, how.tolerance, far_order(how), steep),
       self_field(space, how) {}
 
 void LayerSurface::place(const Net& x) {

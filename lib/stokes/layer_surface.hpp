@@ -15,7 +15,8 @@ namespace tanktread::stokes {
 /// The present surface as a layer operator integrates over it: panels, far nodes, and which rule each target needs on which panel.
 class LayerSurface {
  public:
-  LayerSurface(const spline::Space& space, const quadrature::Options& options);
+  /// `steep`: near rules for a kernel like 1 / r^2.
+  LayerSurface(const spline::Space& space, const quadrature::Options& options, bool steep = false);
 
   /// Takes a shape.
   void place(const Net& x);

@@ -25,11 +25,11 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
   return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
 }
 
-/// Distance from the panel beyond which `order` points a direction leave less than `error` of int dG / r, wherever the target is.
-double clearance(double area, double longest, double error, int order) {
+/// Distance from the panel beyond which `order` points a direction are enough, wherever the target is: about, and not too short.
+double clearance(double area, double longest, const quadrature::Demand& demand, int order) {
   double d = longest;
   for (int k = 0; k < 2; ++k) {
-    const double rho = std::max(1., std::pow(area / (d * error), 0.5 / order));
+    const double rho = std::pow(std::min(1., demand.error(area, d)), -0.5 / order);
     d = std::max((rho - 1 / rho) / 2, 1e-3) * longest;
   }
   return d;
@@ -37,10 +37,10 @@ double clearance(double area, double longest, double error, int order) {
 
 }  // namespace
 
-NearField::NearField(const Panels& panels, double tolerance, int smooth_order)
+NearField::NearField(const Panels& panels, double tolerance, int smooth_order, bool steep)
     : panels_(panels),
-      tolerance_(tolerance),
-      smooth_order_(smooth_order),
+      demand_{0, 0, tolerance, smooth_order},
+      steep_(steep),
       largest_order_(1 + quadrature::order_for(tolerance, quadrature::ellipse(0, 1))),
       views_(panels.size()),
       reach_(panels.size()),
@@ -57,7 +57,8 @@ void NearField::update(const std::vector<double>& bezier) {
     view.flat = flat_picture(&bezier[panels_[e].first_bezier], t.degree);
     total += view.area = view.flat.area();
   }
-  allowed_ = share(tolerance_) * std::sqrt(4 * std::numbers::pi * total);
+  demand_.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * total);
+  demand_.steep = steep_ ? std::sqrt(total / (4 * std::numbers::pi)) : 0;
   for (int e = 0; e < panels_.size(); ++e) {
     const NodeTable& t = *panels_[e].table;
     const double* points = &bezier[panels_[e].first_bezier];
@@ -69,7 +70,7 @@ void NearField::update(const std::vector<double>& bezier) {
     const int middle = t.n_bernstein / 2 + (t.degree % 2 ? (t.degree + 1) / 2 : 0);
     view.bulge = std::max((point(points, t.n_bernstein, 0) - centre + u + v).norm(),
                           std::abs((point(points, t.n_bernstein, middle) - centre).dot(u.cross(v).normalized())));
-    const double reach = radius + clearance(view.area, std::max(u.norm(), v.norm()), allowed_, t.order);
+    const double reach = radius + clearance(view.area, std::max(u.norm(), v.norm()), demand_, t.order);
     reach_[e] = reach * reach;
     for (int c = 0; c < 3; ++c) centre_[c][e] = centre[c];
   }
@@ -78,7 +79,7 @@ void NearField::update(const std::vector<double>& bezier) {
 bool NearField::far_enough(const View& view, int order, const Vec3& target) const {
   const quadrature::Sight seen = quadrature::sight(view.flat, target);
   const double rho = std::min(seen.rho_u, seen.rho_v);
-  double power = allowed_ * seen.distance / view.area;
+  double power = demand_.error(view.area, seen.distance);
   for (int k = 0; k < order && power < 1; ++k) power *= rho * rho;
   return power >= 1;
 }
@@ -100,7 +101,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target) {
   const NodeTable& t = *panels_[panel].table;
   const View& view = views_[panel];
   const quadrature::Sight seen = quadrature::sight(view.flat, target);
-  const int needed = quadrature::order_for(allowed_ * seen.distance / view.area, std::min(seen.rho_u, seen.rho_v));
+  const int needed = quadrature::order_for(demand_.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
   const int order = std::max(needed, t.order + 1);
   if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
     const auto [at, is_new] = whole_.try_emplace({t.degree, order});
@@ -113,7 +114,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target) {
   }
   points_.clear();
   const std::span<const double> bezier(bezier_->data() + panels_[panel].first_bezier, static_cast<std::size_t>(3) * t.n_bernstein);
-  quadrature::graded(bezier, t.degree, target, {allowed_, tolerance_, smooth_order_}, points_);
+  quadrature::graded(bezier, t.degree, target, demand_, points_);
   tabulate(points_, t.degree, parts_);
   return parts_;
 }

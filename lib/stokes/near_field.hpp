@@ -17,8 +17,8 @@ namespace tanktread::stokes {
 /// Near rules by tolerance. A pure function of the present shape: no memory of earlier ones.
 class NearField {
  public:
-  /// `tolerance`: accuracy relative to int dG / r over the whole surface, about sqrt(4 pi area).
-  NearField(const Panels& panels, double tolerance, int smooth_order);
+  /// `tolerance`: accuracy relative to int dG / r over the whole surface, about sqrt(4 pi area); `steep`: for kernels like 1 / r^2.
+  NearField(const Panels& panels, double tolerance, int smooth_order, bool steep);
 
   /// Takes the shape from the Bezier points of all panels; they must outlive the calls below.
   void update(const std::vector<double>& bezier);
@@ -37,8 +37,9 @@ class NearField {
   bool far_enough(const View& view, int order, const Vec3& target) const;
 
   const Panels& panels_;
-  double tolerance_, allowed_ = 0;
-  int smooth_order_, largest_order_;
+  quadrature::Demand demand_;
+  bool steep_;
+  int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
   std::vector<double> centre_[3], reach_;  ///< squared distance from the centre beyond which the far rule is enough

@@ -35,14 +35,15 @@ struct Points {
     }
   }
 
-  // r = x - x0, and r . (x_,s x x_,t)
-  Pack height(const double* x, int n_b, const double* x0, Pack (&r)[3]) const {
+  // r = x - x0, n = x_,s x x_,t, and r.n
+  Pack height(const double* x, int n_b, const double* x0, Pack (&r)[3], Pack (&normal)[3]) const {
     Pack a[3], b[3];
     for (int c = 0; c < 3; ++c) {
       r[c] = value(x + n_b * c) - x0[c];
       gradient(x + n_b * c, a[c], b[c]);
     }
-    return r[0] * (a[1] * b[2] - a[2] * b[1]) + r[1] * (a[2] * b[0] - a[0] * b[2]) + r[2] * (a[0] * b[1] - a[1] * b[0]);
+    for (int c = 0; c < 3; ++c) normal[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+    return r[0] * normal[0] + r[1] * normal[1] + r[2] * normal[2];
   }
 };
 
@@ -94,13 +95,25 @@ struct Sums {
     project(table, g, moment);
   }
 
+  static void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
+    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    Pack total[3] = {};
+    for (int k = 0; k < table.packs(); ++k) {
+      Pack r[3], n[3];
+      const Pack normal = Points<Degree>(table, k).height(x, n_b, x0, r, n);
+      const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), weighted = inverse * table.weights[k];
+      for (int c = 0; c < 3; ++c) total[c] += weighted * (n[c] + r[c] * (normal * inverse * inverse));
+    }
+    for (int c = 0; c < 3; ++c) u[c] = sum(total[c]);
+  }
+
   static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
     Pack ux{}, uy{}, uz{};
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      Pack r[3];
-      const Pack normal = points.height(x, n_b, x0, r) * table.weights[k];
+      Pack r[3], n[3];
+      const Pack normal = points.height(x, n_b, x0, r, n) * table.weights[k];
       const Pack velocity =
           r[0] * (points.value(v) - v0[0]) + r[1] * (points.value(v + n_b) - v0[1]) + r[2] * (points.value(v + 2 * n_b) - v0[2]);
       const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
@@ -116,8 +129,8 @@ struct Sums {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      Pack r[3];
-      const Pack normal = points.height(x, n_b, x0, r) * table.weights[k];
+      Pack r[3], n[3];
+      const Pack normal = points.height(x, n_b, x0, r, n) * table.weights[k];
       const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
       const Pack strength = -6 * normal * (square * square * inverse);
       int c = 6 * k;
@@ -162,6 +175,10 @@ void single_sum(const PointTable& table, const double* x, const double* f, const
 
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment) {
   with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, weight, x0, scratch, moment); });
+}
+
+void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
+  with_degree(table.degree, [&](auto sums) { sums.pressure_sum(table, x, x0, u); });
 }
 
 void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {

@@ -14,6 +14,9 @@ void single_sum(const PointTable& table, const double* x, const double* f, const
 /// moment[6 b + c] = sum_q G_c(x_q, x0) B_b(q) weight_q with G_c = G_11, G_12, G_13, G_22, G_23, G_33. `scratch`: 6 packs a pack of points.
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment);
 
+/// u[3] = sum_q G(x_q, x0) n_q weight_q: the single layer of the normal.
+void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u);
+
 /// u[3] = sum_q (v_q - v0)_j T_ijk(x_q, x0) n_q weight_q (2.2), where n_q weight_q is the rule's weight times x_,s x x_,t.
 void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u);
 

@@ -41,25 +41,6 @@ PointForces SingleLayer::forces() const {
   return {n_nodes(), node[0].data(), node[1].data(), node[2].data(), force_[0].data(), force_[1].data(), force_[2].data()};
 }
 
-void SingleLayer::apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u) {
-  {
-    const auto clock = phases_.time("setup");
-    place(x, measure, targets);
-    surface_.panels.bezier(f, bezier_f_);
-    node_values(surface_.panels, bezier_f_, force_);
-    const auto& weight = measure == Measure::current ? weight_present_ : weight_unstressed_;
-    for (auto& component : force_)
-      for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
-  }
-  add_far(targets, u);
-  add_near(targets, u);
-  if (surface_.options.rule == "desingularised")
-    subtract_identities(targets, u);
-  else
-    add_self(targets, u);
-  for (const int i : targets) u.row(i) *= factor;
-}
-
 void SingleLayer::add_far(std::span<const int> targets, Net& u) {
   const auto clock = phases_.time("far");
   const PointForces all = forces();
@@ -79,6 +60,36 @@ void SingleLayer::add_far(std::span<const int> targets, Net& u) {
   evaluations_.far += static_cast<long long>(n) * all.n;
 }
 
+template <class Sum>
+void SingleLayer::add_near(std::span<const int> targets, const Sum& own_sum, Net& u) {
+  const auto clock = phases_.time("near");
+  const PointForces all = forces();
+  Vec3 far;
+  for (std::size_t k = 0; k < targets.size(); ++k)
+    for (const int e : surface_.near(targets[k], at_[k])) {
+      const Panel& panel = surface_.panels[e];
+      const PointTable& table = surface_.near_field.rule(e, at_[k]);
+      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
+      u.row(targets[k]) += (own_sum(e, table, nullptr, at_[k]) - far).transpose();
+      evaluations_.near += table.points + panel.table->n_nodes;
+    }
+}
+
+template <class Sum>
+void SingleLayer::add_self(std::span<const int> targets, const Sum& own_sum, Net& u) {
+  const auto clock = phases_.time("self");
+  const PointForces all = forces();
+  Vec3 far;
+  for (std::size_t k = 0; k < targets.size(); ++k)
+    for (SelfPair& pair : surface_.own(targets[k])) {
+      const Panel& panel = surface_.panels[pair.panel];
+      const PointTable& table = surface_.self_field.rule(pair, surface_.panels, surface_.bezier);
+      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
+      u.row(targets[k]) += (own_sum(pair.panel, table, &pair, at_[k]) - far).transpose();
+      evaluations_.self += table.points + panel.table->n_nodes;
+    }
+}
+
 /// Weights of a rule on panel e, area included. On a panel that the target lies on those of the unstressed surface are kept.
 const Pack* SingleLayer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const auto& surface = measure_ == Measure::current ? surface_.bezier : bezier_unstressed_;
@@ -90,36 +101,47 @@ const Pack* SingleLayer::area_weights_of(int e, const PointTable& table, SelfPai
   return weights.data();
 }
 
-void SingleLayer::add_near(std::span<const int> targets, Net& u) {
-  const auto clock = phases_.time("near");
-  const PointForces all = forces();
-  Vec3 far, own;
-  for (std::size_t k = 0; k < targets.size(); ++k)
-    for (const int e : surface_.near(targets[k], at_[k])) {
-      const Panel& panel = surface_.panels[e];
-      const PointTable& table = surface_.near_field.rule(e, at_[k]);
-      const Pack* weights = area_weights_of(e, table, nullptr);
-      single_sum(table, &surface_.bezier[panel.first_bezier], &bezier_f_[panel.first_bezier], weights, at_[k].data(), own.data());
-      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
-      u.row(targets[k]) += (own - far).transpose();
-      evaluations_.near += table.points + panel.table->n_nodes;
-    }
+void SingleLayer::apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u) {
+  {
+    const auto clock = phases_.time("setup");
+    place(x, measure, targets);
+    surface_.panels.bezier(f, bezier_f_);
+    node_values(surface_.panels, bezier_f_, force_);
+    const auto& weight = measure == Measure::current ? weight_present_ : weight_unstressed_;
+    for (auto& component : force_)
+      for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
+  }
+  const auto own_sum = [&](int e, const PointTable& table, SelfPair* pair, const Vec3& x0) {
+    const std::size_t bezier = surface_.panels[e].first_bezier;
+    const Pack* weights = area_weights_of(e, table, pair);
+    Vec3 sum;
+    single_sum(table, &surface_.bezier[bezier], &bezier_f_[bezier], weights, x0.data(), sum.data());
+    return sum;
+  };
+  add_far(targets, u);
+  add_near(targets, own_sum, u);
+  if (surface_.options.rule == "desingularised")
+    subtract_identities(targets, u);
+  else
+    add_self(targets, own_sum, u);
+  for (const int i : targets) u.row(i) *= factor;
 }
 
-void SingleLayer::add_self(std::span<const int> targets, Net& u) {
-  const auto clock = phases_.time("self");
-  const PointForces all = forces();
-  Vec3 far, own;
-  for (std::size_t k = 0; k < targets.size(); ++k)
-    for (SelfPair& pair : surface_.own(targets[k])) {
-      const Panel& panel = surface_.panels[pair.panel];
-      const PointTable& table = surface_.self_field.rule(pair, surface_.panels, surface_.bezier);
-      const Pack* weights = area_weights_of(pair.panel, table, &pair);
-      single_sum(table, &surface_.bezier[panel.first_bezier], &bezier_f_[panel.first_bezier], weights, at_[k].data(), own.data());
-      node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
-      u.row(targets[k]) += (own - far).transpose();
-      evaluations_.self += table.points + panel.table->n_nodes;
-    }
+void SingleLayer::apply_to_normal(const Net& x, std::span<const int> targets, Net& u) {
+  {
+    const auto clock = phases_.time("setup");
+    place(x, Measure::current, targets);
+    node_normals(surface_.panels, surface_.bezier, force_);
+  }
+  const auto own_sum = [&](int e, const PointTable& table, SelfPair*, const Vec3& x0) {
+    Vec3 sum;
+    pressure_sum(table, &surface_.bezier[surface_.panels[e].first_bezier], x0.data(), sum.data());
+    return sum;
+  };
+  add_far(targets, u);
+  add_near(targets, own_sum, u);
+  add_self(targets, own_sum, u);
+  for (const int i : targets) u.row(i) *= factor;
 }
 
 /// M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,

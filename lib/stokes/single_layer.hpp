@@ -36,6 +36,9 @@ class SingleLayer {
   /// Rows `targets` of u, shape (N, 3), for the density with control values f on the surface x.
   void apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u);
 
+  /// Rows `targets` of (1 / 8 pi) int G n dG, which vanishes (2.3): what the rules leave of it.
+  void apply_to_normal(const Net& x, std::span<const int> targets, Net& u);
+
   /// A of u_i = sum_B A_iB f_B: three rows a target, in the order of `targets`; shape (3 targets, 3 N).
   void assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<double>& a);
@@ -51,8 +54,10 @@ class SingleLayer {
   struct Moments;
   void place(const Net& x, Measure measure, std::span<const int> targets);
   void add_far(std::span<const int> targets, Net& u);
-  void add_near(std::span<const int> targets, Net& u);
-  void add_self(std::span<const int> targets, Net& u);
+  template <class Sum>
+  void add_near(std::span<const int> targets, const Sum& own_sum, Net& u);
+  template <class Sum>
+  void add_self(std::span<const int> targets, const Sum& own_sum, Net& u);
   void subtract_identities(std::span<const int> targets, Net& u);
   const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
   Mat3 identities(int target, const Vec3& at) const;

@@ -1,0 +1,129 @@
+// Rules for singular and nearly singular integrands on the unit square, against the exact potential of a flat rectangle.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "quadrature/ellipse.hpp"
+#include "quadrature/gauss.hpp"
+#include "quadrature/graded.hpp"
+#include "quadrature/polar.hpp"
+
+namespace tanktread::quadrature {
+namespace {
+
+/// int over [0, a] x [0, b] of 1 / sqrt((x - x0)^2 + (y - y0)^2 + z0^2), by its antiderivative at the corners.
+double potential(double a, double b, const Vec3& target) {
+  const auto corner = [&](double x, double y) {
+    const double z = target[2], r = std::sqrt(x * x + y * y + z * z);
+    const double first = std::abs(x) > 0 ? x * std::asinh(y / std::hypot(x, z)) : 0,
+                 second = std::abs(y) > 0 ? y * std::asinh(x / std::hypot(y, z)) : 0;
+    return first + second - (z > 0 ? z * std::atan(x * y / (z * r)) : 0);
+  };
+  const double left = -target[0], right = a - target[0], low = -target[1], high = b - target[1];
+  return corner(right, high) - corner(left, high) - corner(right, low) + corner(left, low);
+}
+
+double integral(const Rule& rule, double a, double b, const Vec3& target) {
+  double sum = 0;
+  for (int q = 0; q < rule.size(); ++q) sum += a * b * rule.weights[q] / (Vec3(a * rule.s[q], b * rule.t[q], 0) - target).norm();
+  return sum;
+}
+
+double area(const Rule& rule) { return std::accumulate(rule.weights.begin(), rule.weights.end(), 0.); }
+
+constexpr double places[][2] = {{0, 0}, {1, 0}, {1, 1}, {0.3, 0}, {1, 0.7}, {0.5, 0.5}, {0.02, 0.4}, {0.97, 0.99}};
+
+TEST(Polar, IntegratesTheSingularityWhereverTheTargetIs) {
+  for (const auto& [s, t] : places)
+    for (const double b : {1., 3., 0.2})
+      for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
+        const Rule rule = polar(s, t, shear(1, 0, b * b), 4, tolerance);
+        const double exact = potential(1, b, Vec3(s, b * t, 0));
+        EXPECT_NEAR(integral(rule, 1, b, Vec3(s, b * t, 0)), exact, tolerance * exact) << s << ' ' << t << ' ' << b;
+        EXPECT_NEAR(area(rule), 1,
+                    20 * tolerance);  // d area grows with cosh^2 of the angular coordinate: steeper than what the rule is for
+      }
+}
+
+TEST(Polar, TakesUpTheShearOfTheElement) {
+  const double s = 0.3, t = 0.6;
+  const Vec3 u(1, 0, 0), v(1.2, 0.5, 0);  // tangents that meet at 23 degrees
+  const auto value = [&](const Rule& rule) {
+    double sum = 0;
+    for (int q = 0; q < rule.size(); ++q) sum += rule.weights[q] / ((rule.s[q] - s) * u + (rule.t[q] - t) * v).norm();
+    return sum;
+  };
+  const double exact = value(polar(s, t, shear(1, 1.2, 1.69), 4, 1e-15));
+  const Rule with = polar(s, t, shear(1, 1.2, 1.69), 4, 1e-6), without = polar(s, t, Shear{}, 4, 1e-6);
+  EXPECT_NEAR(value(with), exact, 1e-6 * exact);
+  EXPECT_GT(std::abs(value(without) - exact), 1e-6 * exact);
+}
+
+TEST(Shear, FindsTheBinOfAMetric) {
+  EXPECT_EQ(shear(1, 0, 1), (Shear{0, 6}));
+  EXPECT_EQ(shear(1, 0, 4.1), (Shear{2, 6}));
+  EXPECT_EQ(shear(4, 0, 1), (Shear{-2, 6}));
+  EXPECT_EQ(shear(1, 0.5, 1), (Shear{0, 4}));  // 60 degrees
+  EXPECT_EQ(shear(1, -0.5, 1), (Shear{0, 8}));
+  EXPECT_EQ(shear(0, 0, 1), (Shear{0, 6}));  // no metric
+}
+
+TEST(LachatWatson, ConvergesAtACornerAndIsPoorCloseToAnEdge) {
+  const double corner = potential(1, 1, Vec3::Zero()), edge = potential(1, 1, Vec3(0.02, 0.4, 0));
+  EXPECT_NEAR(integral(lachat_watson(0, 0, 8), 1, 1, Vec3::Zero()), corner, 1e-8 * corner);
+  EXPECT_NEAR(area(lachat_watson(0.02, 0.4, 8)), 1, 1e-14);
+  EXPECT_GT(std::abs(integral(lachat_watson(0.02, 0.4, 8), 1, 1, Vec3(0.02, 0.4, 0)) - edge), 1e-4 * edge);
+}
+
+/// A flat bilinear element as Bezier points of degree 1.
+std::vector<double> rectangle(double a, double b) { return {0, a, 0, a, 0, 0, b, b, 0, 0, 0, 0}; }
+
+TEST(Graded, KeepsTheToleranceAtAnyDistance) {
+  for (const auto& [s, t] : places)
+    for (const double b : {1., 4.})
+      for (const double distance : {2., 0.3, 1e-2, 1e-4, 1e-7})
+        for (const double tolerance : {1e-4, 1e-8, 1e-11}) {
+          const Vec3 target(s, b * t, distance);
+          const double exact = potential(1, b, target);
+          Rule rule;  // each of some twenty parts may err by what is allowed
+          graded(rectangle(1, b), 1, target, {.allowed = tolerance * exact / 20, .tolerance = tolerance}, rule);
+          EXPECT_NEAR(integral(rule, 1, b, target), exact, tolerance * exact) << s << ' ' << t << ' ' << distance;
+          EXPECT_NEAR(area(rule), 1, 1e-13);
+        }
+}
+
+TEST(Graded, CostsTheLogarithmOfTheDistance) {
+  const auto points = [](double distance) {
+    Rule rule;
+    graded(rectangle(1, 1), 1, Vec3(0.4, 0.3, distance), {.allowed = 1e-8, .tolerance = 1e-8}, rule);
+    return rule.size();
+  };
+  EXPECT_LT(points(1e-6) - points(1e-4), 1.5 * (points(1e-4) - points(1e-2)));
+}
+
+TEST(Ellipse, TellsTheErrorOfGauss) {
+  for (const double height : {0.3, 1., 2.}) {
+    const double rho = ellipse(0, height), exact = 2 * std::asinh(1 / height);
+    const int n = order_for(1e-8, rho);
+    const GaussRule& rule = gauss(n);
+    double sum = 0;
+    for (int q = 0; q < n; ++q) sum += 2 * rule.weights[q] / std::hypot(2 * rule.nodes[q] - 1, height);
+    EXPECT_LT(std::abs(sum - exact), 1e-7 * exact);   // rho^(-2 n) up to a factor of three or so
+    EXPECT_GT(std::abs(sum - exact), 1e-12 * exact);  // and no gross waste
+  }
+}
+
+TEST(Sight, SeesTheNearestPlaceOfAPatch) {
+  const Patch patch{Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 2, 0)};
+  EXPECT_DOUBLE_EQ(sight(patch, Vec3(0.3, 1, 0.5)).distance, 0.5);
+  EXPECT_DOUBLE_EQ(sight(patch, Vec3(3, 0, 0)).distance, 2);
+  EXPECT_NEAR(sight(patch, Vec3(3, 0, 0)).rho_u, 3 + std::sqrt(8), 1e-14);   // beside: z = 3
+  EXPECT_NEAR(sight(patch, Vec3(0, 0, 1)).rho_u, 1 + std::sqrt(2.), 1e-14);  // above: z = i
+}
+
+}  // namespace
+}  // namespace tanktread::quadrature
