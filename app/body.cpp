@@ -30,9 +30,15 @@ spline::Space space(const Scene& scene, const spline::TMesh& mesh) {
 
 Body body(const Scene& scene) {
   Body b;
-  b.mesh = spline::cube(scene.surface.elements_per_side, scene.adaptation.enabled ? scene.adaptation.levels : 0);
-  b.space = space(scene, b.mesh);
-  b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
+  if (scene.surface.polar()) {
+    const spline::PolarMesh mesh = scene.surface.polar_mesh();
+    b.space = spline::space(mesh);
+    b.rest = surface::initial_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
+  } else {
+    b.mesh = spline::cube(scene.surface.elements_per_side.value(), scene.adaptation.enabled ? scene.adaptation.levels : 0);
+    b.space = space(scene, b.mesh);
+    b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
+  }
   b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
   b.flow = stokes::AmbientFlow(scene.flow);
   b.radius = scene.radius();
@@ -71,14 +77,14 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                         : text("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
                                scene.solvers.double_layer.c_str(), 3 * body.space.n_points)},
       {"membrane", scene.membrane.law + ", load " + scene.membrane.load +
-                       (scene.membrane.load == "strong"                      ? " at the collocation sites (P-3)"
-                        : scene.membrane.law == "surface tension"            ? " per current area (3.6)"
-                        : scene.membrane.load_measure == "reference"         ? " per unstressed area (3.7), mass matrix factored once"
-                                                                             : " per current area (3.6), mass matrix factored every evaluation")},
+                       (scene.membrane.load == "strong"              ? " at the collocation sites (P-3)"
+                        : scene.membrane.law == "surface tension"    ? " per current area (3.6)"
+                        : scene.membrane.load_measure == "reference" ? " per unstressed area (3.7), mass matrix factored once"
+                                                                     : " per current area (3.6), mass matrix factored every evaluation")},
       {"volume", scene.volume.constraint},
-      {"time", scene.time.scheme + (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks,
-                                                    ranks > 1 ? "s" : "")
-                                             : std::string(", explicit in the fluid: nothing is assembled"))},
+      {"time", scene.time.scheme +
+                   (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks, ranks > 1 ? "s" : "")
+                             : std::string(", explicit in the fluid: nothing is assembled"))},
       {"mesh", scene.adaptation.enabled ? "refined as the particle deforms (P-37)" : "fixed"},
       {"symmetry", "none used"},
   };

@@ -3,13 +3,13 @@
 
 #include <memory>
 
+#include "app/scene.hpp"
 #include "base/timing.hpp"
 #include "base/types.hpp"
 #include "coupling/capsule.hpp"
 #include "coupling/ranks.hpp"
 #include "membrane/laws.hpp"
 #include "output/summary.hpp"
-#include "app/scene.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 
@@ -17,10 +17,10 @@ namespace tanktread {
 
 /// What the deck describes, before anything moves.
 struct Body {
-  spline::TMesh mesh;
+  spline::TMesh mesh;  ///< empty for the polar mesh
   spline::Space space;
-  Net rest;            ///< control net of the resting shape, where the run starts
-  Net unstressed;      ///< smaller by the pre-inflation
+  Net rest;        ///< control net of the resting shape, where the run starts
+  Net unstressed;  ///< smaller by the pre-inflation
   stokes::AmbientFlow flow;
   membrane::Law law;
   double radius = 1;   ///< R_C

@@ -29,21 +29,17 @@ void Scene::declare(deck::Section& root) {
 
 namespace {
 
-/// Control points of the cube mesh.
-double control_points(int elements_per_side) { return 6.0 * elements_per_side * elements_per_side + 2.0; }
-
 /// Bytes of the assembled single layer that an implicit step needs: dense, single precision, three rows and columns a control point.
-double assembled_bytes(int elements_per_side) { return 9.0 * sizeof(float) * std::pow(control_points(elements_per_side), 2); }
+double assembled_bytes(double n_points) { return 9.0 * sizeof(float) * n_points * n_points; }
 
 void check_size(const Scene& scene) {
   constexpr double limit = 64e9;
-  const int n = scene.surface.elements_per_side;
-  if (scene.time.scheme != "tr-bdf2" || assembled_bytes(n) <= limit) return;
-  int largest = n;
-  while (assembled_bytes(largest) > limit) --largest;
-  throw UserError("Surface/elements per side must be at most " + std::to_string(largest) + " with Time/scheme `tr-bdf2`, but is " +
-                  std::to_string(n) + ": the single layer of its " + std::to_string(std::lround(control_points(n))) +
-                  " control points takes " + std::to_string(std::lround(assembled_bytes(n) / 1e9)) + " GB assembled, more than 64.");
+  const double n_points = scene.surface.n_points();
+  if (scene.time.scheme != "tr-bdf2" || assembled_bytes(n_points) <= limit) return;
+  throw UserError("Surface/mesh must have at most " + std::to_string(std::lround(std::sqrt(limit / assembled_bytes(1)))) +
+                  " control points with Time/scheme `tr-bdf2`, but has " + std::to_string(std::lround(n_points)) +
+                  ": their single layer takes " + std::to_string(std::lround(assembled_bytes(n_points) / 1e9)) +
+                  " GB assembled, more than 64.");
 }
 
 }  // namespace
@@ -51,6 +47,7 @@ void check_size(const Scene& scene) {
 void Scene::check() const {
   flow.check();
   particle.shape.check();
+  surface.check();
   membrane.check();
   time.check();
   modulus();
@@ -58,6 +55,8 @@ void Scene::check() const {
     throw UserError(
         "Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
         "the load per reference area (3.7) needs `flux` or `exact`.");
+  if (adaptation.enabled && surface.polar())
+    throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
   check_size(*this);
 }
 

@@ -155,7 +155,8 @@ void Section::key(std::string_view name, bool& field, std::string_view meaning) 
   state<bool>(*state_->list, name, field, "true or false", "", meaning, read, [](bool value) { return value ? "true" : "false"; });
 }
 
-void Section::key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning) {
+template <class Field>
+void state_text(List& list, std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
     const auto text = as_text(entry);
     if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
@@ -169,7 +170,15 @@ void Section::key(std::string_view name, std::string& field, const Choice& choic
   const auto write = [](const std::string& text) { return is_plain(text) ? text : in_quotes(text); };
   std::string values;
   for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
-  state<std::string>(*state_->list, name, field, choice.empty() ? "text" : values, "", meaning, read, write);
+  state<std::string>(list, name, field, choice.empty() ? "text" : values, "", meaning, read, write);
+}
+
+void Section::key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning) {
+  state_text(*state_->list, name, field, choice, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<std::string>& field, const Choice& choice, std::string_view meaning) {
+  state_text(*state_->list, name, field, choice, meaning);
 }
 
 Section Section::enter(std::string_view name, std::string_view meaning) {

@@ -49,6 +49,7 @@ class Section {
   void key(std::string_view name, std::optional<int>& field, const Rule& rule, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, bool& field, std::string_view meaning);
   void key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning);
+  void key(std::string_view name, std::optional<std::string>& field, const Choice& choice, std::string_view meaning);
   void key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit,

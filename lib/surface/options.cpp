@@ -12,36 +12,54 @@ namespace tanktread::surface {
 
 void MeshOptions::declare(deck::Section& section) {
   section.key("mesh", mesh, deck::Choice{"cube", "polar"},
-              "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points; `polar`: structured, two poles, (r + 1)m + 2 control points");
+              "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points; `polar`: structured, two poles, (r + 1)m + 2");
+  if (polar()) {
+    azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = "bezier transform";
+  } else {
+    elements_per_side = 6, extraordinary_points = "g1";
+  }
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1", "n: 6n^2 elements on the cube mesh");
   section.key("extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
-              "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point; `catmull-clark`, bicubic "
-              "pieces towards the point, unchanged by refinement");
-  section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1", "m: elements around the pole axis of the polar mesh");
-  section.key("meridional elements", meridional_elements, deck::between(4, 200), "1", "r: elements from pole to pole");
-  section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"}, "the particle's own axis on which the poles lie");
+              "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point; `catmull-clark`, "
+              "bicubic pieces towards the point, unchanged by refinement");
+  section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
+              "m: elements around the pole axis of the polar mesh; 32 if not given");
+  section.key("meridional elements", meridional_elements, deck::between(4, 200), "1", "r: elements from pole to pole; 16 if not given");
+  section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"}, "the particle's own axis on which the poles lie; `x3` if not given");
   section.key("poles", poles, deck::Choice{"bezier transform", "plain", "c1"},
-              "`bezier transform`: the paper's, degenerate elements replaced by others (P-A.1, P-A.2); `plain`: degenerate elements as they are; `c1`: "
-              "tangent planes continuous at the poles, (r - 1)m + 6 control points");
+              "`bezier transform`, the default: the paper's, degenerate elements replaced by others (P-A.1, P-A.2); `plain`: degenerate "
+              "elements as they are; `c1`: tangent planes continuous at the poles, (r - 1)m + 6 control points");
+  if (poles == "bezier transform") pole_subdivisions = 2;
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
-              "times that the elements at the poles are halved in azimuth before the transform");
-  const std::vector<std::string> of_cube{"elements per side", "extraordinary points"};
-  const std::vector<std::string> of_polar{"azimuthal elements", "meridional elements", "pole axis", "poles", "pole subdivisions"};
-  for (const std::string& key : polar() ? of_cube : of_polar)
-    if (section.given(key))
-      throw UserError(section.path(key) + " belongs to Surface/mesh `" + (polar() ? "cube" : "polar") + "`, but Surface/mesh is `" + mesh + "`.");
-  if (section.given("pole subdivisions") && poles != "bezier transform")
-    throw UserError(section.path("pole subdivisions") + " belongs to Surface/poles `bezier transform`, but Surface/poles is `" + poles + "`.");
+              "times that the elements at the poles are halved in azimuth before the transform; 2 if not given");
+}
+
+void MeshOptions::check() const {
+  const auto refuse = [&](const char* key) {
+    throw UserError(std::string("Surface/") + key + " and Surface/mesh `" + mesh + "` contradict each other: it belongs to `" +
+                    (polar() ? "cube" : "polar") + "`.");
+  };
+  if (polar() && elements_per_side) refuse("elements per side");
+  if (polar() && extraordinary_points) refuse("extraordinary points");
+  if (!polar() && azimuthal_elements) refuse("azimuthal elements");
+  if (!polar() && meridional_elements) refuse("meridional elements");
+  if (!polar() && pole_axis) refuse("pole axis");
+  if (!polar() && poles) refuse("poles");
+  if (!polar() && pole_subdivisions) refuse("pole subdivisions");
+  if (pole_subdivisions && poles != "bezier transform")
+    throw UserError("Surface/pole subdivisions and Surface/poles `" + *poles +
+                    "` contradict each other: it belongs to `bezier transform`.");
 }
 
 spline::PolarMesh MeshOptions::polar_mesh() const {
   const auto rule = poles == "plain" ? spline::PoleRule::plain : poles == "c1" ? spline::PoleRule::c1 : spline::PoleRule::bezier_transform;
-  return {azimuthal_elements, meridional_elements, rule, pole_subdivisions};
+  return {azimuthal_elements.value(), meridional_elements.value(), rule, pole_subdivisions.value_or(0)};
 }
 
 double MeshOptions::n_points() const {
-  const double n = elements_per_side, m = azimuthal_elements, r = meridional_elements;
-  return !polar() ? 6 * n * n + 2 : poles == "c1" ? (r - 1) * m + 6 : (r + 1) * m + 2;
+  if (!polar()) return 6.0 * *elements_per_side * *elements_per_side + 2;
+  const double m = *azimuthal_elements, r = *meridional_elements;
+  return poles == "c1" ? (r - 1) * m + 6 : (r + 1) * m + 2;
 }
 
 void ParticleShape::declare(deck::Section& section) {

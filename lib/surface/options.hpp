@@ -12,24 +12,28 @@ class Section;
 
 namespace tanktread::surface {
 
-/// The spline space of the particle's surface: `Surface/*` of the deck.
+/// The spline space of the particle's surface: `Surface/*` of the deck. Keys of the other mesh are empty.
 struct MeshOptions {
-  std::string mesh = "cube";                ///< 6 n^2 elements, eight extraordinary points; or polar, two poles
-  int elements_per_side = 6;                ///< n
-  std::string extraordinary_points = "g1";  ///< rule at points where three elements meet
-  int azimuthal_elements = 32;              ///< m
-  int meridional_elements = 16;             ///< r
-  std::string pole_axis = "x3";             ///< the particle's own
-  std::string poles = "bezier transform";   ///< rule at the poles
-  int pole_subdivisions = 2;                ///< in azimuth, before the transform
+  std::string mesh = "cube";  ///< or polar
+
+  std::optional<int> elements_per_side;             ///< n of the cube mesh
+  std::optional<std::string> extraordinary_points;  ///< rule at points where three elements meet
+
+  std::optional<int> azimuthal_elements, meridional_elements;  ///< m around, r from pole to pole, of the polar mesh
+  std::optional<std::string> pole_axis;                        ///< the particle's own
+  std::optional<std::string> poles;                            ///< rule at the poles
+  std::optional<int> pole_subdivisions;                        ///< in azimuth, before the transform
 
   void declare(deck::Section& section);
 
+  /// One sentence (UserError) for keys that contradict each other.
+  void check() const;
+
   bool polar() const { return mesh == "polar"; }
   spline::PolarMesh polar_mesh() const;
-  int axis() const { return pole_axis[1] - '1'; }
+  int axis() const { return pole_axis.value()[1] - '1'; }
 
-  /// Control points of the mesh that the deck asks for.
+  /// Control points of the mesh.
   double n_points() const;
 };
 
