@@ -109,16 +109,16 @@ inline void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& optio
     const Transfer transfer(*now, *next);
     found.residual = std::max(found.residual, transfer(random_net(now->n_points, unsigned(generator()))).residual);
     found.straddling += transfer.straddling();
-    const Suitability s = suitability(mesh);
-    found.crossings += s.crossings;
-    found.overlaps += s.overlaps;
-    found.broken_zones += s.broken_zones;
     found.wrong_counts += wrong_counts(mesh, *next);
     for (const Element& e : next->elements)
       found.unity = std::max(found.unity, (e.extraction.colwise().sum().array() - 1).abs().maxCoeff());
     ++found.steps;
     now = std::move(next);
   }
+  const Suitability s = suitability(mesh);
+  found.crossings += s.crossings;
+  found.overlaps += s.overlaps;
+  found.broken_zones += s.broken_zones;
   for (const Rectangle& r : elements(mesh).tiles) found.finest = std::min({found.finest, r.width, r.height});
   found.control_points = std::max(found.control_points, now->n_points);
   if (options.condition) {
