@@ -19,7 +19,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     const double dt = step_towards(state.time, limit, h);
     const Net& v0 = state.history.front();
     Net y = state.x + dt * v0, v = v0;
-    int k = 0;
+    int k = options_.count_euler_step ? 1 : 0;
     bool converged = false;
     while (k < most && !converged) {
       v = dynamics.velocity(y);

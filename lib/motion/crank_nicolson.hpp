@@ -9,7 +9,8 @@ namespace tanktread::motion {
 ///   x^{k+1} = x_n + dt/2 (v(x_n) + v(x^k))   until  |x^{k+1} - x^k|_2 / (R_C sqrt(m_C)) <= 1e-7;
 ///   more than 8 sub-iterations: dt x 0.75 and the step again; fewer than 4: dt x 1.33 for the next.
 ///
-/// Sub-iterations start from the Euler step, which costs nothing. Contracts only for dt rho < 2.
+/// The first sub-iteration, from x^1 = x_n, is the Euler step. It costs no velocity evaluation; read to the letter it counts, and steps then
+/// stay near the first one; not counted, the mean step is that of the paper's Table 3. Contracts only for dt rho < 2.
 class CrankNicolson : public Integrator {
  public:
   explicit CrankNicolson(const TimeOptions& options) : options_(options) {}

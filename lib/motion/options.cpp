@@ -18,6 +18,8 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
               "the run ends when the largest normal velocity over rate x R_C falls below it; if not given, only at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1", "end of the sub-iteration of `crank-nicolson` (4.1)");
+  section.key("count euler step", count_euler_step,
+              "`crank-nicolson`: the Euler step, which is free, counts as the first sub-iteration of the rule for the step");
   section.key("newton tolerance", newton_tolerance, deck::between(1e-12, 1.0), "1",
               "end of the quasi-Newton iteration, in parts of the tolerance");
   section.key("newton iterations", newton_iterations, deck::at_least(1), "1",

@@ -20,6 +20,7 @@ struct TimeOptions {
   double minimum_step = 1e-9;              ///< a controlled step below this ends the run with a failure
   std::optional<double> steady_tolerance;  ///< stop when max |v.n| over (rate R_C) falls below it; empty: never
   double iteration_tolerance = 1e-7;       ///< end of the sub-iteration of crank-nicolson (4.1)
+  bool count_euler_step = true;             ///< whether the Euler step is the first sub-iteration of crank-nicolson
   double newton_tolerance = 0.05;          ///< end of the quasi-Newton iteration, in parts of `tolerance`
   int newton_iterations = 6;               ///< most iterations of a stage before the step is halved
   double linear_tolerance = 0.03;          ///< relative residual of its linear solves
