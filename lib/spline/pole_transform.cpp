@@ -72,7 +72,8 @@ Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners) {
 const std::array<Corners, 3>& thirds_of_triangle() {
   static const std::array<Corners, 3> thirds = [] {
     const Eigen::Vector3d r(1, 0, 0), s(0, 1, 0), t(0, 0, 1), centre = (r + s + t) / 3;
-    return std::array<Corners, 3>{{{t, (r + t) / 2, centre, (s + t) / 2}, {r, (r + s) / 2, centre, (r + t) / 2}, {s, (s + t) / 2, centre, (r + s) / 2}}};
+    return std::array<Corners, 3>{
+        {{t, (r + t) / 2, centre, (s + t) / 2}, {r, (r + s) / 2, centre, (r + t) / 2}, {s, (s + t) / 2, centre, (r + s) / 2}}};
   }();
   return thirds;
 }
