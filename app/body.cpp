@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "app/prescribed.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
 
@@ -65,6 +66,7 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
 }
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
+  if (scene.particle.rigid()) return rigid_plan(scene, body, ranks);
   const double points = body.space.n_points;
   const bool implicit = scene.time.scheme == "tr-bdf2";
   return {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "surface/geometry.hpp"
 
@@ -81,12 +80,6 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           static_cast<double>(work.solver_iterations),
           static_cast<double>(work.velocity_iterations),
           wall_seconds};
-}
-
-double entry(const std::vector<double>& row, const std::string& name) {
-  for (size_t i = 0; i < columns().size(); ++i)
-    if (columns()[i].name == name) return row.at(i);
-  throw std::out_of_range(name);
 }
 
 double normal_velocity(const Scene& scene, const Body& body, const motion::State& state) {

@@ -20,9 +20,6 @@ const std::vector<Column>& columns();
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
                         const motion::StepReport& report, double wall_seconds);
 
-/// The value of one column of a row. Throws std::out_of_range for an unknown name.
-double entry(const std::vector<double>& row, const std::string& name);
-
 /// Largest |v.n| over the collocation sites, over rate x R_C: zero when the shape is steady.
 double normal_velocity(const Scene& scene, const Body& body, const motion::State& state);
 

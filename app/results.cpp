@@ -1,14 +1,15 @@
 #include "app/results.hpp"
 
-#include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "app/provenance.hpp"
 #include "base/errors.hpp"
 #include "deck/expectation.hpp"
 #include "output/checkpoint.hpp"
 #include "output/file.hpp"
+#include "output/progress.hpp"
 #include "output/state.hpp"
-#include "surface/geometry.hpp"
 
 namespace tanktread {
 
@@ -83,8 +84,9 @@ std::map<std::string, std::string> Results::origin() const {
   return made_by;
 }
 
-Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks)
-    : scene_(scene), request_(request), body_(&body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns,
+                 const coupling::Ranks& ranks)
+    : scene_(scene), request_(request), body_(&body), columns_(columns), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
   if (!writes_) return;
   if (request.resume) {
     output::tidy_directory(directory_);
@@ -92,9 +94,13 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
     output::start_directory(directory_);
     record_.emplace(directory_ / "run.h5", request.deck_text, origin());
     series_.emplace(directory_);
-    for (const Column& column : columns()) record_->declare(column.name, column.unit, column.description);
+    declare_columns();
   }
   remesh(body);
+}
+
+void Results::declare_columns() {
+  for (const Column& column : columns_) record_->declare(column.name, column.unit, column.description);
 }
 
 void Results::remesh(const Body& body) {
@@ -112,7 +118,7 @@ std::optional<Resumed> Results::resumed() {
     record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
     record_->truncate(static_cast<size_t>(resumed.standing.step) + 1);
     record_->describe(request_.deck_text, origin());
-    for (const Column& column : columns()) record_->declare(column.name, column.unit, column.description);
+    declare_columns();
     series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_));
   }
   return resumed;
@@ -122,12 +128,12 @@ void Results::record(const std::vector<double>& row) {
   write([&] { record_->append(row); });
 }
 
-void Results::save(const motion::State& state, const Standing& standing, const Net& load, const membrane::Membrane& membrane) {
+void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait) {
   last_saved_ = standing.step;
-  write([&] { write_snapshot(state, standing, load, membrane); });
+  write([&] { write_snapshot(state, standing, portrait); });
 }
 
-void Results::write_snapshot(const motion::State& state, const Standing& standing, const Net& load, const membrane::Membrane& membrane) {
+void Results::write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait) {
   output::Checkpoint checkpoint;
   output::store(state, checkpoint);
   store(standing, checkpoint);
@@ -136,23 +142,24 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   checkpoint.texts["deck"] = request_.deck_text;
   if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
 
-  output::Picture picture = output::picture(body_->space, picture_mesh_, state.x);
-  picture.point_fields.push_back({"load", output::nodal_values(body_->space, picture_mesh_, load)});
-  picture.point_fields.push_back({"displacement", output::nodal_values(body_->space, picture_mesh_, state.x - body_->unstressed)});
-  if (!state.history.empty())
-    picture.point_fields.push_back({"velocity", output::nodal_values(body_->space, picture_mesh_, state.history.front())});
-  const Eigen::MatrixX2d tensions = membrane.tensions(state.x, picture_mesh_.sites);
-  picture.point_fields.push_back({"smallest tension", tensions.col(0)});
-  picture.point_fields.push_back({"largest tension", tensions.col(1)});
-  Eigen::VectorXd curvature(static_cast<Eigen::Index>(picture_mesh_.sites.size()));
-  for (size_t i = 0; i < picture_mesh_.sites.size(); ++i)
-    curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_->space, state.x, picture_mesh_.sites[i]);
-  picture.point_fields.push_back({"mean curvature", curvature});
+  output::Picture picture = output::picture(body_->space, picture_mesh_, portrait.surface);
+  for (output::Field& field : portrait.fields(picture_mesh_)) picture.point_fields.push_back(std::move(field));
   output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, picture);
   series_->add(standing.step, state.time);
 }
 
-bool Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases) {
+int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+                   const output::Entries<Vec3>& vectors) {
+  const bool passed = finish(plan, counts, phases, vectors);
+  if (writes_) {
+    if (!request_.quiet) std::fputs(output::closing_table(phases, counts, directory_).c_str(), stdout);
+    if (!passed) std::fprintf(stderr, "tanktread: an Expect was missed; see %s\n", (directory_ / "summary.yaml").c_str());
+  }
+  return ranks_.any(!passed) ? 1 : 0;
+}
+
+bool Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+                     const output::Entries<Vec3>& vectors) {
   if (!writes_) return true;
   output::Summary summary;
   deck::SeriesTable table;
@@ -166,6 +173,7 @@ bool Results::finish(const output::Entries<std::string>& plan, const output::Ent
     if (!verdict.passed) std::fprintf(stderr, "Expect/%s: %s\n", verdict.name.c_str(), verdict.reason.c_str());
     passed = passed && verdict.passed;
   }
+  for (const auto& [name, value] : vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
   summary.counts = counts;
   for (const Phases::Phase& phase : phases.all()) summary.seconds.emplace_back(phase.name, phase.seconds);
   summary.plan = plan;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/body.hpp"
-#include "app/diagnostics.hpp"
+#include "app/moving.hpp"
 #include "motion/integrator.hpp"
 #include "output/lagrange.hpp"
 #include "output/run_record.hpp"
@@ -17,26 +17,11 @@
 
 namespace tanktread {
 
-/// Where a run stands beside its State.
-struct Standing {
-  int step = 0;               ///< steps so far; `run.h5` holds step + 1 rows
-  double wall_seconds = 0;    ///< of earlier parts
-  coupling::Work work;
-  int refinements = 0, coarsenings = 0;
-};
-
-/// A run to go on with. The body is there when its mesh had been adapted.
-struct Resumed {
-  motion::State state;
-  Standing standing;
-  std::unique_ptr<Body> body;
-};
-
 /// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw
 /// RunFailure when the disk refuses.
 class Results {
  public:
-  Results(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks);
+  Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns, const coupling::Ranks& ranks);
 
   /// The newest checkpoint of the directory when the run is resumed; the record is cut back to it. Throws UserError when there is none.
   std::optional<Resumed> resumed();
@@ -47,11 +32,13 @@ class Results {
   /// One finished step: a row of the record, written at once.
   void record(const std::vector<double>& row);
 
-  /// Checkpoint and picture of the present step. `load`: control values of the load on the membrane.
-  void save(const motion::State& state, const Standing& standing, const Net& load, const membrane::Membrane& membrane);
+  /// Checkpoint and picture of the present step.
+  void save(const motion::State& state, const Standing& standing, const Portrait& portrait);
 
-  /// Holds the record against `Expect` and writes the summary. Returns whether every expectation was met.
-  bool finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases);
+  /// Holds the record against `Expect`, writes the summary and the closing table. `vectors`: for `final`, made of the last row. Returns the exit
+  /// code: 0 every expectation was met, 1 one was missed.
+  int close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+            const output::Entries<Vec3>& vectors = {});
 
   /// Step of the last checkpoint; -1 before the first.
   int last_saved() const { return last_saved_; }
@@ -60,12 +47,16 @@ class Results {
  private:
   template <class Write>
   void write(const Write& action);
-  void write_snapshot(const motion::State& state, const Standing& standing, const Net& load, const membrane::Membrane& membrane);
+  void declare_columns();
+  void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait);
+  bool finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+              const output::Entries<Vec3>& vectors);
   std::map<std::string, std::string> origin() const;
 
   const Scene& scene_;
   const RunRequest& request_;
   const Body* body_;
+  std::vector<Column> columns_;
   const coupling::Ranks& ranks_;
   bool writes_;
   std::filesystem::path directory_;

@@ -10,15 +10,24 @@ namespace tanktread {
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
   section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1", "lambda: viscosity inside over viscosity outside");
-  section.key("motion", motion, deck::Choice{"deforming"}, "`deforming`: by the velocity of the fluid on its surface");
+  section.key("motion", motion, deck::Choice{"deforming", "prescribed", "free"},
+              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, a steady "
+              "problem; `free`: rigid, without force or torque");
+  section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
+  section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
+  section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
+              "force and torque on a `prescribed` body: `integral` of the traction alone, or with what that lacks by the `reciprocal` theorem");
 }
 
 void Scene::declare(deck::Section& root) {
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   root.section("Particle", particle, "the particle at rest");
-  root.section("Membrane", membrane, "what its surface is made of");
+  membrane_given = root.given("Membrane");
+  volume_given = root.given("Volume");
+  const bool deforming = !particle.rigid();
+  if (deforming || membrane_given) root.section("Membrane", membrane, "what its surface is made of");
   root.section("Surface", surface, "the spline space of its surface");
-  root.section("Volume", volume, "how its volume is kept");
+  if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
   root.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
@@ -44,11 +53,33 @@ void check_size(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+void check_motion(const Scene& scene) {
+  const ParticleOptions& particle = scene.particle;
+  const std::string motion = "Particle/motion `" + particle.motion + "`";
+  if (particle.motion != "prescribed" && (particle.velocity || particle.angular_velocity))
+    throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
+                    " belongs to Particle/motion `prescribed`, but Particle/motion is `" + particle.motion + "`.");
+  if (!particle.rigid()) return;
+  if (scene.membrane_given) throw UserError("Membrane and " + motion + " contradict each other: a rigid particle has no membrane.");
+  if (scene.volume_given) throw UserError("Volume and " + motion + " contradict each other: a rigid particle keeps its volume.");
+  if (particle.viscosity_ratio != 1)
+    throw UserError("Particle/viscosity ratio and " + motion + " contradict each other: there is no fluid in a rigid particle.");
+  if (scene.adaptation.enabled)
+    throw UserError("Adaptation/enabled and " + motion + " contradict each other: the mesh of a rigid particle stays as it is.");
+  if (scene.time.steady_tolerance)
+    throw UserError("Time/steady tolerance and " + motion + " contradict each other: it ends runs of a particle that deforms.");
+}
+
+}  // namespace
+
 void Scene::check() const {
   flow.check();
   particle.shape.check();
   surface.check();
-  membrane.check();
+  check_motion(*this);
+  if (!particle.rigid()) membrane.check();
   time.check();
   modulus();
   if (volume.constraint == "none" && membrane.load == "weak" && membrane.load_measure == "reference")
@@ -62,7 +93,10 @@ void Scene::check() const {
 
 double Scene::radius() const { return particle.shape.equivalent_radius(); }
 
-double Scene::modulus() const { return membrane.modulus(flow.viscosity, flow.rate(), radius()); }
+double Scene::modulus() const {
+  if (particle.rigid()) return 0;
+  return membrane.modulus(flow.viscosity, flow.rate(), radius());
+}
 
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 

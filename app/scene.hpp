@@ -1,6 +1,7 @@
 #pragma once
 // Everything that a deck says about one run.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,11 @@ struct ParticleOptions {
   surface::ParticleShape shape;
   double viscosity_ratio = 1;  ///< lambda
   std::string motion = "deforming";
+  std::optional<Vec3> velocity;          ///< of the centre, of a `prescribed` motion; zero if not given
+  std::optional<Vec3> angular_velocity;  ///< about the centre; zero if not given
+  std::string forces = "reciprocal";     ///< on a rigid body: `reciprocal`, `integral`
 
+  bool rigid() const { return motion != "deforming"; }
   void declare(deck::Section& section);
 };
 
@@ -38,6 +43,7 @@ struct Scene {
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;
+  bool membrane_given = false, volume_given = false;  ///< whether the deck has these lists at all
 
   void declare(deck::Section& root);
 
@@ -45,7 +51,7 @@ struct Scene {
   void check() const;
 
   double radius() const;             ///< R_C: of the sphere of equal volume
-  double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length
+  double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
   double snapshot_interval() const;  ///< simulated time between snapshots
 };
 

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <sstream>
 
-#include "app/adaptation.hpp"
 #include "app/body.hpp"
-#include "app/diagnostics.hpp"
+#include "app/moving.hpp"
+#include "app/prescribed.hpp"
 #include "app/results.hpp"
 #include "base/errors.hpp"
 #include "motion/integrator.hpp"
@@ -66,8 +66,8 @@ double next_stop(const Scene& scene, double time) {
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), body_(std::make_unique<Body>(body(scene))), capsule_(capsule(scene, *body_, ranks_, phases_)),
-        results_(scene, request, *body_, ranks_), scheme_(motion::integrator(scene.time)) {}
+      : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
+        results_(scene, request, particle_->body(), particle_->columns(), ranks_), scheme_(motion::integrator(scene.time)) {}
 
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(scene_, ranks_.size()).c_str(), stdout);
@@ -76,7 +76,7 @@ class Run {
     std::string reason;
     while (reason.empty() && state_.time < scene_.time.final_time) {
       step();
-      progress.show({state_.time, standing_.step, report_.iterations, entry(row_, "taylor_inertia")});
+      progress.show({state_.time, standing_.step, report_.iterations, entry("taylor_inertia")});
       reason = reason_to_stop();
       if (!reason.empty() || state_.time == stop_) save();
     }
@@ -88,64 +88,25 @@ class Run {
  private:
   void begin() {
     if (auto resumed = results_.resumed()) {
+      const bool adapted = resumed->body != nullptr;
+      particle_->resume(*resumed);
+      if (adapted) results_.remesh(particle_->body());
       state_ = resumed->state;
       standing_ = resumed->standing;
-      if (resumed->body) settle(std::move(resumed->body));
-      if (state_.frozen.size() > 0) capsule_->freeze(state_.frozen);
-      capsule_->work() = standing_.work;
       watch_.add(standing_.wall_seconds);
       return;
     }
-    state_.x = body_->rest;
-    state_.history = {capsule_->velocity(state_.x)};
-    state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(*capsule_, state_, scene_.time);
+    state_.x = particle_->start();
+    state_.history = {particle_->dynamics().velocity(state_.x)};
+    state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(particle_->dynamics(), state_, scene_.time);
     record();
     save();
-  }
-
-  /// Goes on with the particle on another mesh.
-  void settle(std::unique_ptr<Body> body) {
-    const coupling::Work work = capsule_->work();
-    kernel_evaluations_ = kernel_evaluations();
-    capsule_.reset();
-    body_ = std::move(body);
-    capsule_ = capsule(scene_, *body_, ranks_, phases_);
-    capsule_->work() = work;
-    results_.remesh(*body_);
-  }
-
-  /// Cuts or merges elements where the rule says so (P-37).
-  void adapt() {
-    if (!scene_.adaptation.enabled || standing_.step % scene_.adaptation.interval != 0) return;
-    const auto clock = phases_.time("adaptation");
-    auto change = adapted(scene_, *body_, state_, capsule_->load(state_.x), capsule_->measure() == stokes::Measure::reference);
-    if (!change) return;
-    if (change->finer && change->change > 1e-12) warn_of_change(change->change);
-    state_ = std::move(change->state);
-    settle(std::move(change->body));
-    capsule_->restore_volume(state_.x);
-    if (state_.frozen.size() > 0) capsule_->freeze(state_.frozen);
-    (change->finer ? standing_.refinements : standing_.coarsenings) += 1;
-    if (body_->space.n_points >= scene_.adaptation.largest_number_of_points && !warned_of_size_ && ranks_.rank() == 0)
-      std::fprintf(stderr, "tanktread: refinement ends at %d control points, Adaptation/largest number of points\n", body_->space.n_points);
-    warned_of_size_ = warned_of_size_ || body_->space.n_points >= scene_.adaptation.largest_number_of_points;
-  }
-
-  void warn_of_change(double change) {
-    if (ranks_.rank() == 0)
-      std::fprintf(stderr, "tanktread: refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested\n",
-                   state_.time, change);
-  }
-
-  stokes::Evaluations kernel_evaluations() const {
-    const stokes::Evaluations now = capsule_->kernel_evaluations();
-    return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
   }
 
   void step() {
     stop_ = next_stop(scene_, state_.time);
     try {
-      report_ = scheme_->advance(*capsule_, state_, stop_);
+      report_ = scheme_->advance(particle_->dynamics(), state_, stop_);
     } catch (const RunFailure& failure) {
       if (results_.last_saved() != standing_.step) save();
       char where[300];
@@ -154,22 +115,22 @@ class Run {
       throw RunFailure(failure.what() + std::string(where));
     }
     ++standing_.step;
-    adapt();
+    if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body());
     record();
   }
 
   void record() {
     const auto clock = phases_.time("diagnostics");
-    row_ = row(scene_, *body_, *capsule_, state_, report_, ranks_.first(watch_.seconds()));
+    row_ = particle_->row(state_, report_, ranks_.first(watch_.seconds()));
     const auto output = phases_.time("output");
     results_.record(row_);
   }
 
   void save() {
     const auto clock = phases_.time("output");
-    standing_.work = capsule_->work();
+    standing_.work = particle_->work();
     standing_.wall_seconds = watch_.seconds();
-    results_.save(state_, standing_, capsule_->load(state_.x), capsule_->membrane());
+    results_.save(state_, standing_, particle_->portrait(state_));
   }
 
   std::string reason_to_stop() {
@@ -177,19 +138,21 @@ class Run {
     const auto limit = scene_.output.wall_clock_limit;
     if (limit && ranks_.first(watch_.here()) > *limit) return "stopped at the wall-clock limit";
     const auto steady = scene_.time.steady_tolerance;
-    if (steady && entry(row_, "normal_velocity") < *steady) return "steady";
+    if (steady && entry("normal_velocity") < *steady) return "steady";
     return {};
   }
 
   int end(const std::string& reason) {
-    const output::Entries<long> work = counts(standing_, capsule_->work(), kernel_evaluations());
-    const bool passed = results_.finish(plan(scene_, *body_, ranks_.size()), work, phases_);
-    if (ranks_.rank() == 0) {
-      if (!request_.quiet) std::fputs(output::closing_table(phases_, work, results_.directory()).c_str(), stdout);
-      if (!reason.empty()) std::fprintf(stderr, "tanktread: %s at time %.6g\n", reason.c_str(), state_.time);
-      if (!passed) std::fprintf(stderr, "tanktread: an Expect was missed; see %s\n", (results_.directory() / "summary.yaml").c_str());
-    }
-    return ranks_.any(!passed) ? 1 : 0;
+    const output::Entries<long> work = counts(standing_, particle_->work(), particle_->kernel_evaluations());
+    if (ranks_.rank() == 0 && !reason.empty()) std::fprintf(stderr, "tanktread: %s at time %.6g\n", reason.c_str(), state_.time);
+    return results_.close(plan(scene_, particle_->body(), ranks_.size()), work, phases_);
+  }
+
+  /// The value of one series in this step; zero for a series that this particle has not.
+  double entry(const std::string& name) const {
+    const std::vector<Column>& columns = particle_->columns();
+    const auto at = std::ranges::find(columns, name, &Column::name);
+    return at == columns.end() ? 0.0 : row_[static_cast<size_t>(at - columns.begin())];
   }
 
   const Scene& scene_;
@@ -197,10 +160,7 @@ class Run {
   Watch watch_;
   Phases phases_;
   coupling::Ranks ranks_;
-  std::unique_ptr<Body> body_;
-  std::unique_ptr<coupling::Capsule> capsule_;
-  stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
-  bool warned_of_size_ = false;
+  std::unique_ptr<Moving> particle_;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
   motion::State state_;
@@ -214,7 +174,12 @@ class Run {
 
 int simulate(const Scene& scene, const RunRequest& request) {
   heed_signals();
+  if (scene.particle.motion == "prescribed") return resist(scene, request);
   return Run(scene, request).go();
+}
+
+std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return scene.particle.motion == "free" ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
 }
 
 std::string plan_text(const Scene& scene, int ranks) {

@@ -54,6 +54,7 @@ class FreeBody : public Dynamics {
   Net surface(const Net& place) const;        ///< control net of the surface in space
   Net force_density(const Net& place) const;  ///< on the fluid, control values
   Mat3 stresslet(const Net& place) const;     ///< of the particle: int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on it
+  const Vec3& centre() const { return centre_; }  ///< at the initial place
   const RigidModes& modes() const { return modes_; }
   long evaluations() const { return evaluations_; }
 

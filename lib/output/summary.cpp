@@ -14,6 +14,11 @@ std::string scalar(double value) { return number(value); }
 std::string scalar(long value) { return std::to_string(value); }
 std::string scalar(bool value) { return value ? "true" : "false"; }
 std::string scalar(const std::string& value) { return in_quotes(value); }
+std::string scalar(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "[" : ", ") + number(value);
+  return text + "]";
+}
 
 /// Without quotes where YAML 1.1 can only take it for a word.
 std::string key_text(const std::string& name) {
@@ -25,16 +30,21 @@ std::string key_text(const std::string& name) {
 }
 
 template <class Value>
-std::string map(std::string_view key, const Entries<Value>& entries) {
-  std::string text = std::string(key) + ":" + (entries.empty() ? " {}\n" : "\n");
+std::string lines(const Entries<Value>& entries) {
+  std::string text;
   for (const auto& [name, value] : entries) text += "  " + key_text(name) + ": " + scalar(value) + "\n";
   return text;
+}
+
+template <class Value>
+std::string map(std::string_view key, const Entries<Value>& entries) {
+  return std::string(key) + ":" + (entries.empty() ? " {}\n" : "\n") + lines(entries);
 }
 
 }  // namespace
 
 std::string yaml(const Summary& summary) {
-  std::string text = map("final", summary.final);
+  std::string text = map("final", summary.final) + lines(summary.final_vectors);
   text += summary.expect.empty() ? "expect: []\n" : "expect:\n";
   for (const Expected& one : summary.expect) {
     text += "  - name: " + scalar(one.name) + "\n";

@@ -22,6 +22,7 @@ using Entries = std::vector<std::pair<std::string, Value>>;  ///< in the order i
 
 struct Summary {
   Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
+  Entries<std::vector<double>> final_vectors;  ///< what is a vector, as a list: drag, torque
   std::vector<Expected> expect;
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
   Entries<double> seconds;    ///< by phase

@@ -52,6 +52,10 @@ SETTINGS = [
     (["Surface/elements per side=150"], ["Surface/elements per side", "150", "GB"]),
     (["Output/wall-clock limit=-5"], ["Output/wall-clock limit", "positive", "seconds", "-5"]),
     # contradictory keys
+    (["Particle/motion=free"], ["Membrane", "Particle/motion", "free", "contradict", "rigid"]),
+    (["Particle/motion=prescribed"], ["Membrane", "Particle/motion", "prescribed", "contradict", "rigid"]),
+    (["Particle/velocity=[1, 0, 0]"], ["Particle/velocity", "prescribed", "deforming"]),
+    (["Particle/motion=falling"], ["Particle/motion", "deforming", "prescribed", "free", "falling"]),
     (["Membrane/shear modulus=1"], ["Membrane/capillary number", "Membrane/shear modulus", "contradict"]),
     (["Membrane/area dilatation=2"], ["Membrane/area dilatation", "Skalak", "neo-Hookean"]),
     (["Particle/semi-axes=[1, 1, 2]"], ["Particle/semi-axes", "sphere", "contradict"]),

@@ -1,0 +1,112 @@
+// The capsule or drop in the time loop, on a mesh that may change.
+
+#include <cstdio>
+
+#include "app/adaptation.hpp"
+#include "app/moving.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+class Deforming : public Moving {
+ public:
+  Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
+      : scene_(scene), ranks_(ranks), phases_(phases), body_(std::make_unique<Body>(tanktread::body(scene))),
+        capsule_(capsule(scene, *body_, ranks, phases)) {}
+
+  coupling::Dynamics& dynamics() override { return *capsule_; }
+  const Body& body() const override { return *body_; }
+  Net start() const override { return body_->rest; }
+
+  void resume(Resumed& resumed) override {
+    if (resumed.body) settle(std::move(resumed.body));
+    if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
+    capsule_->work() = resumed.standing.work;
+  }
+
+  /// Cuts or merges elements where the rule says so (P-37).
+  bool adapt(motion::State& state, Standing& standing) override {
+    if (!scene_.adaptation.enabled || standing.step % scene_.adaptation.interval != 0) return false;
+    const auto clock = phases_.time("adaptation");
+    auto change = adapted(scene_, *body_, state, capsule_->load(state.x), capsule_->measure() == stokes::Measure::reference);
+    if (!change) return false;
+    if (change->finer && change->change > 1e-12) warn_of_change(change->change, state.time);
+    state = std::move(change->state);
+    settle(std::move(change->body));
+    capsule_->restore_volume(state.x);
+    if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
+    (change->finer ? standing.refinements : standing.coarsenings) += 1;
+    if (body_->space.n_points >= scene_.adaptation.largest_number_of_points && !warned_of_size_ && ranks_.rank() == 0)
+      std::fprintf(stderr, "tanktread: refinement ends at %d control points, Adaptation/largest number of points\n", body_->space.n_points);
+    warned_of_size_ = warned_of_size_ || body_->space.n_points >= scene_.adaptation.largest_number_of_points;
+    return true;
+  }
+
+  coupling::Work work() const override { return capsule_->work(); }
+
+  stokes::Evaluations kernel_evaluations() const override {
+    const stokes::Evaluations now = capsule_->kernel_evaluations();
+    return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
+  }
+
+  const std::vector<Column>& columns() const override { return tanktread::columns(); }
+
+  std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
+    return tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds);
+  }
+
+  Portrait portrait(const motion::State& state) override {
+    const Net load = capsule_->load(state.x);
+    return {state.x, [this, &state, load](const output::LagrangeMesh& mesh) { return fields(mesh, state, load); }};
+  }
+
+ private:
+  /// Goes on with the particle on another mesh.
+  void settle(std::unique_ptr<Body> body) {
+    const coupling::Work work = capsule_->work();
+    kernel_evaluations_ = kernel_evaluations();
+    capsule_.reset();
+    body_ = std::move(body);
+    capsule_ = capsule(scene_, *body_, ranks_, phases_);
+    capsule_->work() = work;
+  }
+
+  void warn_of_change(double change, double time) const {
+    if (ranks_.rank() == 0)
+      std::fprintf(stderr, "tanktread: refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested\n",
+                   time, change);
+  }
+
+  std::vector<output::Field> fields(const output::LagrangeMesh& mesh, const motion::State& state, const Net& load) const {
+    std::vector<output::Field> fields;
+    fields.push_back({"load", output::nodal_values(body_->space, mesh, load)});
+    fields.push_back({"displacement", output::nodal_values(body_->space, mesh, state.x - body_->unstressed)});
+    if (!state.history.empty()) fields.push_back({"velocity", output::nodal_values(body_->space, mesh, state.history.front())});
+    const Eigen::MatrixX2d tensions = capsule_->membrane().tensions(state.x, mesh.sites);
+    fields.push_back({"smallest tension", tensions.col(0)});
+    fields.push_back({"largest tension", tensions.col(1)});
+    Eigen::VectorXd curvature(static_cast<Eigen::Index>(mesh.sites.size()));
+    for (size_t i = 0; i < mesh.sites.size(); ++i)
+      curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_->space, state.x, mesh.sites[i]);
+    fields.push_back({"mean curvature", curvature});
+    return fields;
+  }
+
+  const Scene& scene_;
+  coupling::Ranks& ranks_;
+  Phases& phases_;
+  std::unique_ptr<Body> body_;
+  std::unique_ptr<coupling::Capsule> capsule_;
+  stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
+  bool warned_of_size_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Moving> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return std::make_unique<Deforming>(scene, ranks, phases);
+}
+
+}  // namespace tanktread

@@ -1,0 +1,118 @@
+// The free rigid body in the time loop.
+
+#include <cmath>
+
+#include "app/moving.hpp"
+#include "coupling/rigid_body.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+const std::vector<Column>& rigid_columns() {
+  static const std::vector<Column> all = {
+      {"time", "time", "simulated time"},
+      {"time_step", "time", "size of the step that ended here"},
+      {"inclination", "degree", "angle of the long axis of inertia with x1"},
+      {"center_x1", "length", "centre of the body, component 1"},
+      {"center_x2", "length", "centre of the body, component 2"},
+      {"center_x3", "length", "centre of the body, component 3"},
+      {"velocity_x1", "length/time", "of the centre, component 1"},
+      {"velocity_x2", "length/time", "of the centre, component 2"},
+      {"velocity_x3", "length/time", "of the centre, component 3"},
+      {"angular_velocity_x1", "1/time", "component 1"},
+      {"angular_velocity_x2", "1/time", "component 2"},
+      {"angular_velocity_x3", "1/time", "component 3"},
+      {"quaternion_0", "1", "scalar part of the turn from the initial place"},
+      {"quaternion_1", "1", "vector part, component 1"},
+      {"quaternion_2", "1", "vector part, component 2"},
+      {"quaternion_3", "1", "vector part, component 3"},
+      {"stresslet_11", "force length", "particle stresslet, component 11"},
+      {"stresslet_22", "force length", "particle stresslet, component 22"},
+      {"stresslet_33", "force length", "particle stresslet, component 33"},
+      {"stresslet_12", "force length", "particle stresslet, component 12"},
+      {"stresslet_13", "force length", "particle stresslet, component 13"},
+      {"stresslet_23", "force length", "particle stresslet, component 23"},
+      {"length_x1", "length", "extent along x1"},
+      {"length_x2", "length", "extent along x2"},
+      {"length_x3", "length", "extent along x3"},
+      {"n_control_points", "1", "control points of the surface"},
+      {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"},
+      {"rejected_steps", "1", "attempts given up in this step"},
+      {"evaluations", "1", "velocity evaluations so far"},
+      {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"},
+  };
+  return all;
+}
+
+class Free : public Moving {
+ public:
+  Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
+      : body_(tanktread::body(scene)), geometry_(body_.space),
+        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases),
+        free_(resistance_, scene.particle.shape.center, body_.radius, body_.flow) {}
+
+  coupling::Dynamics& dynamics() override { return free_; }
+  const Body& body() const override { return body_; }
+  Net start() const override { return coupling::placed(free_.centre()); }
+  void resume(Resumed& resumed) override { before_ = resumed.standing.work.evaluations; }
+  bool adapt(motion::State&, Standing&) override { return false; }
+  stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
+  const std::vector<Column>& columns() const override { return rigid_columns(); }
+
+  coupling::Work work() const override {
+    coupling::Work work;
+    work.evaluations = before_ + free_.evaluations();
+    work.assemblies = 1;
+    work.solves = 11;
+    work.solver_iterations = resistance_.solver_iterations();
+    return work;
+  }
+
+  std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
+    const surface::Deformation shape = geometry_.deformation(free_.surface(state.x));
+    const coupling::RigidMotion motion = free_.motion(state.x);
+    const Mat3 s = free_.stresslet(state.x);
+    const Net& x = state.x;
+    const Vec3 &v = motion.velocity, &w = motion.angular_velocity;
+    return {state.time,
+            report.step,
+            shape.inclination,
+            x(0, 0), x(0, 1), x(0, 2),
+            v[0], v[1], v[2],
+            w[0], w[1], w[2],
+            x(2, 0), x(1, 0), x(1, 1), x(1, 2),
+            s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2),
+            shape.lengths[0], shape.lengths[1], shape.lengths[2],
+            static_cast<double>(body_.space.n_points),
+            report.error,
+            static_cast<double>(report.rejected),
+            static_cast<double>(work().evaluations),
+            wall_seconds};
+  }
+
+  Portrait portrait(const motion::State& state) override {
+    return {free_.surface(state.x), [this, place = state.x](const output::LagrangeMesh& mesh) {
+              const coupling::RigidMotion motion = free_.motion(place);
+              const Net x = free_.surface(place), v = coupling::rigid_velocity(x, motion, coupling::centre_of(place));
+              return std::vector<output::Field>{{"traction", output::nodal_values(body_.space, mesh, -free_.force_density(place))},
+                                                {"velocity", output::nodal_values(body_.space, mesh, v)}};
+            }};
+  }
+
+ private:
+  Body body_;
+  surface::Geometry geometry_;
+  coupling::Resistance resistance_;
+  coupling::FreeBody free_;
+  long before_ = 0;  // evaluations of earlier parts of a resumed run
+};
+
+}  // namespace
+
+std::unique_ptr<Moving> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return std::make_unique<Free>(scene, ranks, phases);
+}
+
+}  // namespace tanktread

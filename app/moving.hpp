@@ -1,0 +1,62 @@
+#pragma once
+// What the time loop moves: a deforming capsule, or a free rigid body.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/body.hpp"
+#include "app/diagnostics.hpp"
+#include "coupling/dynamics.hpp"
+#include "motion/integrator.hpp"
+#include "output/checkpoint.hpp"
+#include "stokes/kernels.hpp"
+
+namespace tanktread {
+
+/// Where a run stands beside its State.
+struct Standing {
+  int step = 0;               ///< steps so far; `run.h5` holds step + 1 rows
+  double wall_seconds = 0;    ///< of earlier parts
+  coupling::Work work;
+  int refinements = 0, coarsenings = 0;
+};
+
+/// A run to go on with. The body is there when its mesh had been adapted.
+struct Resumed {
+  motion::State state;
+  Standing standing;
+  std::unique_ptr<Body> body;
+};
+
+/// The particle at one moment, as a picture shows it.
+struct Portrait {
+  Net surface;                                                                         ///< control net
+  std::function<std::vector<output::Field>(const output::LagrangeMesh& mesh)> fields;  ///< at the nodes; called on the first rank only
+};
+
+/// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled.
+class Moving {
+ public:
+  virtual ~Moving() = default;
+  virtual coupling::Dynamics& dynamics() = 0;
+  virtual const Body& body() const = 0;
+  virtual Net start() const = 0;                                                 ///< State::x at time zero
+  virtual void resume(Resumed& resumed) = 0;                                     ///< takes what a checkpoint holds beside the state
+  virtual bool adapt(motion::State& state, Standing& standing) = 0;              ///< after a step; whether body() has another mesh now
+  virtual coupling::Work work() const = 0;
+  virtual stokes::Evaluations kernel_evaluations() const = 0;
+  virtual const std::vector<Column>& columns() const = 0;
+  virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;
+  virtual Portrait portrait(const motion::State& state) = 0;
+};
+
+/// What `Particle/motion` asks for.
+std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+
+/// The two kinds.
+std::unique_ptr<Moving> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<Moving> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+
+}  // namespace tanktread

@@ -1,0 +1,176 @@
+#include "app/prescribed.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "app/exact_body.hpp"
+#include "app/results.hpp"
+#include "base/errors.hpp"
+#include "coupling/rigid_body.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Force and torque on the body, and the traction that they are the integrals of.
+struct Solution {
+  Net density;         ///< force per area on the fluid; the traction on the body is its negative
+  Vec3 force, torque;  ///< on the body, about its centre
+  Vec3 integral;       ///< force as the integral of the traction alone
+  int iterations = 0;  ///< of the solver, for this traction
+  double error = unknown, integral_error = unknown, torque_error = unknown;
+  SurfaceErrors surface{unknown, unknown, 0};
+};
+
+/// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque.
+Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const Net& u, const Net& f, const Vec3& centre) {
+  std::vector<Net> z;
+  for (int k = 0; k < 6; ++k) {
+    coupling::RigidMotion unit;
+    (k < 3 ? unit.velocity : unit.angular_velocity) = Vec3::Unit(k % 3);
+    z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), unit, centre)));
+  }
+  return body.residual_work(u, f, z);
+}
+
+double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : unknown; }
+
+Solution solve(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases) {
+  const Vec3& centre = scene.particle.shape.center;
+  const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
+  Net u = coupling::rigid_velocity(body.rest, motion, centre);
+  for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) -= body.flow.velocity(body.rest.row(a).transpose()).transpose();
+
+  Solution s;
+  s.density = resistance.force_density(u);
+  s.iterations = resistance.last_iterations();
+  s.integral = s.force = -resistance.force(s.density);
+  s.torque = -resistance.torque(s.density, centre);
+  if (scene.particle.forces == "reciprocal") {
+    const Eigen::VectorXd lacking = reciprocal_correction(resistance, u, s.density, centre);
+    s.force -= lacking.head<3>();
+    s.torque -= lacking.tail<3>();
+  }
+  if (const auto exact = exact_body(scene, motion)) {
+    const auto clock = phases.time("diagnostics");
+    s.error = relative(s.force, exact->force());
+    s.integral_error = relative(s.integral, exact->force());
+    s.torque_error = relative(s.torque, exact->torque());
+    s.surface = surface_errors(body.space, body.rest, s.density, *exact);
+  }
+  return s;
+}
+
+/// Columns and their values side by side; errors only where they are known.
+struct Row {
+  std::vector<Column> columns;
+  std::vector<double> values;
+  void add(const std::string& name, const std::string& unit, const std::string& description, double value) {
+    if (std::isnan(value)) return;
+    columns.push_back({name, unit, description});
+    values.push_back(value);
+  }
+};
+
+Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const Solution& s, double seconds) {
+  const surface::Measures measures = surface::measures(body.space, body.rest);
+  const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
+  Row row;
+  row.add("time", "time", "the problem is steady", 0);
+  for (int i = 0; i < 3; ++i)
+    row.add("drag_x" + std::to_string(i + 1), "force", "force on the particle, component " + std::to_string(i + 1), s.force[i]);
+  for (int i = 0; i < 3; ++i)
+    row.add("torque_x" + std::to_string(i + 1), "force length", "torque on the particle about its centre, component " + std::to_string(i + 1),
+            s.torque[i]);
+  row.add("drag_error", "1", "|F - F_exact|/|F_exact|", s.error);
+  row.add("drag_error_of_traction", "1", "the same, of the integral of the traction alone", s.integral_error);
+  row.add("torque_error", "1", "|T - T_exact|/|T_exact|", s.torque_error);
+  row.add("pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n", s.surface.pressure);
+  row.add("normal_l2_error", "1", "L2 norm of n_h - n over that of n", s.surface.normal);
+  const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  for (const auto& [i, j] : pairs) {
+    const std::string ij = std::to_string(i + 1) + std::to_string(j + 1);
+    row.add("stresslet_" + ij, "force length", "particle stresslet, component " + ij, stresslet(i, j));
+  }
+  row.add("volume", "length^3", "enclosed volume", measures.volume);
+  row.add("area", "length^2", "area of the surface", measures.area);
+  row.add("n_control_points", "1", "control points of the surface", body.space.n_points);
+  row.add("solver_iterations", "1", "iterations of the linear solver for the traction", s.iterations);
+  row.add("kernel_evaluations", "1", "of the layer operator, all rules together", static_cast<double>(resistance.kernel_evaluations().total()));
+  row.add("wall_seconds", "s", "time since the run was started", seconds);
+  return row;
+}
+
+Portrait portrait(const Scene& scene, const Body& body, const Solution& s) {
+  const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
+  return {body.rest, [&body, &s, exact = exact_body(scene, motion)](const output::LagrangeMesh& mesh) {
+            const Eigen::MatrixXd f = output::nodal_values(body.space, mesh, s.density);
+            const Net n = output::nodal_normals(body.space, mesh, body.rest), x = output::nodal_values(body.space, mesh, body.rest);
+            const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
+            std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
+            if (exact) {
+              Eigen::VectorXd error(pressure.size());
+              for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = pressure[i] - exact->pressure(x.row(i).transpose());
+              fields.push_back({"pressure error", error});
+            }
+            return fields;
+          }};
+}
+
+}  // namespace
+
+output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
+  const bool free = scene.particle.motion == "free";
+  char unknowns[200], memory[200];
+  std::snprintf(unknowns, sizeof unknowns, "%d of the traction: single layer of the first kind, its null space made regular",
+                3 * body.space.n_points);
+  std::snprintf(memory, sizeof memory, "%.1f MB on %d rank%s", 72e-6 * body.space.n_points * body.space.n_points, ranks, ranks > 1 ? "s" : "");
+  return {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
+          {"unknowns", unknowns},
+          {"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"},
+          {"particle", free ? "rigid and free, no membrane: six rigid motions and five strains, solved once, are all that it can meet"
+                            : "rigid, its motion prescribed: no membrane, nothing moves in time"},
+          {"forces", free                                   ? "none"
+                     : scene.particle.forces == "reciprocal" ? "corrected by the reciprocal theorem: six more solves"
+                                                             : "integrals of the traction"},
+          {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},
+          {"assembled", memory},
+          {"symmetry", "none used"}};
+}
+
+int resist(const Scene& scene, const RunRequest& request) {
+  if (request.resume)
+    throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with; run the deck again.");
+  const auto start = std::chrono::steady_clock::now();
+  coupling::Ranks ranks;
+  Phases phases;
+  const Body body = tanktread::body(scene);
+  const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
+  if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(scene, ranks.size()).c_str(), stdout);
+  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases);
+  const Solution solution = solve(scene, body, resistance, phases);
+  const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  const Row only = row(scene, body, resistance, solution, seconds);
+
+  Results results(scene, request, body, only.columns, ranks);
+  results.record(only.values);
+  motion::State state;
+  state.x = body.rest;
+  results.save(state, {}, portrait(scene, body, solution));
+  const stokes::Evaluations kernel = resistance.kernel_evaluations();
+  return results.close(chosen,
+                       {{"unknowns", 3L * body.space.n_points},
+                        {"solver_iterations", solution.iterations},
+                        {"solver_iterations_in_all", resistance.solver_iterations()},
+                        {"kernel_evaluations_far", static_cast<long>(kernel.far)},
+                        {"kernel_evaluations_near", static_cast<long>(kernel.near)},
+                        {"kernel_evaluations_self", static_cast<long>(kernel.self)}},
+                       phases, {{"drag", solution.force}, {"torque", solution.torque}});
+}
+
+}  // namespace tanktread
