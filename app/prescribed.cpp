@@ -51,7 +51,7 @@ Solution solve(const Scene& scene, const Body& body, coupling::Resistance& resis
   s.iterations = resistance.last_iterations();
   s.integral = s.force = -resistance.force(s.density);
   s.torque = -resistance.torque(s.density, centre);
-  if (scene.particle.forces == "reciprocal") {
+  if (scene.reciprocal_forces()) {
     const Eigen::VectorXd lacking = reciprocal_correction(resistance, u, s.density, centre);
     s.force -= lacking.head<3>();
     s.torque -= lacking.tail<3>();
@@ -136,7 +136,7 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
           {"particle", free ? "rigid and free, no membrane: six rigid motions and five strains, solved once, are all that it can meet"
                             : "rigid, its motion prescribed: no membrane, nothing moves in time"},
           {"forces", free                                   ? "none"
-                     : scene.particle.forces == "reciprocal" ? "corrected by the reciprocal theorem: six more solves"
+                     : scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves"
                                                              : "integrals of the traction"},
           {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},
           {"assembled", memory},
@@ -145,7 +145,7 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
 
 int resist(const Scene& scene, const RunRequest& request) {
   if (request.resume)
-    throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with; run the deck again.");
+    throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with.");
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases;

@@ -16,7 +16,8 @@ void ParticleOptions::declare(deck::Section& section) {
   section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "force and torque on a `prescribed` body: `integral` of the traction alone, or with what that lacks by the `reciprocal` theorem");
+              "force and torque on a `prescribed` body: `integral` of the traction alone, as the paper has it, or with what that lacks by the "
+              "`reciprocal` theorem, the default under Quadrature/rule `adaptive`; the other rules are too coarse for it");
 }
 
 void Scene::declare(deck::Section& root) {
@@ -97,6 +98,8 @@ double Scene::modulus() const {
   if (particle.rigid()) return 0;
   return membrane.modulus(flow.viscosity, flow.rate(), radius());
 }
+
+bool Scene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
 
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 

@@ -24,7 +24,7 @@ struct ParticleOptions {
   std::string motion = "deforming";
   std::optional<Vec3> velocity;          ///< of the centre, of a `prescribed` motion; zero if not given
   std::optional<Vec3> angular_velocity;  ///< about the centre; zero if not given
-  std::string forces = "reciprocal";     ///< on a rigid body: `reciprocal`, `integral`
+  std::optional<std::string> forces;     ///< on a `prescribed` body: `reciprocal`, `integral`
 
   bool rigid() const { return motion != "deforming"; }
   void declare(deck::Section& section);
@@ -50,6 +50,7 @@ struct Scene {
   /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
   void check() const;
 
+  bool reciprocal_forces() const;    ///< `Particle/forces`, or its default
   double radius() const;             ///< R_C: of the sphere of equal volume
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
   double snapshot_interval() const;  ///< simulated time between snapshots

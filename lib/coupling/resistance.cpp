@@ -43,7 +43,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
   layer_.assemble(surface, stokes::Measure::reference, own_points_, rows_);
 }
 
-/// R^-1 A f + s c (b.f)/(b.c)
+/// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
 Net Resistance::apply(const Net& f) const {
   const Eigen::VectorXd out = rows_ * Eigen::Map<const Eigen::VectorXd>(f.data(), f.size());
   Net u(f.rows(), 3);

@@ -20,8 +20,8 @@ namespace tanktread::coupling {
 /// The first-kind equation of a fixed rigid surface, collocated:  (1/mu) A f = u on the surface, f the force per area on the fluid   (2.4)
 ///
 /// A n = 0, so f is only known up to a multiple of n (a constant pressure inside); and u must carry no flux. Both are said openly:
-/// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is A + s R c b^T / (b.c), which is regular and gives the f with
-/// no net normal force, int f.n dG = 0, and takes up whatever flux the discrete u has.
+/// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is R^-1 A + s c b^T / (b.c), which is regular and gives the f with
+/// no net normal force, int f.n dG = 0, and takes up whatever flux the discrete u has.                                  (2.10)
 class Resistance {
  public:
   /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own; nothing moves afterwards.
@@ -32,7 +32,7 @@ class Resistance {
   Net force_density(const Net& u);
 
   /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
-  /// weighted. By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
+  /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
   /// translation (a rotation) of unit size it is what the force (the torque) of f lacks. The remaining error is the fitted surface's own.
   /// `u`: control values of an affine field.
   Eigen::VectorXd residual_work(const Net& u, const Net& f, std::span<const Net> z);
