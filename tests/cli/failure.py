@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+# A run that fails, is stopped or runs out of time leaves a checkpoint from which it goes on with another scheme or tolerance.
+import pathlib
+import signal
+import time
+
+from harness import check, deck, main, run, series, start, summary
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.5}
+"""
+
+
+def _goes_on(results, *settings):
+    """The newest checkpoint opens, and the run gets to its end from there; the record has no gap."""
+    begun = series(results, "time")
+    words = [word for setting in settings for word in ("--set", setting)]
+    run("--resume", results, *words, "--quiet")
+    times = series(results, "time")
+    check(times[-1] == 0.5, f"went on to {times[-1]} only")
+    check((times[1:] > times[:-1]).all() and (times[:len(begun)] == begun).all(), "the record is not in order")
+    check(abs(series(results, "volume_error")).max() < 1e-12, "volume lost")
+
+
+def _fails(*settings):
+    """Exit code 3, one sentence with the reason, the time and the place of the checkpoint."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    said = run(deck(DECK), *words, "--output", "out", "--quiet", code=3).stderr
+    check(len(said.splitlines()) == 1 and "at time" in said and "checkpoint" in said and "out" in said, said)
+    check(list(pathlib.Path("out").glob("snapshot_*.hdf")), "no checkpoint")
+    check(not pathlib.Path("out/summary.yaml").exists(), "a run that failed must not look like one that is done")
+    return said
+
+
+def too_small_a_step_stops_and_a_looser_tolerance_goes_on():
+    said = _fails("Time/minimum step=2e-3", "Time/tolerance=1e-9", "Time/initial step=0.01")
+    check("minimum step" in said, said)
+    _goes_on("out", "Time/tolerance=1e-4", "Time/minimum step=1e-9")
+
+
+def an_iteration_that_does_not_converge_stops_and_shorter_steps_go_on():
+    said = _fails("Time/scheme=crank-nicolson", "Time/fixed step=0.5", "Output/interval=0.5")
+    check("did not converge" in said, said)
+    _goes_on("out", "Time/fixed step=0.02")
+
+
+def a_stopped_run_has_a_checkpoint_and_goes_on():
+    process = start(deck(DECK), "--set", "Time/tolerance=1e-9", "--set", "Time/final time=50", "--output", "out", "--quiet")
+    end = time.monotonic() + 60
+    while time.monotonic() < end and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
+        time.sleep(0.02)
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate(timeout=60)
+    check(process.returncode == 0 and "signal" in said, process.returncode, said)
+    check(summary("out")["final"]["time"] == series("out", "time")[-1], "the summary is not of the last step")
+
+
+def a_run_stops_at_its_wall_clock_limit():
+    said = run(deck(DECK), "--set", "Time/tolerance=1e-9", "--set", "Time/final time=50", "--set", "Output/wall-clock limit=0.5", "--output", "out",
+               "--quiet").stderr
+    check("wall-clock" in said, said)
+    steps = len(series("out", "time"))
+    run("--resume", "out", "--quiet")  # the limit is for each part
+    check(len(series("out", "time")) > steps, "no step more")
+
+
+main()
