@@ -59,6 +59,9 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
   // A drop has no unstressed state, so its load is always per current area.
   const bool reference = scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
   parameters.measure = reference ? stokes::Measure::reference : stokes::Measure::current;
+  parameters.interface_motion = scene.interface_motion();
+  const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : body.modulus / (scene.flow.viscosity * body.radius);
+  parameters.interface_speed = scene.interface.relaxation * rate * body.radius;
   parameters.volume = scene.volume;
   parameters.solvers = scene.solvers;
   parameters.quadrature = scene.quadrature;

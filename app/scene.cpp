@@ -31,6 +31,7 @@ void Scene::declare(deck::Section& root) {
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
+  root.section("Interface", interface, "how the mesh of a drop moves along its interface");
   root.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");
@@ -44,12 +45,17 @@ double assembled_bytes(double n_points) { return 9.0 * sizeof(float) * n_points 
 
 void check_size(const Scene& scene) {
   constexpr double limit = 64e9;
-  const double n_points = scene.surface.n_points();
-  if (scene.time.scheme != "tr-bdf2" || assembled_bytes(n_points) <= limit) return;
-  throw UserError("Surface/mesh must have at most " + std::to_string(std::lround(std::sqrt(limit / assembled_bytes(1)))) +
-                  " control points with Time/scheme `tr-bdf2`, but has " + std::to_string(std::lround(n_points)) +
-                  ": their single layer takes " + std::to_string(std::lround(assembled_bytes(n_points) / 1e9)) +
-                  " GB assembled, more than 64.");
+  const double n_points = scene.surface.n_points(), most = std::sqrt(limit / assembled_bytes(1));
+  if (scene.time.scheme != "tr-bdf2" || n_points <= most) return;
+  const auto number = [](double x) { return std::to_string(std::lround(x)); };
+  const std::string size =
+      number(n_points) + " control points takes " + number(assembled_bytes(n_points) / 1e9) + " GB assembled, more than 64.";
+  if (scene.surface.polar())
+    throw UserError("Surface/azimuthal elements and Surface/meridional elements must give at most " + number(std::floor(most)) +
+                    " control points with Time/scheme `tr-bdf2`: the single layer of " + size);
+  throw UserError("Surface/elements per side must be at most " + number(std::floor(std::sqrt((most - 2) / 6))) +
+                  " with Time/scheme `tr-bdf2`, but is " + std::to_string(*scene.surface.elements_per_side) + ": the single layer of its " +
+                  size);
 }
 
 }  // namespace
@@ -89,7 +95,14 @@ void Scene::check() const {
         "the load per reference area (3.7) needs `flux` or `exact`.");
   if (adaptation.enabled && surface.polar())
     throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
+  if (interface_motion() != "material" && membrane.law != "surface tension")
+    throw UserError("Interface/motion `" + interface_motion() + "` and Membrane/law `" + membrane.law +
+                    "` contradict each other: an elastic membrane moves with the fluid, `material`.");
   check_size(*this);
+}
+
+std::string Scene::interface_motion() const {
+  return interface.motion.value_or(membrane.law == "surface tension" ? "relaxed" : "material");
 }
 
 double Scene::radius() const { return particle.shape.equivalent_radius(); }

@@ -40,6 +40,7 @@ struct Scene {
   quadrature::Options quadrature;
   motion::TimeOptions time;
   motion::AdaptationOptions adaptation;
+  coupling::InterfaceOptions interface;
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;
@@ -53,6 +54,7 @@ struct Scene {
   bool reciprocal_forces() const;    ///< `Particle/forces`, or its default
   double radius() const;             ///< R_C: of the sphere of equal volume
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
+  std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law
   double snapshot_interval() const;  ///< simulated time between snapshots
 };
 

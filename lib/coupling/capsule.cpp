@@ -27,7 +27,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       layer_(space, parameters.quadrature),
       collocation_(parameters.solvers.direct),
       mass_(parameters.solvers.direct),
-      krylov_(parameters.solvers.krylov, parameters.solvers.belos) {
+      krylov_(parameters.solvers.krylov, parameters.solvers.belos),
+      inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos) {
   const surface::Share share = surface::share(space, surface::partition(space, ranks.size()), ranks.rank());
   own_points_ = share.points;
   own_elements_ = share.elements;
@@ -37,6 +38,9 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_reference(unstressed);
   if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
   volume0_ = geometry_.volume(initial);
+  if (parameters.interface_motion != "material")
+    interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, own_elements_,
+                       collocation_, parameters.solvers.direct, ranks_);
 }
 
 Capsule::~Capsule() = default;
@@ -96,7 +100,12 @@ Net Capsule::velocity(const Net& x) {
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net(), c = constrained ? mass_.solve(b) : Net();
   if (constrained) v -= dot(b, v) / dot(b, c) * c;
-  return double_layer_ ? solve_velocity(x, b, c, v) : v;
+  if (double_layer_) v = solve_velocity(x, b, c, v);
+  if (!interface_) return v;
+  const auto clock = phases_.time("interface motion");
+  v = interface_->velocity(x, v);
+  if (constrained) v -= dot(b, v) / dot(b, c) * c;  // interpolation of the normal motion lets a little flux in
+  return v;
 }
 
 /// B v = v - (1 - lambda) R^-1 (H v), from what the double layer gives at the sites.
@@ -152,6 +161,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++work_.tangents;
   tangent_.update(x, own_elements_);
+  if (interface_) interface_->linearise(x);
 }
 
 /// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
@@ -164,23 +174,41 @@ Net Capsule::energy_part(const Net& delta) {
   return delta * flow_.gradient(Vec3::Zero()).transpose() - collocation_.solve(u) / parameters_.viscosity;
 }
 
-/// (B - shift B J) delta = B r, with everything that B holds frozen.
+/// B v with B frozen.
+Net Capsule::frozen_viscous(const Net& v) {
+  if (!double_layer_) return v;
+  Net hv(v.rows(), 3);
+  frozen_double_.apply(v, hv);
+  ranks_.replicate(hv);
+  return viscous(v, hv);
+}
+
+/// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
+Net Capsule::fluid_velocity_change(const Net& delta) {
+  const Net rhs = energy_part(delta);
+  if (!double_layer_) return rhs;
+  const Eigen::Index n = delta.rows();
+  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = frozen_viscous(Eigen::Map<const Net>(in, n, 3)); };
+  Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
+  const Eigen::VectorXd right = v;
+  work_.solver_iterations += inner_krylov_.solve(apply, right, v, 1e-3).iterations;
+  return Eigen::Map<const Net>(v.data(), n, 3);
+}
+
+/// Material motion: (B - shift B J) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W)) delta = r (4.6).
 Net Capsule::solve(double shift, const Net& r, double tolerance) {
   const auto clock = phases_.time("implicit solve");
   const Eigen::Index n = r.rows();
-  const auto inertia = [&](const Net& v) -> Net {
-    if (!double_layer_) return v;
-    Net hv(n, 3);
-    frozen_double_.apply(v, hv);
-    ranks_.replicate(hv);
-    return viscous(v, hv);
-  };
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
-    Eigen::Map<Net>(out, n, 3) = inertia(delta) - shift * energy_part(delta);
+    Eigen::Map<Net> result(out, n, 3);
+    if (interface_)
+      result = delta - shift * interface_->derivative(fluid_velocity_change(delta), delta);
+    else
+      result = frozen_viscous(delta) - shift * energy_part(delta);
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
-  const Net rhs = inertia(r);
+  const Net rhs = interface_ ? r : frozen_viscous(r);
   const SolveReport report = krylov_.solve(apply, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
   work_.solver_iterations += report.iterations;

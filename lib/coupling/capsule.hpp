@@ -10,6 +10,7 @@
 #include "base/types.hpp"
 #include "coupling/dynamics.hpp"
 #include "coupling/frozen_operator.hpp"
+#include "coupling/interface_motion.hpp"
 #include "coupling/krylov.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
@@ -46,6 +47,8 @@ struct CapsuleParameters {
   membrane::Bending bending;
   bool strong_load = false;                                      ///< (P-3) at the collocation sites instead of (3.5)
   stokes::Measure measure = stokes::Measure::reference;          ///< of the weak load: (3.7) or (3.6)
+  std::string interface_motion = "material";                    ///< of the control points of a drop
+  double interface_speed = 0;                                    ///< of its relaxing motion, length/time
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
@@ -92,6 +95,8 @@ class Capsule : public Dynamics {
   Net flux_vector(const Net& x);
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
+  Net frozen_viscous(const Net& v);
+  Net fluid_velocity_change(const Net& delta);
   Net solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs);
 
   const spline::Space& space_;
@@ -108,8 +113,9 @@ class Capsule : public Dynamics {
   std::optional<stokes::DoubleLayer> double_layer_;  // lambda != 1
   membrane::DirectSolver collocation_;
   membrane::MassSolver mass_;
-  Krylov krylov_;
+  Krylov krylov_, inner_krylov_;
   FrozenOperator frozen_, frozen_double_;
+  std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_;
   double volume0_ = 0;
   Work work_;

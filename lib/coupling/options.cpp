@@ -10,6 +10,13 @@ void VolumeOptions::declare(deck::Section& section) {
       "`flux`: no net flux through the surface in every evaluation (2.8); `exact`: that, and the volume restored after every step; `none`");
 }
 
+void InterfaceOptions::declare(deck::Section& section) {
+  section.key("motion", motion, deck::Choice{"material", "normal", "relaxed"},
+              "control points of a drop move with the fluid, across the interface only, or along it so that elements keep their shape (the "
+              "default for a surface tension)");
+  section.key("relaxation", relaxation, deck::not_negative(), "1", "`relaxed`: the mesh slides as an elastic bag of capillary number 1/relaxation would");
+}
+
 void SolverOptions::declare(deck::Section& section) {
   section.key("iterative solver", krylov, deck::Choice{}, "Belos' name of the solver of the implicit step");
   section.foreign("Belos", belos, "list handed to the iterative solver as it is");

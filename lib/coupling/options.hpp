@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "membrane/options.hpp"
@@ -11,6 +12,16 @@ namespace tanktread::coupling {
 struct VolumeOptions {
   /// exact: no net flux in every evaluation and the volume restored after every step; flux: the former (2.8); none: neither.
   std::string constraint = "exact";
+
+  void declare(deck::Section& section);
+};
+
+/// How the control points of an interface move along it, which is free where there is no membrane: `Interface/*` of the deck.
+struct InterfaceOptions {
+  /// material: with the fluid; normal: across the surface only; relaxed: across with the fluid, along so that elements keep their shape.
+  /// Empty: relaxed for a surface tension, material otherwise.
+  std::optional<std::string> motion;
+  double relaxation = 1;  ///< speed of the relaxing motion: that of an elastic surface at capillary number 1 / relaxation
 
   void declare(deck::Section& section);
 };

@@ -1,0 +1,61 @@
+#pragma once
+// How control points move along a fluid interface, where only the motion across it is physics.
+
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "coupling/frozen_operator.hpp"
+#include "coupling/options.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/direct_solver.hpp"
+#include "membrane/mass.hpp"
+#include "membrane/membrane.hpp"
+#include "spline/space.hpp"
+#include "stokes/single_layer.hpp"
+
+namespace tanktread::coupling {
+
+/// Velocity of the control points from the fluid's velocity v: at the collocation sites
+///
+///   u = n n.v + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed A0 M0^{-1} dE1/dx (`relaxed`)                    (4.6)
+///
+/// E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed shape is the initial one, and A0, M0 belong to that shape: the mesh
+/// slides along the interface as an elastic bag would be dragged through the fluid, so elements keep their shape and the system is no stiffer
+/// than that of a capsule with Ca = mu rate R_C / (mu speed). A0 never changes.
+class InterfaceMotion {
+ public:
+  /// `initial`: the net that the mesh relaxes towards; `speed`: length/time; `layer` has `initial` as its reference.
+  InterfaceMotion(const spline::Space& space, const Net& initial, const std::string& motion, double speed, stokes::SingleLayer& layer,
+                  const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::DirectSolver& collocation,
+                  const membrane::DirectSolverOptions& solver, const Ranks& ranks);
+
+  /// Control-point velocity u at x for the fluid's velocity v (control values). Collective.
+  Net velocity(const Net& x, const Net& v);
+
+  /// Keeps normals and the tangent of E1 at x for `derivative`.
+  void linearise(const Net& x);
+
+  /// du for a change delta of x that changes the fluid's velocity by dv; the normals stay. Collective.
+  Net derivative(const Net& dv, const Net& delta);
+
+ private:
+  Net combined(const std::vector<Vec3>& normals, const Net& across, const Net& f) const;
+  std::vector<Vec3> normals_at(const Net& x) const;
+
+  const spline::Space& space_;
+  bool relaxed_;
+  double speed_;
+  std::vector<int> own_points_, own_elements_;
+  Eigen::SparseMatrix<double> sites_;  // R
+  const membrane::DirectSolver& collocation_;
+  const Ranks& ranks_;
+  membrane::Membrane mesh_;
+  membrane::Tangent tangent_;
+  membrane::DirectSolver mass_;
+  FrozenOperator layer_;
+  std::vector<Vec3> normals_;
+};
+
+}  // namespace tanktread::coupling
