@@ -43,8 +43,8 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
   for (const char* lists :
        {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
         "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
-        "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n",
-        "  Time: {fixed step: 0.01, scheme: bs3}\n"}) {
+        "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n", "  Surface: {mesh: polar}\n",
+        "  Surface: {mesh: polar, azimuthal elements: 8, pole axis: x2, poles: c1}\n", "  Time: {fixed step: 0.01, scheme: bs3}\n"}) {
     Scene first, second;
     deck::Document once = deck::read_text(std::string("Tanktread:\n") + lists);
     once.declare(first);
@@ -98,6 +98,13 @@ TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Particle: {semi-axes: [1, 1, 2]}\n"),
             "Particle/semi-axes and Particle/shape `sphere` contradict each other: give Particle/radius.");
   EXPECT_EQ(refusal("  Particle: {shape: ellipsoid}\n"), "Particle/shape `ellipsoid` needs Particle/semi-axes, three lengths.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, elements per side: 6}\n"),
+            "Surface/elements per side and Surface/mesh `polar` contradict each other: it belongs to `cube`.");
+  EXPECT_EQ(refusal("  Surface: {poles: c1}\n"), "Surface/poles and Surface/mesh `cube` contradict each other: it belongs to `polar`.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, poles: plain, pole subdivisions: 1}\n"),
+            "Surface/pole subdivisions and Surface/poles `plain` contradict each other: it belongs to `bezier transform`.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar}\n  Adaptation: {enabled: true}\n"),
+            "Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
   EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"),
             "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
   EXPECT_EQ(refusal("  Flow: {type: four-roll}\n"), "Flow/type `four-roll` needs Flow/roll parameter.");
@@ -118,6 +125,9 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
             "points takes "
             "130 GB assembled, more than 64.");
   EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n  Time: {scheme: bs3}\n"), "");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, azimuthal elements: 300, meridional elements: 150}\n"),
+            "Surface/azimuthal elements and Surface/meridional elements must give at most 42163 control points with Time/scheme `tr-bdf2`: "
+            "the single layer of 45302 control points takes 74 GB assembled, more than 64.");
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
 }
 
