@@ -1,0 +1,60 @@
+#!/usr/bin/python3
+# ranks: 3
+# The answer does not depend on the number of ranks: every series of one, two and three is the same.
+import pathlib
+
+import numpy
+
+from harness import check, deck, main, run, series
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 1.0}
+"""
+CLOCK = ["wall_seconds"]  # the only series that may differ
+
+
+def _names(results):
+    import h5py
+
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return list(file["series"])
+
+
+def _compare(*settings):
+    """One, two and three ranks agree to 1e-10; to the last bit is what is measured."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    for ranks in 1, 2, 3:
+        run(deck(DECK), *words, "--output", f"on_{ranks}", "--quiet", ranks=ranks)
+    for ranks in 2, 3:
+        check(_names("on_1") == _names(f"on_{ranks}"), "other series")
+        for name in _names("on_1"):
+            if name in CLOCK:
+                continue
+            one, many = series("on_1", name), series(f"on_{ranks}", name)
+            check(one.shape == many.shape, f"{name}: {len(one)} rows on one rank, {len(many)} on {ranks}")
+            off = numpy.max(abs(one - many))
+            check(off <= 1e-10 * max(1, numpy.max(abs(one))), f"{name} differs by {off:.2e} on {ranks} ranks")
+
+
+def implicit_steps():
+    _compare()
+
+
+def explicit_steps():
+    _compare("Time/scheme=bs3")
+
+
+def the_paper_s_scheme_quadrature_and_load():
+    _compare("Time/scheme=crank-nicolson", "Quadrature/rule=fixed", "Membrane/load measure=current", "Volume/constraint=flux",
+             "Time/final time=0.2", "Time/initial step=0.01")
+
+
+def a_membrane_of_another_law_in_another_flow():
+    _compare("Membrane/law=Skalak", "Flow/type=planar hyperbolic", "Membrane/capillary number=0.6")
+
+
+main()
