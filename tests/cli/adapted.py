@@ -1,0 +1,53 @@
+#!/usr/bin/python3
+# ranks: 2
+# A run whose mesh refines itself: two ranks make the mesh of one, and a run that is taken up after refinements goes on to the last bit.
+import pathlib
+import shutil
+
+import numpy
+
+from harness import check, deck, main, run, series
+
+DECK = """
+Tanktread:
+  Flow: { type: planar hyperbolic }
+  Membrane: { law: Skalak, capillary number: 0.6 }
+  Surface: { elements per side: 4, extraordinary points: catmull-clark }
+  Adaptation: { enabled: true, reference length: 0.45, reference traction variation: 12, levels: 2, coarsen: true }
+  Time: { final time: 0.9 }
+  Output: { interval: 0.1 }
+"""
+NAMES = ["time", "taylor_inertia", "n_control_points", "energy", "smallest_tension", "evaluations"]
+
+
+def _points(results):
+    return series(results, "n_control_points")
+
+
+def two_ranks_make_the_mesh_of_one():
+    for ranks in 1, 2:
+        run(deck(DECK), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
+    check(len(set(_points("on_1"))) > 2, f"the mesh changed less than twice: {_points('on_1')}")
+    for name in NAMES:
+        one, two = series("on_1", name), series("on_2", name)
+        check(one.shape == two.shape, f"{name}: {len(one)} and {len(two)} rows")
+        check(numpy.max(abs(one - two)) <= 1e-10 * max(1, numpy.max(abs(one))), f"{name} differs")
+
+
+def a_run_taken_up_after_refinements_goes_on_to_the_last_bit():
+    run(deck(DECK), "--output", "whole", "--quiet")
+    shutil.copytree("whole", "part")
+    snapshots = sorted(pathlib.Path("part").glob("snapshot_*.hdf"))
+    for later in snapshots[-3:]:
+        later.unlink()
+    run("--resume", "part", "--quiet")
+    for name in NAMES:
+        check(series("whole", name).tobytes() == series("part", name).tobytes(), f"{name} differs")
+
+
+def the_volume_is_kept_through_every_change_of_the_mesh():
+    run(deck(DECK), "--output", "run", "--quiet")
+    check(numpy.max(abs(series("run", "volume_error"))) < 1e-12, series("run", "volume_error"))
+
+
+main()
