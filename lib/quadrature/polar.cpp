@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include <Eigen/Core>
@@ -17,19 +18,51 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 
 constexpr double step = std::numbers::pi / 12;
+constexpr int max_order = 80;
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Calls use(A, B) with the ends, seen from (s, t), of every side of the square that does not hold (s, t).
+/// Calls use(k, A, B) with the ends, seen from (s, t), of every side k of the square that does not hold (s, t).
 template <class Use>
 void each_triangle(double s, double t, const Use& use) {
   const Vec2 apex(s, t);
   const Vec2 corner[4] = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
   for (int k = 0; k < 4; ++k) {
     const Vec2 a = corner[k] - apex, b = corner[(k + 1) % 4] - apex;
-    if (cross(a, b) > 1e-12) use(a, b);
+    if (cross(a, b) > 1e-12) use(k, a, b);
   }
 }
+
+/// rho on [0, 1] of 1 / |a + r b|, zero at r = (-a.b +- i |a x b|) / b.b.
+double rho_along_ray(const Vec3& a, const Vec3& b) {
+  const double square = b.squaredNorm();
+  if (!(square > 1e-12 * a.squaredNorm()) || !(a.squaredNorm() > 0)) return 1e6;
+  return ellipse(-2 * a.dot(b) / square - 1, 2 * a.cross(b).norm() / square);
+}
+
+/// The far side from A to B in the plane of the metric: h its distance, tau_a and tau_b the places of its ends from the foot, and mu.
+struct FarSide {
+  double h, tau_a, tau_b, mu_a, range;
+
+  FarSide(Shear shear, const Vec2& a, const Vec2& b) {
+    Eigen::Matrix2d metric;
+    metric << 1, shear.ratio() * std::cos(shear.angle()), 0, shear.ratio() * std::sin(shear.angle());
+    const Vec2 ma = metric * a, mb = metric * b, side = (mb - ma).normalized();
+    tau_a = ma.dot(side), tau_b = mb.dot(side), h = cross(ma, side);
+    mu_a = std::asinh(tau_a / h), range = std::asinh(tau_b / h) - mu_a;
+  }
+
+  int order(double tolerance, double rho) const { return 1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho); }
+
+  /// rho of a side that really runs from a to b: r^2 = 0 at q = (-a.c +- i |a x c|) / c.c of it, c = b - a.
+  double rho(const Vec3& a, const Vec3& b) const {
+    const Vec3 c = b - a;
+    if (!(c.squaredNorm() > 1e-12 * a.squaredNorm())) return 1e6;
+    const std::complex<double> q(-a.dot(c) / c.squaredNorm(), a.cross(c).norm() / c.squaredNorm());
+    const std::complex<double> mu = std::asinh((tau_a + q * (tau_b - tau_a)) / h), z = 2. * (mu - mu_a) / range - 1.;
+    return ellipse(z.real(), z.imag());
+  }
+};
 
 }  // namespace
 
@@ -50,21 +83,37 @@ Shear shear(double g_ss, double g_st, double g_tt) {
   return {std::clamp(std::ilogb(square * std::numbers::sqrt2), -24, 24), steps};
 }
 
-Rule polar(double s, double t, Shear shear, int radial, double tolerance) {
-  Eigen::Matrix2d metric;
-  metric << 1, shear.ratio() * std::cos(shear.angle()), 0, shear.ratio() * std::sin(shear.angle());
-  const GaussRule& along = gauss(radial);
+PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance) {
+  PolarOrders orders{radial, {}};
+  each_triangle(s, t, [&](int k, const Vec2& a, const Vec2& b) {
+    const FarSide side(shear, a, b);
+    orders.angular[k] = side.order(tolerance, ellipse(0, std::numbers::pi / side.range));
+  });
+  return orders;
+}
+
+PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,
+                         const std::array<Vec3, 4>& affine) {
+  PolarOrders orders = polar_orders(s, t, shear, radial, tolerance);
+  each_triangle(s, t, [&](int k, const Vec2& a, const Vec2& b) {
+    const FarSide side(shear, a, b);
+    orders.angular[k] = std::max(orders.angular[k], std::min(max_order, side.order(tolerance, side.rho(corner[k], corner[(k + 1) % 4]))));
+  });
+  for (int k = 0; k < 4; ++k)  // along the ray to a corner x = r affine + r^2 (corner - affine) has zeros other than r = 0
+    orders.radial = std::max(orders.radial, std::min(max_order, 1 + order_for(tolerance, rho_along_ray(affine[k], corner[k] - affine[k]))));
+  return orders;
+}
+
+Rule polar(double s, double t, Shear shear, const PolarOrders& orders) {
+  const GaussRule& along = gauss(orders.radial);
   Rule rule;
-  each_triangle(s, t, [&](const Vec2& a, const Vec2& b) {
-    const Vec2 ma = metric * a, mb = metric * b, side = (mb - ma).normalized();
-    const double tau_a = ma.dot(side), tau_b = mb.dot(side), h = cross(ma, side);
-    const double mu_a = std::asinh(tau_a / h), range = std::asinh(tau_b / h) - mu_a;
-    const double rho = ellipse(0, std::numbers::pi / range);
-    const GaussRule& around = gauss(1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho));
+  each_triangle(s, t, [&](int k, const Vec2& a, const Vec2& b) {
+    const FarSide side(shear, a, b);
+    const GaussRule& around = gauss(orders.angular[k]);
     for (int j = 0; j < around.size(); ++j) {
-      const double mu = mu_a + range * around.nodes[j];
-      const Vec2 ray = a + (h * std::sinh(mu) - tau_a) / (tau_b - tau_a) * (b - a);
-      const double weight = around.weights[j] * range * h * std::cosh(mu) / (tau_b - tau_a) * cross(a, b);
+      const double mu = side.mu_a + side.range * around.nodes[j], length = side.tau_b - side.tau_a;
+      const Vec2 ray = a + (side.h * std::sinh(mu) - side.tau_a) / length * (b - a);
+      const double weight = around.weights[j] * side.range * side.h * std::cosh(mu) / length * cross(a, b);
       for (int i = 0; i < along.size(); ++i) {
         const double r = along.nodes[i];
         rule.add(s + r * ray[0], t + r * ray[1], weight * along.weights[i] * r);
@@ -77,7 +126,7 @@ Rule polar(double s, double t, Shear shear, int radial, double tolerance) {
 Rule lachat_watson(double s, double t, int n) {
   const GaussRule& g = gauss(n);
   Rule rule;
-  each_triangle(s, t, [&](const Vec2& a, const Vec2& b) {
+  each_triangle(s, t, [&](int, const Vec2& a, const Vec2& b) {
     for (int j = 0; j < n; ++j) {
       const Vec2 ray = a + g.nodes[j] * (b - a);
       for (int i = 0; i < n; ++i)

@@ -9,9 +9,9 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// The rules are chosen for int G f dG; this kernel, steeper by one order, errs up to two and a half times as much (tests/verify/layers.cpp).
+/// The rules are chosen for int G f dG; this kernel, steeper by one order, errs up to five times as much (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options) {
-  options.tolerance /= 4;
+  options.tolerance /= 8;
   return options;
 }
 

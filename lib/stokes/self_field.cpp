@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/Geometry>
 
+#include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 
 namespace tanktread::stokes {
@@ -13,11 +15,21 @@ namespace {
 /// Radial points for a tolerance. The integrand is smooth along a ray; measured on the cube mesh, n = 3 and up (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
+quadrature::Rule whole_square(int order) {
+  const auto& gauss = quadrature::tensor_gauss(order);
+  return {{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}};
+}
+
+/// sum B_i(s) B_j(t) p_ij. At corners and on sides of a panel most of the polynomials vanish.
 Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   Vec3 sum = Vec3::Zero();
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
+  for (int j = 0; j < n; ++j) {
+    if (bt[j] == 0) continue;
+    for (int i = 0; i < n; ++i) {
+      if (bs[i] == 0) continue;
       for (int c = 0; c < 3; ++c) sum[c] += bs[i] * bt[j] * bezier[n * n * c + n * j + i];
+    }
+  }
   return sum;
 }
 
@@ -43,27 +55,55 @@ SelfField::SelfField(const spline::Space& space, const quadrature::Options& opti
 const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
   const int degree = panels[pair.panel].table->degree, n = degree + 1;
   quadrature::Shear shear;
+  quadrature::PolarOrders orders;
   if (options_.rule != "fixed") {
     const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
     const Vec3 a1 = product(b + 2 * n, b + n, n, points), a2 = product(b, b + 3 * n, n, points);
     shear = quadrature::shear(a1.dot(a1), a1.dot(a2), a2.dot(a2));
+    const double squares[2] = {a1.squaredNorm(), a2.squaredNorm()};
+    if (std::min(squares[0], squares[1]) < 1e-20 * std::max(squares[0], squares[1]))
+      orders.radial = 2 * radial_;  // a side that is one point: the area vanishes with r, so nothing is singular
+    else
+      orders = raised_orders(pair, degree, points, shear, a1, a2);
   }
-  if (!pair.table || shear != pair.shear) {
-    pair.shear = shear;
-    pair.table = &made(pair, degree, shear);
+  if (!pair.table || shear != pair.shear || orders != pair.orders) {
+    pair.shear = shear, pair.orders = orders;
+    pair.table = &made(pair, degree);
     pair.weights.clear();
   }
   return *pair.table;
 }
 
-const PointTable& SelfField::made(const SelfPair& pair, int degree, quadrature::Shear shear) {
-  auto& table = tables_[{degree, pair.s, pair.t, shear}];
-  if (!table) {
-    table = std::make_unique<PointTable>();
-    tabulate(options_.rule == "fixed" ? quadrature::lachat_watson(pair.s, pair.t, options_.points)
-                                      : quadrature::polar(pair.s, pair.t, shear, radial_, options_.tolerance),
-             degree, *table);
+/// None where the corners are where the tangents a1, a2 at the collocation point say, to half their distance.
+quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear,
+                                                 const Vec3& a1, const Vec3& a2) const {
+  const int n = degree + 1, n_b = n * n;
+  const int at[4] = {0, degree, n_b - 1, n_b - n};
+  const Vec3 x0 = product(pair.bernstein.data(), pair.bernstein.data() + n, n, bezier);
+  std::array<Vec3, 4> corner, affine;
+  bool distorted = false;
+  for (int k = 0; k < 4; ++k) {
+    corner[k] = Vec3(bezier[at[k]], bezier[n_b + at[k]], bezier[2 * n_b + at[k]]) - x0;
+    affine[k] = ((k == 1 || k == 2) - pair.s) * a1 + ((k == 2 || k == 3) - pair.t) * a2;
+    distorted |= (corner[k] - affine[k]).squaredNorm() > 0.25 * corner[k].squaredNorm() + 1e-20;
   }
+  if (!distorted) return {};
+  return quadrature::polar_orders(pair.s, pair.t, shear, radial_, options_.tolerance, corner, affine);
+}
+
+const PointTable& SelfField::made(const SelfPair& pair, int degree) {
+  auto& table = tables_[{degree, pair.s, pair.t, pair.shear, pair.orders}];
+  if (table) return *table;
+  table = std::make_unique<PointTable>();
+  const auto& [s, t, shear, orders] = std::tie(pair.s, pair.t, pair.shear, pair.orders);
+  if (options_.rule == "fixed")
+    tabulate(quadrature::lachat_watson(s, t, options_.points), degree, *table);
+  else if (!orders.radial)
+    tabulate(quadrature::polar(s, t, shear, quadrature::polar_orders(s, t, shear, radial_, options_.tolerance)), degree, *table);
+  else if (orders.angular == std::array<int, 4>{})
+    tabulate(whole_square(orders.radial), degree, *table);
+  else
+    tabulate(quadrature::polar(s, t, shear, orders), degree, *table);
   return *table;
 }
 

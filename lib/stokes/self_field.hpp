@@ -18,7 +18,8 @@ namespace tanktread::stokes {
 /// A collocation point on one of its panels.
 struct SelfPair {
   int panel = 0;
-  quadrature::Shear shear;  ///< the bin that its rule is made for; ratio 0: none yet
+  quadrature::Shear shear;         ///< the bin that its rule is made for
+  quadrature::PolarOrders orders;  ///< and its orders, where the element is distorted; otherwise 0. Only radial: no polar rule
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< rule weights times the area of the unstressed surface
   std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the collocation point
@@ -47,7 +48,9 @@ class SelfField {
   std::pair<int, Eigen::VectorXd> basis(int i, const Panels& panels) const;
 
  private:
-  const PointTable& made(const SelfPair& pair, int degree, quadrature::Shear shear);
+  const PointTable& made(const SelfPair& pair, int degree);
+  quadrature::PolarOrders raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear, const Vec3& a1,
+                                        const Vec3& a2) const;
 
   quadrature::Options options_;
   int radial_;
@@ -57,6 +60,7 @@ class SelfField {
     int degree;
     double s, t;
     quadrature::Shear shear;
+    quadrature::PolarOrders orders;
     auto operator<=>(const Key&) const = default;
   };
   std::map<Key, std::unique_ptr<PointTable>> tables_;
