@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "spline/space.hpp"
+#include "spline/t_mesh.hpp"
 
 namespace tanktread::spline {
 
@@ -22,23 +23,31 @@ struct PolarMesh {
   int subdivisions = 2;  ///< of the elements at the poles in azimuth before the transform, 2^subdivisions
 };
 
-/// Where a control point stands: azimuth in elements, 0 <= v < m, and way along the meridian in elements, 0 (pole behind) <= u <= r (pole ahead).
-/// The generalised Greville places; the three of a pole under `c1` stand off it by `c1_site`, 120 degrees apart.
+/// Where a control point stands: azimuth in elements, 0 <= v < m, and way along the meridian in elements, from 0 (pole behind) to r (pole
+/// ahead). The generalised Greville places; the three of a pole under `c1` stand off it by `c1_site`, 120 degrees apart.
 struct PolarAnchor {
   double u = 0, v = 0;
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
-/// Where the sites of the three functions of a pole under `c1` lie, in elements from the pole.
+/// Where the sites of the three functions of a pole under `c1` lie, in heights of the element there from the pole.
 constexpr double c1_site = 0.5;
 
-/// The space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth, t
-/// along the meridian towards the pole ahead; those of the transform last. A pole of `plain` lies on a whole side of m elements, and its site is
-/// at s = 1/2 of each. `face` is 0 and `origin`, `size` are in parts of m and r; the pieces of the transform have their share of the size.
+/// The space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth,
+/// t along the meridian towards the pole ahead; those of the transform last. A pole of `plain` lies on a whole side of m elements, and its
+/// site is at s = 1/2 of each. `face` is 0 and `origin`, `size` are in parts of m and r; the pieces of the transform share the size.
 ///
 /// Under `c1` (Speleers and Toshniwal 2021), with rows 0 and 1 next to the pole and azimuths f_j = 2 pi j / m of their functions:
 ///
 ///   N_l = 1/3 sum_j N_0j + sum_j (1 + cos(f_j - 2 pi l / 3)) / 3 N_1j,   l = 0, 1, 2
 Space space(const PolarMesh& mesh);
+
+/// The same on a mesh made by polar() and refined: analysis-suitable T-splines, one control point an anchor but for those of a pole, in the order
+/// of the lattice vertices.
+///
+/// Under `c1` the cosines of the base mesh are carried to the finer functions of row 1 by knot insertion, times the height of the first element
+/// over that of the base mesh, so spaces of nested meshes are nested. `plain` spaces are nested too; `bezier_transform` ones are not, but their
+/// control points are those of the `plain` space: take fields over between these.
+Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 }  // namespace tanktread::spline

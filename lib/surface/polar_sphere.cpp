@@ -42,7 +42,7 @@ struct Circles {
   }
 };
 
-/// Places on the sphere at even colatitudes; at the three points of a C1 pole, row 1 of the tensor net (u = 1/3), whose radius is half theirs.
+/// Places on the sphere at even colatitudes; at the three points of a C1 pole, row 1 of the tensor net (u = 1/3), with half their radius.
 Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   std::vector<double> profile;
   double last = -1;
@@ -114,7 +114,7 @@ class Sector {
     const double weight = node.weight * std::sqrt(metric.determinant());
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
-    // Residuals: eps, and the two components of its gradient in an orthonormal frame; their derivatives by the profile of rows first .. last.
+    // Residuals: eps, and its gradient in an orthonormal frame; their derivatives by the profile of rows first .. last.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);
@@ -147,8 +147,8 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   const Sector sector(mesh, space);
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
-  // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide leaves the
-  // sphere by its square at first, and the next step brings it back.
+  // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide leaves
+  // the sphere by its square at first, and the next step brings it back.
   constexpr double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {
     const Misfit at = sector.misfit(profile);
