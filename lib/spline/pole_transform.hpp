@@ -14,8 +14,8 @@ namespace tanktread::spline {
 constexpr std::array<std::array<int, 3>, 10> triangle_points{
     {{0, 0, 3}, {1, 0, 2}, {2, 0, 1}, {3, 0, 0}, {0, 1, 2}, {1, 1, 1}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {0, 3, 0}}};
 
-/// (P-A.1): the triangle that fits best. Row i of the degenerate element becomes a curve of degree 3 - i in v, by least squares with its ends
-/// kept (Hu 2001); the pole is the mean of Q_30 .. Q_33. Shape (10, 16).
+/// (P-A.1): the triangle that fits best. Row i of the degenerate element becomes a curve of degree 3 - i in v, by least squares with its
+/// ends kept (Hu 2001); the pole is the mean of Q_30 .. Q_33. Shape (10, 16).
 Eigen::MatrixXd triangle_of_degenerate();
 
 /// (P-A.2): the triangle over the quadrilateral with the given corners (barycentric; (U, V) = (0,0), (1,0), (1,1), (0,1)), U fastest.

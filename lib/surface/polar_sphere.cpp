@@ -147,8 +147,8 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   const Sector sector(mesh, space);
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
-  // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide leaves
-  // the sphere by its square at first, and the next step brings it back.
+  // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide
+  // leaves the sphere by its square at first, and the next step brings it back.
   constexpr double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {
     const Misfit at = sector.misfit(profile);

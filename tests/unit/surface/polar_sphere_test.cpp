@@ -39,7 +39,8 @@ double normal_error(const spline::PolarMesh& mesh, const Vec3& axes) {
 }
 
 TEST(PolarSphere, NormalOfThePapersSpheroidIsBetterThanThePapers) {
-  // 42, 146, 546 and 2114 points; a least-squares fit of places gives 8.7e-3, 1.0e-3, 1.2e-4 and 1.5e-5, the paper's best of 546 is 8.947e-5.
+  // 42, 146, 546 and 2114 points; a least-squares fit of places gives 8.7e-3, 1.0e-3, 1.2e-4 and 1.5e-5, the paper's best of 546 is
+  // 8.947e-5.
   const double table[] = {6.52e-3, 7.26e-4, 8.78e-5, 1.086e-5};
   for (const PoleRule rule : {PoleRule::plain, PoleRule::c1}) {
     double before = 0;
