@@ -18,6 +18,7 @@ struct PlacedEdge {
 };
 
 PlacedEdge placed(const Lattice& l, Ray e) {
+  if (l.cell[e.vertex][e.slot] < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // on the border of an open face
   const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot];
   return {l.face_of(c), l.x_of(c) + (k == 1), l.y_of(c) + (k == 2), k % 2 == 0};
 }
@@ -38,7 +39,7 @@ bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
 /// Lines of the base mesh, and of the rings of an extraordinary point at its present and every larger spacing.
 bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
   const Lattice& l = *mesh.lattice;
-  if (e.line() % l.base == 0) return true;
+  if ((e.horizontal ? l.height(e.y) : e.x) % l.base == 0) return true;
   for (int corner = 0; corner < 4; ++corner)
     if (const int point = l.point_at[e.face][corner]; point >= 0 && in_rings(l, e, corner, mesh.spacing[point])) return true;
   return false;
@@ -63,7 +64,7 @@ struct Remover {
     const Lattice& l = lattice();
     auto both_sides = [&](Ray r) { return (mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10)) == (r.slot & 1 ? 5 : 10); };
     std::vector<Ray> path;
-    if (l.valence(start.vertex) == 3 || !both_sides(start)) return path;
+    if (l.valence(start.vertex) == 3 || !both_sides(start) || l.ends(start.vertex, start.slot)) return path;
     Ray r = start;
     do {
       if (!mesh.edge(r.vertex, r.slot) || !may_go(r) || is_kept(mesh, placed(l, r))) return {};
@@ -73,6 +74,20 @@ struct Remover {
     } while (!touches(mesh, r));
     if (!both_sides(r)) return {};
     return path;
+  }
+
+  /// In rows of no height there are the lines that arrive at the end knot, and no others.
+  void restore_ends() {
+    const Lattice& l = lattice();
+    for (int c = 0; c < l.cells(); ++c) {
+      if (!l.is_flat(c)) continue;
+      const bool south = l.y_of(c) == 0;
+      const Ray end = south ? Ray{l.corners[c][3], 3} : Ray{l.corners[c][0], 1};
+      clear(end);
+      if (!mesh.edge(end.vertex, end.slot ^ 2)) continue;
+      mesh.edges[end.vertex] |= std::uint8_t(1 << end.slot);
+      mesh.edges[l.neighbour[end.vertex][end.slot]] |= std::uint8_t(1 << l.back[end.vertex][end.slot]);
+    }
   }
 
   /// One pass over all bays, shortest first.
@@ -161,6 +176,7 @@ Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removabl
     going = r.remove_bays();
     if (!going) going = r.double_rings();
   }
+  r.restore_ends();
   ExtendedMesh extended(std::move(r.mesh));
   const int repairs = repair(extended, rules).first;
   return {std::move(extended).take(), r.bays, r.doublings, repairs};
@@ -180,11 +196,17 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
   for (int c = 0; c < l.cells(); ++c)
     for (int k : {1, 2}) {  // right and upper edge of each cell, inside a face
       const bool vertical = k == 1;
-      const int line = (vertical ? l.x_of(c) : l.y_of(c)) + 1;
-      if (line == l.units || !mesh.edge_of_cell(c, k)) continue;
+      const int row = l.y_of(c), line = vertical ? l.x_of(c) + 1 : l.height(row + 1);
+      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // a side of a macro face is a line of the base mesh
+      if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const int v = l.corners[c][k], s = l.slot[c][k];
+      if (vertical && l.pad && (l.height(row) == 0 || l.height(row + 1) == l.rows - 2 * l.pad)) {  // with its end in the row of no height
+        const Ray end = l.height(row) == 0 ? Ray{v, 3} : Ray{l.neighbour[v][1], 1};
+        removable[end.vertex] |= std::uint8_t(1 << end.slot);
+        removable[l.neighbour[end.vertex][end.slot]] |= std::uint8_t(1 << l.back[end.vertex][end.slot]);
+      }
       removable[v] |= std::uint8_t(1 << s);
       removable[l.neighbour[v][s]] |= std::uint8_t(1 << l.back[v][s]);
     }

@@ -144,8 +144,9 @@ std::vector<TJunction> ExtendedMesh::around_missing() const {
   std::vector<TJunction> out;
   for (Ray start : {Ray{v, k}, Ray{l.neighbour[v][k], l.back[v][k]}}) {
     // Look along the line behind the edge: the first vertex with an edge on the line.
+    if (l.ends(start.vertex, start.slot)) continue;
     Ray r = step(l, start);
-    while (l.valence(r.vertex) == 4 && !mesh_.edge(r.vertex, r.slot)) {
+    while (!l.ends(r.vertex, r.slot) && l.valence(r.vertex) == 4 && !mesh_.edge(r.vertex, r.slot)) {
       r = step(l, r);
     }
     const auto t = traces_.find(r.vertex);

@@ -5,7 +5,7 @@ namespace tanktread::spline {
 namespace {
 std::vector<Ray> bays(const TMesh& mesh, Ray ray, int count) {
   std::vector<Ray> path;
-  while (count > 0) {
+  while (count > 0 && !mesh.lattice->ends(ray.vertex, ray.slot)) {
     path.push_back(ray);
     ray = step(*mesh.lattice, ray);
     if (mesh.lattice->valence(ray.vertex) == 3) break;
@@ -17,7 +17,8 @@ std::vector<Ray> bays(const TMesh& mesh, Ray ray, int count) {
 
 int missing_slot(const TMesh& mesh, int v) {
   constexpr std::int8_t missing[16] = {-1, -1, -1, -1, -1, -1, -1, 3, -1, -1, -1, 2, -1, 1, 0, -1};
-  return mesh.lattice->valence(v) == 4 ? missing[mesh.edges[v]] : -1;
+  const int m = mesh.lattice->valence(v) == 4 ? missing[mesh.edges[v]] : -1;
+  return m >= 0 && !mesh.lattice->ends(v, m) ? m : -1;
 }
 
 std::vector<TJunction> t_junctions(const TMesh& mesh) {

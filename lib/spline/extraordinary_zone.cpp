@@ -7,6 +7,7 @@ namespace tanktread::spline {
 std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings) {
   const Lattice& l = *mesh.lattice;
   std::vector<int> out;
+  if (l.extraordinary.empty()) return out;
   for (Ray e : path) {
     const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot], face = l.face_of(c);
     // The unit edge from (x, y) to (x + dx, y + dy) of the face, on the line with this number.

@@ -9,6 +9,10 @@ void reach_along(const TMesh& mesh, Ray ray, int out[2]) {
   const Lattice& l = *mesh.lattice;
   int found = 0;
   for (int distance = 1; found < 2; ++distance) {
+    if (l.ends(ray.vertex, ray.slot)) {  // the end knot, repeated
+      for (; found < 2; ++found) out[found] = distance - 1;
+      return;
+    }
     ray = step(l, ray);
     if (l.valence(ray.vertex) == 3) {
       out[found] = distance;

@@ -1,7 +1,7 @@
 #include "spline/lattice.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <cmath>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
@@ -18,6 +18,7 @@ void connect(Lattice& l) {
   l.cell.assign(n, {-1, -1, -1, -1});
   l.corner.assign(n, {0, 0, 0, 0});
   l.slot.resize(l.corners.size());
+  l.is_extraordinary.assign(n, 0);
 
   // Incident cells of a vertex, in the order of their numbers.
   std::vector<std::array<int, 4>> around(n, {-1, -1, -1, -1});
@@ -50,7 +51,8 @@ void connect(Lattice& l) {
       const auto& there = l.neighbour[l.neighbour[v][s]];
       l.back[v][s] = std::uint8_t(std::find(there.begin(), there.end(), v) - there.begin());
     }
-    if (l.neighbour[v][3] < 0) l.extraordinary.push_back(v);
+    l.is_extraordinary[v] = l.neighbour[v][3] < 0;
+    if (l.is_extraordinary[v]) l.extraordinary.push_back(v);
   }
   l.point_at.assign(l.faces, {-1, -1, -1, -1});
   for (int i = 0; i < int(l.extraordinary.size()); ++i)
@@ -69,7 +71,7 @@ int room(const Lattice& l, int cell, int turn) {
     case 0:
       return l.units - 1 - l.x_of(cell);
     case 1:
-      return l.units - 1 - l.y_of(cell);
+      return l.rows - 1 - l.y_of(cell);
     case 2:
       return l.x_of(cell);
     default:
@@ -98,6 +100,38 @@ Walker move(const Lattice& l, Walker w, int n, int offset) {
 Walker forward(const Lattice& l, Walker w, int n) { return move(l, w, n, 0); }
 Walker left(const Lattice& l, Walker w, int n) { return move(l, w, n, 1); }
 
+int Lattice::length(int v, int k, int steps) const {
+  if (pad == 0 || k % 2 == 0) return steps;
+  const int y = v / units;
+  return k == 1 ? height(y + steps) - height(y) : height(y) - height(y - steps);
+}
+
+Lattice polar_lattice(int azimuthal_elements, int meridional_elements, int levels) {
+  Lattice l;
+  l.faces = 1;
+  l.base = 1 << levels;
+  l.pad = 1;
+  const int W = l.units = azimuthal_elements * l.base, H = l.rows = meridional_elements * l.base + 2, n = W * (H + 1);
+  l.neighbour.resize(n);
+  l.back.assign(n, {2, 3, 0, 1});
+  l.cell.resize(n);
+  l.corner.assign(n, {0, 1, 2, 3});
+  l.is_extraordinary.assign(n, 0);
+  l.point_at.assign(1, {-1, -1, -1, -1});
+  l.corners.resize(std::size_t(W) * H);
+  l.slot.assign(l.corners.size(), {0, 1, 2, 3});
+  for (int y = 0; y <= H; ++y)
+    for (int x = 0; x < W; ++x) {
+      const int v = y * W + x, right = (x + 1) % W, left_x = (x + W - 1) % W;
+      const double longitude = 2 * M_PI * x / W, latitude = M_PI * (double(l.height(y)) / (H - 2) - 0.5);
+      l.position.emplace_back(std::cos(longitude) * std::cos(latitude), std::sin(longitude) * std::cos(latitude), std::sin(latitude));
+      l.neighbour[v] = {y * W + right, y < H ? v + W : -1, y * W + left_x, y > 0 ? v - W : -1};
+      l.cell[v] = {y < H ? v : -1, y < H ? y * W + left_x : -1, y > 0 ? (y - 1) * W + left_x : -1, y > 0 ? v - W : -1};
+      if (y < H) l.corners[v] = {v, y * W + right, (y + 1) * W + right, v + W};
+    }
+  return l;
+}
+
 Lattice cube_lattice(int elements_per_side, int levels) {
   using Int3 = Eigen::Vector3i;
   // Directions of x and y of each face; their cross product points out.
@@ -107,7 +141,7 @@ Lattice cube_lattice(int elements_per_side, int levels) {
   Lattice l;
   l.faces = 6;
   l.base = 1 << levels;
-  const int R = l.units = elements_per_side * l.base;
+  const int R = l.units = l.rows = elements_per_side * l.base;
   l.corners.resize(std::size_t(6) * R * R);
   l.position.reserve(std::size_t(6) * R * R + 2);
 

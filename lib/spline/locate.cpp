@@ -6,16 +6,27 @@
 namespace tanktread::spline {
 
 Place place(const Lattice& l, int v) {
-  int slot = 0;
+  int slot = l.cell[v][0] < 0 ? 3 : 0;
   for (int s = 1; s < l.valence(v); ++s)
-    if (l.cell[v][s] < l.cell[v][slot]) slot = s;
+    if (l.cell[v][s] >= 0 && l.cell[v][s] < l.cell[v][slot]) slot = s;
   const int c = l.cell[v][slot], k = l.corner[v][slot];
-  return {l.face_of(c), double(l.x_of(c) + (k == 1 || k == 2)) / l.units, double(l.y_of(c) + (k >= 2)) / l.units};
+  return {l.face_of(c), double(l.x_of(c) + (k == 1 || k == 2)) / l.units, double(l.height(l.y_of(c) + (k >= 2))) / (l.rows - 2 * l.pad)};
 }
 
 Place place(const Space& space, const Site& site) {
   const Element& e = space.elements[site.element];
   return {e.face, e.origin[0] + site.s * e.size[0], e.origin[1] + site.t * e.size[1]};
+}
+
+std::vector<int> mesh_elements(const TMesh& mesh, const Space& space) {
+  const Lattice& l = *mesh.lattice;
+  const Tiling tiling = elements(mesh);
+  std::vector<int> out;
+  for (const Element& e : space.elements) {
+    const int x = int((e.origin[0] + e.size[0] / 2) * l.units), y = l.pad + int((e.origin[1] + e.size[1] / 2) * l.height(l.rows));
+    out.push_back(tiling.tile_of_cell[l.cell_at(e.face, x, y)]);
+  }
+  return out;
 }
 
 Locator::Locator(const Space& space) : space_(space) {

@@ -17,6 +17,9 @@ struct Place {
 Place place(const Lattice& lattice, int vertex);
 Place place(const Space& space, const Site& site);
 
+/// For every Bezier element the element of elements(mesh) that holds it: what a mark for one of its Bezier elements marks.
+std::vector<int> mesh_elements(const TMesh& mesh, const Space& space);
+
 /// Finds the element of lowest number whose closure holds a place. Built once for a space, which must outlive it.
 class Locator {
  public:

@@ -2,71 +2,78 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
-#include "spline/knots.hpp"
 #include "spline/pole_transform.hpp"
+#include "spline/tile_functions.hpp"
 
 namespace tanktread::spline {
 namespace {
 
-/// Tensor rows 0 .. r + 2 of m functions each, and which control points they stand for.
-class Rows {
+/// The cosine (or sine) sequence of the base mesh as a periodic cubic spline, and its blossom at three knots (lattice units).
+double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, bool sine) {
+  const int m = l.units / l.base, span = int(std::floor(knots[1] / l.base));
+  double d[4];
+  for (int i = 0; i < 4; ++i) {
+    const double angle = 2 * std::numbers::pi * (span - 1 + i) / m;
+    d[i] = sine ? std::sin(angle) : std::cos(angle);
+  }
+  for (int r = 1; r <= 3; ++r)
+    for (int i = 3; i >= r; --i) {
+      const double x = (knots[r - 1] / l.base - (span - 3 + i)) / (4 - r);
+      d[i] = (1 - x) * d[i - 1] + x * d[i];
+    }
+  return d[3];
+}
+
+/// In which control points' functions an anchor's function appears, and with which weight.
+struct Share {
+  int point;
+  double weight;
+};
+class Shares {
  public:
-  explicit Rows(const PolarMesh& mesh) : mesh_(mesh), replaced_(mesh.poles == PoleRule::c1 ? 2 : 1) {}
-
-  int per_pole() const { return replaced_ == 2 ? 3 : 1; }
-  int kept() const { return mesh_.meridional + 3 - 2 * replaced_; }
-  int n_points() const { return kept() * mesh_.azimuthal + 2 * per_pole(); }
-
-  /// Calls use(point, weight) for the control points in whose functions N_{row, k} appears.
-  template <class Use>
-  void each(int row, int k, const Use& use) const {
-    const int m = mesh_.azimuthal, from_end = mesh_.meridional + 2 - row;
-    if (std::min(row, from_end) >= replaced_) return use(per_pole() + (row - replaced_) * m + (k + m) % m, 1.0);
-    const int pole = row < from_end ? 0 : per_pole() + kept() * m;
-    if (replaced_ == 1) return use(pole, 1.0);
-    for (int l = 0; l < 3; ++l) {
-      const double angle = 2 * std::numbers::pi * (double(k) / m - l / 3.0);
-      use(pole + l, (std::min(row, from_end) == 0 ? 1 : 1 + std::cos(angle)) / 3);
+  Shares(const TMesh& mesh, const TileFunctions& f, PoleRule poles) : per_pole_(poles == PoleRule::c1 ? 3 : 1), shares_(f.anchor.size()) {
+    const Lattice& l = *mesh.lattice;
+    const int replaced = poles == PoleRule::c1 ? 2 : 1;
+    auto to_end = [&](int v) { return std::min(v / l.units, l.rows - v / l.units); };
+    int next = per_pole_;
+    for (std::size_t a = 0; a < f.anchor.size(); ++a)
+      if (to_end(f.anchor[a]) >= replaced) shares_[a] = {{next++, 1.0}};
+    n_points_ = next + per_pole_;
+    for (std::size_t a = 0; a < f.anchor.size(); ++a) {
+      const int v = f.anchor[a], first = v / l.units < l.rows / 2 ? 0 : next;
+      if (to_end(v) >= replaced) continue;
+      if (per_pole_ == 1) {
+        shares_[a] = {{first, 1.0}};
+        continue;
+      }
+      const bool outermost = to_end(v) == 0, behind = first == 0;
+      const auto& reach = f.knots[a].reach;
+      const double x = v % l.units, height = double(l.length(v, behind ? 1 : 3, reach[behind ? 1 : 3][0])) / l.base;
+      const std::array<double, 3> knots{x - reach[2][0], x, x + reach[0][0]};
+      const double c = outermost ? 0 : height * blossom_of_circle(l, knots, false),
+                   s = outermost ? 0 : height * blossom_of_circle(l, knots, true);
+      for (int k = 0; k < 3; ++k) {
+        const double corner = 2 * std::numbers::pi * k / 3;
+        shares_[a].push_back({first + k, (1 + c * std::cos(corner) + s * std::sin(corner)) / 3});
+      }
     }
   }
 
+  const std::vector<Share>& operator[](int anchor) const { return shares_[anchor]; }
+  int n_points() const { return n_points_; }
+  int per_pole() const { return per_pole_; }
+
  private:
-  const PolarMesh& mesh_;
-  int replaced_;  // rows at either end
+  int per_pole_, n_points_ = 0;
+  std::vector<std::vector<Share>> shares_;
 };
 
 /// Knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
 double open_knot(int i, int r) { return std::clamp(i - 3, 0, r); }
-
-Element tensor_element(const PolarMesh& mesh, const Rows& rows, int i, int j) {
-  const int m = mesh.azimuthal, r = mesh.meridional;
-  std::map<int, Eigen::Matrix<double, 1, 16>> functions;
-  for (int row = j; row < j + 4; ++row) {
-    std::array<double, 5> knots;
-    for (int k = 0; k < 5; ++k) knots[k] = open_knot(row + k, r);
-    const auto along = b_spline_on(knots, j, j + 1);
-    for (int k = i - 1; k <= i + 2; ++k) {
-      const double at = k;
-      const auto around = b_spline_on({at - 2, at - 1, at, at + 1, at + 2}, i, i + 1);
-      rows.each(row, k, [&](int point, double weight) {
-        auto& function = functions.try_emplace(point, Eigen::Matrix<double, 1, 16>::Zero()).first->second;
-        for (int b = 0; b < 16; ++b) function[b] += weight * around[b % 4] * along[b / 4];
-      });
-    }
-  }
-  Element e;
-  e.extraction.resize(Eigen::Index(functions.size()), 16);
-  for (const auto& [point, function] : functions) {
-    e.extraction.row(Eigen::Index(e.points.size())) = function;
-    e.points.push_back(point);
-  }
-  e.origin = {double(i) / m, double(j) / r};
-  e.size = {1.0 / m, 1.0 / r};
-  return e;
-}
 
 /// Bezier points in the order of the transform, with the pole at u = 1, from those of the element: Q_(v u) = element[order[4 v + u]].
 std::array<int, 16> seen_from_base(bool ahead) {
@@ -79,7 +86,7 @@ std::array<int, 16> seen_from_base(bool ahead) {
 /// Replaces the elements at the poles by pieces and the sites on them by sites on the pieces.
 class Transform {
  public:
-  explicit Transform(const PolarMesh& mesh) : pieces_(pole_pieces(mesh.subdivisions)) {}
+  explicit Transform(int subdivisions) : pieces_(pole_pieces(subdivisions)) {}
 
   void add_pieces(const Element& e, bool ahead, std::vector<Element>& out) const {
     const auto order = seen_from_base(ahead);
@@ -104,27 +111,77 @@ class Transform {
         out.push_back({first + int(k), (*at)[0], (*at)[1]});
   }
 
-  int size() const { return int(pieces_.size()); }
-
  private:
   std::vector<PolePiece> pieces_;
 };
 
-/// Elements i, j of the tensor grid whose closure holds a place.
-struct GridSite {
-  int i, j;
-  double s, t;
-};
-std::vector<GridSite> grid_sites(const PolarMesh& mesh, const PolarAnchor& at) {
-  const int m = mesh.azimuthal, r = mesh.meridional;
-  std::vector<GridSite> out;
-  if (at.u == 0 || at.u == r) {
-    for (int i = 0; i < m; ++i) out.push_back({i, at.u == 0 ? 0 : r - 1, 0.5, at.u == 0 ? 0.0 : 1.0});
-    return out;
+/// Tiles whose closure holds a place (lattice units, y from the pole behind).
+std::vector<Site> tiles_at(const Lattice& l, const Tiling& tiling, double x, double y) {
+  std::vector<Site> out;
+  for (int j : {int(std::ceil(y)) - 1, int(std::floor(y))})
+    for (int i : {int(std::ceil(x)) - 1, int(std::floor(x))}) {
+      const int tile = tiling.tile_of_cell[l.cell_at(0, (i + l.units) % l.units, j + l.pad)];
+      if (std::any_of(out.begin(), out.end(), [&](const Site& s) { return s.element == tile; })) continue;
+      const Rectangle& r = tiling.tiles[tile];
+      out.push_back({tile, ((i + l.units) % l.units - r.x + x - i) / r.width, (j + l.pad - r.y + y - j) / r.height});
+    }
+  return out;
+}
+
+/// The pole itself: on a whole side of every tile there.
+std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahead) {
+  std::vector<Site> out;
+  for (int k = 0; k < int(tiling.tiles.size()); ++k) {
+    const Rectangle& r = tiling.tiles[k];
+    if (ahead ? r.y + r.height == l.rows - l.pad : r.y == l.pad) out.push_back({k, 0.5, ahead ? 1.0 : 0.0});
   }
-  const int i = int(at.v), j = int(at.u);
-  for (int y = at.u == j ? j - 1 : j; y <= j; ++y)
-    for (int x = at.v == i ? i - 1 : i; x <= i; ++x) out.push_back({(x + m) % m, y, at.v - x, at.u - y});
+  return out;
+}
+
+/// Generalised Greville sites of the control points on the tiles.
+std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunctions& f, const Shares& shares) {
+  const Lattice& l = *mesh.lattice;
+  std::vector<std::vector<Site>> out(shares.n_points());
+  for (std::size_t a = 0; a < f.anchor.size(); ++a)
+    if (shares[int(a)].size() == 1 && shares[int(a)][0].point >= shares.per_pole() &&
+        shares[int(a)][0].point < shares.n_points() - shares.per_pole())
+      out[shares[int(a)][0].point] = tiles_around(mesh, f.tiling, greville(mesh, f.anchor[a], f.knots[a]));
+  for (bool ahead : {false, true}) {
+    const int first = ahead ? shares.n_points() - shares.per_pole() : 0;
+    if (shares.per_pole() == 1) {
+      out[first] = tiles_at_pole(l, f.tiling, ahead);
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double x = k * l.units / 3.0;
+      const int cell = l.cell_at(0, int(x), ahead ? l.rows - l.pad - 1 : l.pad);
+      const double from_pole = c1_site * f.tiling.tiles[f.tiling.tile_of_cell[cell]].height;
+      out[first + k] = tiles_at(l, f.tiling, x, ahead ? l.height(l.rows) - from_pole : from_pole);
+    }
+  }
+  return out;
+}
+
+/// The tiles as elements with all their functions.
+std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, const Shares& shares) {
+  std::vector<Element> out(f.tiling.tiles.size());
+  std::vector<std::map<int, Eigen::Matrix<double, 1, 16>>> functions(out.size());
+  for (const Contribution& c : f.entries)
+    for (const Share& share : shares[c.anchor])
+      functions[c.tile].try_emplace(share.point, Eigen::Matrix<double, 1, 16>::Zero()).first->second +=
+          share.weight * Eigen::Map<const Eigen::Matrix<double, 1, 16>>(c.row.data());
+  const double height = l.height(l.rows);
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    const Rectangle& r = f.tiling.tiles[t];
+    Element& e = out[t];
+    e.extraction.resize(Eigen::Index(functions[t].size()), 16);
+    for (const auto& [point, row] : functions[t]) {
+      e.extraction.row(Eigen::Index(e.points.size())) = row;
+      e.points.push_back(point);
+    }
+    e.origin = {double(r.x) / l.units, l.height(r.y) / height};
+    e.size = {double(r.width) / l.units, r.height / height};
+  }
   return out;
 }
 
@@ -151,38 +208,52 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh) {
   return out;
 }
 
-Space space(const PolarMesh& mesh) {
-  const int m = mesh.azimuthal, r = mesh.meridional;
-  const Rows rows(mesh);
-  Space out;
-  out.n_points = rows.n_points();
-  std::vector<Element> at_poles;
-  const bool transformed = mesh.poles == PoleRule::bezier_transform;
-  for (int j = 0; j < r; ++j)
-    for (int i = 0; i < m; ++i) {
-      const bool at_pole = j == 0 || j == r - 1;
-      (transformed && at_pole ? at_poles : out.elements).push_back(tensor_element(mesh, rows, i, j));
-    }
-  const int regular = int(out.elements.size());
+Space space(const PolarMesh& mesh) { return space(polar(mesh.azimuthal, mesh.meridional), mesh.poles, mesh.subdivisions); }
 
-  const Transform transform(mesh);
-  for (std::size_t k = 0; k < at_poles.size(); ++k) transform.add_pieces(at_poles[k], int(k) >= m, out.elements);
-  for (const PolarAnchor& anchor : anchors(mesh)) {
-    std::vector<Site> sites;
-    for (const auto& [i, j, s, t] : grid_sites(mesh, anchor)) {
-      if (!transformed)
-        sites.push_back({j * m + i, s, t});
-      else if (j > 0 && j < r - 1)
-        sites.push_back({(j - 1) * m + i, s, t});
+Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
+  const Lattice& l = *mesh.lattice;
+  const TileFunctions f = tile_functions(mesh);
+  const Shares shares(mesh, f, poles);
+  Space out;
+  out.n_points = shares.n_points();
+  out.elements = tile_elements(l, f, shares);
+  out.collocation = sites_on_tiles(mesh, f, shares);
+  const bool transformed = poles == PoleRule::bezier_transform;
+  if (transformed) {
+    const Transform transform(subdivisions);
+    std::vector<Element> kept, pieces;
+    std::vector<int> place(out.elements.size());  // among the kept; -1 - place among the pieces
+    std::vector<bool> at_end(out.elements.size());
+    for (std::size_t t = 0; t < out.elements.size(); ++t) {
+      const Rectangle& r = f.tiling.tiles[t];
+      const bool behind = r.y == l.pad, ahead = r.y + r.height == l.rows - l.pad;
+      at_end[t] = ahead;
+      place[t] = behind || ahead ? -1 - int(pieces.size()) : int(kept.size());
+      if (behind || ahead)
+        transform.add_pieces(out.elements[t], ahead, pieces);
       else
-        transform.add_sites(s, t, j > 0, regular + (j > 0 ? m + i : i) * transform.size(), sites);
+        kept.push_back(std::move(out.elements[t]));
     }
-    std::sort(sites.begin(), sites.end(), [](const Site& x, const Site& y) { return x.element < y.element; });
-    out.collocation.push_back(std::move(sites));
+    const int regular = int(kept.size());
+    out.elements = std::move(kept);
+    std::move(pieces.begin(), pieces.end(), std::back_inserter(out.elements));
+    for (auto& sites : out.collocation) {
+      std::vector<Site> found;
+      for (const Site& s : sites) {
+        if (place[s.element] >= 0)
+          found.push_back({place[s.element], s.s, s.t});
+        else
+          transform.add_sites(s.s, s.t, at_end[s.element], regular - 1 - place[s.element], found);
+      }
+      sites = std::move(found);
+    }
   }
-  out.description = std::to_string(out.elements.size()) + " Bezier elements, " + std::to_string(m) + " around and " + std::to_string(r) +
-                    " from pole to pole, " + std::to_string(out.n_points) + " control points, " + name(mesh.poles);
-  if (transformed) out.description += " (" + std::to_string(1 << mesh.subdivisions) + " cuts)";
+  for (auto& sites : out.collocation)
+    std::sort(sites.begin(), sites.end(), [](const Site& x, const Site& y) { return x.element < y.element; });
+  out.description = std::to_string(out.elements.size()) + " Bezier elements, base mesh " + std::to_string(l.units / l.base) +
+                    " around and " + std::to_string(l.height(l.rows) / l.base) + " from pole to pole, " + std::to_string(out.n_points) +
+                    " control points, " + name(poles);
+  if (transformed) out.description += " (" + std::to_string(1 << subdivisions) + " cuts)";
   return out;
 }
 

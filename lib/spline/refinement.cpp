@@ -10,13 +10,23 @@ namespace tanktread::spline {
 
 namespace {
 
+/// A line that arrives at the end knot goes on through the row of no height to the border.
+void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
+  while (!l.ends(ray.vertex, ray.slot) && l.length(ray.vertex, ray.slot, 1) == 0) {
+    path.push_back(ray);
+    ray = step(l, ray);
+  }
+}
+
 /// Unit edges of the line that cuts a tile in halves: across s from its bottom to its top, or across t from left to right.
 std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
   const int cell = across_s ? l.cell_at(r.face, r.x + r.width / 2, r.y) : l.cell_at(r.face, r.x, r.y + r.height / 2);
   Ray ray{l.corners[cell][0], l.slot[cell][0]};
   if (across_s) ray.slot = (ray.slot + 1) & 3;
   std::vector<Ray> path;
+  if (across_s && !l.ends(ray.vertex, 3) && l.length(ray.vertex, 3, 1) == 0) path.push_back({ray.vertex, 3});
   for (int i = 0; i < (across_s ? r.height : r.width); ++i, ray = step(l, ray)) path.push_back(ray);
+  run_out(l, ray, path);
   return path;
 }
 
@@ -28,6 +38,7 @@ std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
     path.push_back(r);
     r = step(*mesh.lattice, r);
   } while (mesh.lattice->valence(r.vertex) == 4 && !touches(mesh, r));
+  run_out(*mesh.lattice, r, path);
   return path;
 }
 

@@ -1,5 +1,8 @@
 #include "spline/t_mesh.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include "base/errors.hpp"
 #include "spline/extension.hpp"
 
@@ -12,7 +15,7 @@ Tiling tiling(const Lattice& l, const std::vector<std::uint8_t>& edges) {
   Tiling t;
   t.tile_of_cell.assign(l.cells(), -1);
   for (int c = 0; c < l.cells(); ++c) {
-    if (t.tile_of_cell[c] >= 0) continue;
+    if (t.tile_of_cell[c] >= 0 || l.is_flat(c)) continue;
     int width = 1, height = 1;
     while (!present(c + width - 1, 1)) ++width;
     while (!present(c + (height - 1) * l.units, 2)) ++height;
@@ -23,21 +26,15 @@ Tiling tiling(const Lattice& l, const std::vector<std::uint8_t>& edges) {
   return t;
 }
 
-}  // namespace
-
-TMesh cube(int elements_per_side, int levels) {
-  if (elements_per_side < 3)
-    throw UserError("A cube mesh needs at least 3 elements per side, " + std::to_string(elements_per_side) + " were asked for.");
-  if (levels < 0 || levels > 12 || double(elements_per_side) * (1 << levels) > 1536)
-    throw UserError("A cube mesh of " + std::to_string(elements_per_side) + " elements per side with " + std::to_string(levels) +
-                    " levels of refinement is too fine: elements per side times 2^levels may be at most 1536.");
+/// All lines of the base mesh.
+TMesh uniform(Lattice lattice) {
   TMesh mesh;
-  mesh.lattice = std::make_shared<Lattice>(cube_lattice(elements_per_side, levels));
+  mesh.lattice = std::make_shared<Lattice>(std::move(lattice));
   const Lattice& l = *mesh.lattice;
   mesh.edges.assign(l.vertices(), 0);
   for (int c = 0; c < l.cells(); ++c)
     for (int k = 0; k < 4; ++k) {
-      const int line = k % 2 ? l.x_of(c) + (k == 1) : l.y_of(c) + (k == 2);
+      const int line = k % 2 ? l.x_of(c) + (k == 1) : l.height(l.y_of(c) + (k == 2));
       if (line % l.base) continue;
       const int v = l.corners[c][k], s = l.slot[c][k];
       mesh.edges[v] |= std::uint8_t(1 << s);
@@ -47,6 +44,27 @@ TMesh cube(int elements_per_side, int levels) {
   return mesh;
 }
 
+}  // namespace
+
+TMesh cube(int elements_per_side, int levels) {
+  if (elements_per_side < 3)
+    throw UserError("A cube mesh needs at least 3 elements per side, " + std::to_string(elements_per_side) + " were asked for.");
+  if (levels < 0 || levels > 12 || double(elements_per_side) * (1 << levels) > 1536)
+    throw UserError("A cube mesh of " + std::to_string(elements_per_side) + " elements per side with " + std::to_string(levels) +
+                    " levels of refinement is too fine: elements per side times 2^levels may be at most 1536.");
+  return uniform(cube_lattice(elements_per_side, levels));
+}
+
+TMesh polar(int azimuthal_elements, int meridional_elements, int levels) {
+  if (azimuthal_elements < 4 || meridional_elements < 4)
+    throw UserError("A polar mesh needs at least 4 elements in azimuth and 4 along the meridian, " + std::to_string(azimuthal_elements) +
+                    " and " + std::to_string(meridional_elements) + " were asked for.");
+  if (levels < 0 || levels > 12 || double(std::max(azimuthal_elements, meridional_elements)) * (1 << levels) > 4096)
+    throw UserError("A polar mesh of " + std::to_string(azimuthal_elements) + " by " + std::to_string(meridional_elements) +
+                    " elements with " + std::to_string(levels) +
+                    " levels of refinement is too fine: elements times 2^levels may be at most 4096.");
+  return uniform(polar_lattice(azimuthal_elements, meridional_elements, levels));
+}
 bool is_anchor(const TMesh& mesh, int v) { return (mesh.edges[v] & 5) && (mesh.edges[v] & 10); }
 
 std::vector<int> anchors(const TMesh& mesh) {

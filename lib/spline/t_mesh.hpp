@@ -7,6 +7,7 @@
 
 namespace tanktread::spline {
 
+/// A checkpoint of a mesh is `edges` and `spacing`; put into the mesh that cube() or polar() makes from the same arguments, they restore it.
 struct TMesh {
   std::shared_ptr<const Lattice> lattice;
   std::vector<std::uint8_t> edges;  ///< of a lattice vertex: bit k set when the unit edge in slot k is there; the same at both ends
@@ -19,6 +20,10 @@ struct TMesh {
 /// The uniform mesh on the surface of a cube: n^2 elements a face, n >= 3, and room for `levels` bisections of each element.
 /// Throws UserError when n < 3 (rings of extraordinary points would meet) or when the lattice would not fit into memory.
 TMesh cube(int elements_per_side, int levels = 0);
+
+/// The uniform mesh on a sphere with two poles: m elements around, r from pole to pole, and room for `levels` bisections; spaces by polar_space.
+/// Throws UserError when m < 4 or r < 4, or when the lattice would not fit into memory.
+TMesh polar(int azimuthal_elements, int meridional_elements, int levels = 0);
 
 /// Whether a control point sits at the vertex: edges on both axes (T-junctions and extraordinary points included).
 bool is_anchor(const TMesh& mesh, int vertex);

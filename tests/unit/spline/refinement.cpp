@@ -6,6 +6,7 @@
 
 #include "sequences.hpp"
 #include "spline/knots.hpp"
+#include "spline/locate.hpp"
 
 namespace tanktread::spline {
 namespace {
@@ -117,6 +118,19 @@ TEST(Refinement, OneCutAcrossSHalvesTheElementAcrossSOnly) {
   EXPECT_EQ(after.tiles.size(), before.tiles.size() + 1);
   EXPECT_EQ(anchors(cut).size(), anchors(mesh).size() + 2);
   EXPECT_EQ(t_junctions(cut).size(), 2u);
+}
+
+TEST(Refinement, EveryBezierElementKnowsItsMeshElement) {
+  std::mt19937 generator(4);
+  const TMesh mesh = refine(cube(4, 2), random_marks(cube(4, 2), 6, 0, generator)).mesh;
+  const Space s = space(mesh, rule);
+  const Tiling tiling = elements(mesh);
+  const double unit = 1.0 / mesh.lattice->units;
+  const auto holder = mesh_elements(mesh, s);
+  std::vector<double> covered(tiling.tiles.size(), 0);
+  for (std::size_t k = 0; k < s.elements.size(); ++k) covered[holder[k]] += s.elements[k].size[0] * s.elements[k].size[1];
+  for (std::size_t i = 0; i < covered.size(); ++i)
+    EXPECT_NEAR(covered[i], tiling.tiles[i].width * tiling.tiles[i].height * unit * unit, 1e-15);
 }
 
 TEST(Refinement, GrevilleSitesLeaveTheVerticesAndAllTheirElementsAgree) {

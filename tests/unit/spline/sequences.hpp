@@ -2,6 +2,7 @@
 // Random refinement sequences and what must hold after each step.
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 
@@ -74,8 +75,12 @@ inline std::vector<Mark> random_marks(const TMesh& mesh, int scattered, int deep
   return marks;
 }
 
-/// Whether every element that is no piece at an extraordinary point has sixteen functions.
-inline int wrong_counts(const TMesh& mesh, const Space& s) {
+/// The space of a sequence: Catmull-Clark on the cube, a pole rule on polar meshes.
+using SpaceOf = std::function<Space(const TMesh&)>;
+inline Space catmull_clark_space(const TMesh& mesh) { return space(mesh, ExtraordinaryRule::catmull_clark); }
+
+/// Regular elements with other than sixteen functions: those that are no piece at an extraordinary point and without functions of a pole.
+inline int wrong_counts(const TMesh& mesh, const Space& s, int per_pole = 0) {
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = bezier_mesh(mesh);
   std::vector<bool> irregular(tiling.tiles.size(), false);
@@ -83,8 +88,9 @@ inline int wrong_counts(const TMesh& mesh, const Space& s) {
     for (int k = 0; k < 3; ++k) irregular[tiling.tile_of_cell[l.cell[v][k]]] = true;
   int wrong = 0;
   for (const Element& e : s.elements) {
-    const int x = int((e.origin[0] + e.size[0] / 2) * l.units), y = int((e.origin[1] + e.size[1] / 2) * l.units);
-    if (!irregular[tiling.tile_of_cell[l.cell_at(e.face, x, y)]] && e.points.size() != 16) ++wrong;
+    const int x = int((e.origin[0] + e.size[0] / 2) * l.units), y = l.pad + int((e.origin[1] + e.size[1] / 2) * l.height(l.rows));
+    const bool at_pole = std::any_of(e.points.begin(), e.points.end(), [&](int p) { return p < per_pole || p >= s.n_points - per_pole; });
+    if (!at_pole && !irregular[tiling.tile_of_cell[l.cell_at(e.face, x, y)]] && e.points.size() != 16) ++wrong;
   }
   return wrong;
 }
@@ -95,21 +101,23 @@ struct SequenceOptions {
   int deep = 1;            // marks among the smallest elements
   bool condition = false;  // of the last space
   RepairRules rules;
+  SpaceOf space = catmull_clark_space;
+  int per_pole = 0;  // functions of a pole, the first and the last control points
 };
 
 /// One sequence; a fresh random field in every step. Carrying one field through all steps would only test that the first space is contained
 /// in all others.
 inline void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& options, Findings& found) {
   std::mt19937 generator(seed);
-  auto now = std::make_unique<Space>(space(mesh, ExtraordinaryRule::catmull_clark));
+  auto now = std::make_unique<Space>(options.space(mesh));
   for (int step = 0; step < options.steps; ++step) {
     const int scattered = std::max(1, int(options.fraction * double(elements(mesh).tiles.size())));
     mesh = refine(mesh, random_marks(mesh, scattered, options.deep, generator), options.rules).mesh;
-    auto next = std::make_unique<Space>(space(mesh, ExtraordinaryRule::catmull_clark));
+    auto next = std::make_unique<Space>(options.space(mesh));
     const Transfer transfer(*now, *next);
     found.residual = std::max(found.residual, transfer(random_net(now->n_points, unsigned(generator()))).residual);
     found.straddling += transfer.straddling();
-    found.wrong_counts += wrong_counts(mesh, *next);
+    found.wrong_counts += wrong_counts(mesh, *next, options.per_pole);
     for (const Element& e : next->elements)
       found.unity = std::max(found.unity, (e.extraction.colwise().sum().array() - 1).abs().maxCoeff());
     ++found.steps;

@@ -1,0 +1,160 @@
+#include "spline/tile_functions.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace tanktread::spline {
+
+namespace {
+
+int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.width; }
+
+/// Cells from `cell` to the near side (behind) of its tile, looking in direction `turn`.
+int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
+  switch (turn & 3) {
+    case 0:
+      return l.x_of(cell) - r.x;
+    case 1:
+      return l.y_of(cell) - r.y;
+    case 2:
+      return r.x + r.width - 1 - l.x_of(cell);
+    default:
+      return r.y + r.height - 1 - l.y_of(cell);
+  }
+}
+
+/// The outer product of coefficients along forward and left, in the element's own s, t.
+std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::array<double, 4>& aside, int turn) {
+  std::array<double, 16> row;
+  for (int b = 0; b < 4; ++b)
+    for (int a = 0; a < 4; ++a) {
+      const int i = turn == 0 ? a : turn == 1 ? 3 - b : turn == 2 ? 3 - a : b;
+      const int j = turn == 0 ? b : turn == 1 ? a : turn == 2 ? 3 - b : 3 - a;
+      row[4 * j + i] = ahead[a] * aside[b];
+    }
+  return row;
+}
+
+struct Builder {
+  const TMesh& mesh;
+  const Lattice& l;
+  TileFunctions& out;
+
+  /// The tile of a cell; a cell of no height is one by itself.
+  Rectangle tile(int cell, int& number) const {
+    number = out.tiling.tile_of_cell[cell];
+    return number < 0 ? Rectangle{l.face_of(cell), l.x_of(cell), l.y_of(cell), 1, 1} : out.tiling.tiles[number];
+  }
+
+  /// Function A on the regular tiles of the quadrant between slots q and q + 1 of its anchor.
+  void quadrant(int A, int q) {
+    const int v = out.anchor[A], next = (q + 1) % l.valence(v);
+    if (l.cell[v][q] < 0) return;
+    const bool mirrored = l.valence(v) == 3;
+    const Knots& k = out.knots[A];
+    const int* ahead = k.reach[q];
+    const int* aside = k.reach[next];
+    auto knots_of = [&](int slot) {
+      const int *plus = k.reach[slot], *minus = mirrored ? plus : k.reach[(slot + 2) & 3];
+      const int back = mirrored ? slot : (slot + 2) & 3;
+      return std::array<double, 5>{-double(l.length(v, back, minus[1])), -double(l.length(v, back, minus[0])), 0.0,
+                                   double(l.length(v, slot, plus[0])), double(l.length(v, slot, plus[1]))};
+    };
+    const auto ka = knots_of(q), kb = knots_of(next);
+
+    Walker row{l.cell[v][q], l.corner[v][q]};
+    for (int j = 0; j < aside[1];) {
+      int up = aside[1] - j;
+      Walker w = row;
+      for (int i = 0; i < ahead[1];) {
+        int number;
+        const Rectangle r = tile(w.cell, number);
+        const int along = width_along(r, w.turn), across = width_along(r, w.turn + 1);
+        const int below = behind(l, r, w.cell, w.turn + 1), rest = along - behind(l, r, w.cell, w.turn);
+        if (below == 0 && rest == along && number >= 0 && out.irregular[number] < 0) {
+          const auto a = b_spline_on(ka, l.length(v, q, i), l.length(v, q, i + along));
+          const auto b = b_spline_on(kb, l.length(v, next, j), l.length(v, next, j + across));
+          out.entries.push_back({number, A, in_frame(a, b, w.turn)});
+        }
+        up = std::min(up, across - below);
+        i += rest;
+        if (i < ahead[1]) w = forward(l, w, rest);
+      }
+      j += up;
+      if (j < aside[1]) row = left(l, row, up);
+    }
+  }
+};
+
+}  // namespace
+
+TileFunctions tile_functions(const TMesh& mesh) {
+  const Lattice& l = *mesh.lattice;
+  TileFunctions out;
+  out.tiling = bezier_mesh(mesh);
+  out.anchor = anchors(mesh);
+  out.irregular.assign(out.tiling.tiles.size(), -1);
+  for (int v : l.extraordinary)
+    for (int s = 0; s < 3; ++s) out.irregular[out.tiling.tile_of_cell[l.cell[v][s]]] = l.corner[v][s];
+  out.entries.reserve(17 * out.anchor.size());
+  out.knots.reserve(out.anchor.size());
+  for (int v : out.anchor) out.knots.push_back(knots(mesh, v));
+  Builder builder{mesh, l, out};
+  for (int A = 0; A < int(out.anchor.size()); ++A)
+    for (int q = 0; q < l.valence(out.anchor[A]); ++q) builder.quadrant(A, q);
+  return out;
+}
+
+CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
+  const Lattice& l = *mesh.lattice;
+  if (l.valence(v) == 3) {
+    const int c = l.corner[v][0];
+    return {l.cell[v][0], c == 1 || c == 2 ? 3 : 0, c >= 2 ? 3 : 0};
+  }
+  // Offsets along slots 0 and 1, in thirds of a unit.
+  const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
+  const int o1 = l.length(v, 1, k.reach[1][0]) - l.length(v, 3, k.reach[3][0]);
+  if (l.pad > 0) {  // one face without turns
+    const int x = (3 * (v % l.units) + o0 + 3 * l.units) % (3 * l.units), y = 3 * l.height(v / l.units) + o1;
+    const int row = std::min(y / 3, l.rows - 2 * l.pad - 1);
+    return {l.cell_at(0, x / 3, row + l.pad), x % 3, y - 3 * row};
+  }
+  const int q = o0 >= 0 ? (o1 >= 0 ? 0 : 3) : (o1 >= 0 ? 1 : 2);
+  const int ahead = std::abs(q & 1 ? o1 : o0), aside = std::abs(q & 1 ? o0 : o1);
+  const Walker w = left(l, forward(l, {l.cell[v][q], l.corner[v][q]}, ahead / 3), aside / 3);
+  const int a = ahead % 3, b = aside % 3;
+  const int at[4][2] = {{a, b}, {3 - b, a}, {3 - a, 3 - b}, {b, 3 - a}};
+  return {w.cell, at[w.turn][0], at[w.turn][1]};
+}
+
+std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const CellPoint& p) {
+  const Lattice& l = *mesh.lattice;
+  std::vector<Site> sites;
+  auto add = [&](int cell, int x, int y) {
+    const int tile = cell < 0 ? -1 : tiling.tile_of_cell[cell];
+    if (tile < 0 || std::any_of(sites.begin(), sites.end(), [&](const Site& s) { return s.element == tile; })) return;
+    const Rectangle& r = tiling.tiles[tile];
+    sites.push_back({tile, (3 * (l.x_of(cell) - r.x) + x) / (3.0 * r.width), (3 * (l.y_of(cell) - r.y) + y) / (3.0 * r.height)});
+  };
+  const bool on_vertical = p.x % 3 == 0, on_horizontal = p.y % 3 == 0;
+  if (on_vertical && on_horizontal) {
+    const int w = l.corners[p.cell][p.y == 0 ? (p.x == 0 ? 0 : 1) : (p.x == 0 ? 3 : 2)];
+    for (int s = 0; s < l.valence(w); ++s)
+      add(l.cell[w][s], l.corner[w][s] == 1 || l.corner[w][s] == 2 ? 3 : 0, l.corner[w][s] >= 2 ? 3 : 0);
+  } else {
+    add(p.cell, p.x, p.y);
+    if (on_vertical || on_horizontal) {
+      // The cell over the side, where the side runs the other way round.
+      const int edge = on_vertical ? (p.x == 0 ? 3 : 1) : (p.y == 0 ? 0 : 2);
+      const int along = edge == 0 ? p.x : edge == 1 ? p.y : edge == 2 ? 3 - p.x : 3 - p.y, back = 3 - along;
+      const int u = l.corners[p.cell][edge], s = (l.slot[p.cell][edge] + l.valence(u) - 1) % l.valence(u);
+      const int other = (l.corner[u][s] + 3) & 3;
+      const int at[4][2] = {{back, 0}, {3, back}, {3 - back, 3}, {0, 3 - back}};
+      add(l.cell[u][s], at[other][0], at[other][1]);
+    }
+  }
+  std::sort(sites.begin(), sites.end(), [](const Site& x, const Site& y) { return x.element < y.element; });
+  return sites;
+}
+
+}  // namespace tanktread::spline
