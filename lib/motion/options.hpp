@@ -23,7 +23,7 @@ struct TimeOptions {
   bool count_euler_step = true;             ///< whether the Euler step is the first sub-iteration of crank-nicolson
   double newton_tolerance = 0.05;          ///< end of the quasi-Newton iteration, in parts of `tolerance`
   int newton_iterations = 6;               ///< most iterations of a stage before the step is halved
-  double linear_tolerance = 0.03;          ///< relative residual of its linear solves
+  double linear_tolerance = 0.1;           ///< relative residual of its linear solves
   double contraction_limit = 0.3;          ///< contraction rate above which the frozen layer operator is assembled anew
   int predictor_order = 2;                 ///< order of the polynomial through known slopes that a stage starts from
 

@@ -12,7 +12,7 @@ namespace {
 
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
-const double worth_assembling = 0.5;  // root mean square displacement over R_C since the last assembly
+const double worth_assembling = 0.8;  // root mean square displacement over R_C since the last assembly
 
 /// The controller's memory as it stands in State::memory.
 struct Memory {
