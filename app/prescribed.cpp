@@ -3,9 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
-#include "app/exact_body.hpp"
 #include "app/results.hpp"
 #include "base/errors.hpp"
 #include "coupling/rigid_body.hpp"
@@ -14,18 +12,6 @@
 namespace tanktread {
 
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-/// Force and torque on the body, and the traction that they are the integrals of.
-struct Solution {
-  Net density;         ///< force per area on the fluid; the traction on the body is its negative
-  Vec3 force, torque;  ///< on the body, about its centre
-  Vec3 integral;       ///< force as the integral of the traction alone
-  int iterations = 0;  ///< of the solver, for this traction
-  double error = unknown, integral_error = unknown, torque_error = unknown;
-  SurfaceErrors surface{unknown, unknown, 0};
-};
 
 /// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque.
 Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const Net& u, const Net& f, const Vec3& centre) {
@@ -38,15 +24,17 @@ Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const Net& u, 
   return body.residual_work(u, f, z);
 }
 
-double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : unknown; }
+double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
 
-Solution solve(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases) {
+}  // namespace
+
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases) {
   const Vec3& centre = scene.particle.shape.center;
   const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
   Net u = coupling::rigid_velocity(body.rest, motion, centre);
   for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) -= body.flow.velocity(body.rest.row(a).transpose()).transpose();
 
-  Solution s;
+  RigidSolution s;
   s.density = resistance.force_density(u);
   s.iterations = resistance.last_iterations();
   s.integral = s.force = -resistance.force(s.density);
@@ -66,6 +54,8 @@ Solution solve(const Scene& scene, const Body& body, coupling::Resistance& resis
   return s;
 }
 
+namespace {
+
 /// Columns and their values side by side; errors only where they are known.
 struct Row {
   std::vector<Column> columns;
@@ -77,7 +67,7 @@ struct Row {
   }
 };
 
-Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const Solution& s, double seconds) {
+Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s, double seconds) {
   const surface::Measures measures = surface::measures(body.space, body.rest);
   const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
   Row row;
@@ -106,7 +96,7 @@ Row row(const Scene& scene, const Body& body, const coupling::Resistance& resist
   return row;
 }
 
-Portrait portrait(const Scene& scene, const Body& body, const Solution& s) {
+Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) {
   const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
   return {body.rest, [&body, &s, exact = exact_body(scene, motion)](const output::LagrangeMesh& mesh) {
             const Eigen::MatrixXd f = output::nodal_values(body.space, mesh, s.density);
@@ -153,7 +143,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(scene, ranks.size()).c_str(), stdout);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases);
-  const Solution solution = solve(scene, body, resistance, phases);
+  const RigidSolution solution = rigid_solution(scene, body, resistance, phases);
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const Row only = row(scene, body, resistance, solution, seconds);
 

@@ -1,11 +1,30 @@
 #pragma once
 // The steady problem of a rigid body that moves as the deck says.
 
+#include <limits>
+
 #include "app/body.hpp"
+#include "app/exact_body.hpp"
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
+#include "coupling/resistance.hpp"
 
 namespace tanktread {
+
+/// Force and torque on the body, the traction that they are the integrals of, and errors; not a number where no exact solution is known.
+struct RigidSolution {
+  Net density;         ///< force per area on the fluid, control values; the traction on the body is its negative
+  Vec3 force, torque;  ///< on the body, about its centre
+  Vec3 integral;       ///< force as the integral of the traction alone
+  int iterations = 0;  ///< of the solver, for this traction
+  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative
+  SurfaceErrors surface{unknown, unknown, 0};
+
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The body of `Particle/motion: prescribed` in the flow of the deck. Collective.
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases);
 
 /// Solves for the traction on the body, records one row and one picture. Exit code as of `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);

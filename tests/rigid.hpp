@@ -1,0 +1,26 @@
+#pragma once
+// The steady problem of a rigid body solved in memory, for tests that hold it against an exact solution.
+
+#include <string>
+#include <vector>
+
+#include "app/prescribed.hpp"
+#include "app/scene.hpp"
+#include "deck/document.hpp"
+
+namespace tanktread {
+
+/// A deck of inputs/ with settings `Section/key=value`, as behind `--set`.
+inline RigidSolution rigid_solution(const std::string& deck_name, const std::vector<std::string>& settings) {
+  Scene scene;
+  deck::Document deck = deck::read({std::string(SOURCE_DIRECTORY) + "/inputs/" + deck_name}, settings);
+  deck.declare(scene);
+  scene.check();
+  coupling::Ranks ranks;
+  Phases phases;
+  const Body body = tanktread::body(scene);
+  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases);
+  return rigid_solution(scene, body, resistance, phases);
+}
+
+}  // namespace tanktread
