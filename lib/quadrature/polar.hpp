@@ -21,7 +21,8 @@ struct Shear {
 /// The bin of g_ab = x_,a . x_,b; the unit metric where that is not one.
 Shear shear(double g_ss, double g_st, double g_tt);
 
-/// Gauss points of a polar rule: outwards, and around over each side of the square (t = 0, s = 1, t = 1, s = 0; 0 where the target is on it).
+/// Gauss points of a polar rule: outwards, and around over each side of the square (t = 0, s = 1, t = 1, s = 0; 0 where the target is
+/// on it).
 struct PolarOrders {
   int radial = 0;
   std::array<int, 4> angular{};

@@ -22,8 +22,8 @@ int far_order(const quadrature::Options& options) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// The same for each element. Pieces that are tiny beside the others (those at the extraordinary points of Catmull-Clark surfaces) get by with
-/// less: the smooth part of the integrand converges faster on them, and their share of the area is small.
+/// The same for each element. Pieces that are tiny beside the others (those at the extraordinary points of Catmull-Clark surfaces) get
+/// by with less: the smooth part of the integrand converges faster on them, and their share of the area is small.
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options) {
   const int order = far_order(options);
   std::vector<int> orders(space.elements.size(), order);
