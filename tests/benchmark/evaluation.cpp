@@ -1,5 +1,5 @@
-// Kernel evaluations per second: the bare far-field sum, and the single layer at n = 6, 12, 24 split into its parts, each relative to the
-// bare sum of the same run.
+// Kernel evaluations per second: the bare far-field sum; the single layer and a whole velocity evaluation at n = 6, 12, 24 split into their
+// parts, each relative to the bare sum of the same run.
 
 #include <benchmark/benchmark.h>
 
@@ -10,7 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "base/timing.hpp"
+#include "coupling/capsule.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
+#include "stokes/ambient_flow.hpp"
 #include "stokes/far_kernel.hpp"
 #include "stokes/single_layer.hpp"
 #include "surface/shapes.hpp"
@@ -99,5 +104,36 @@ void assembled_rows(benchmark::State& state) {
   state.counters["bare far sums"] = best * bare_rate / (static_cast<double>(scene.space.n_points) * layer.n_nodes());
 }
 BENCHMARK(assembled_rows)->Arg(6)->Arg(12)->Unit(benchmark::kMillisecond)->Iterations(10);
+
+/// One velocity evaluation of a capsule (4.2) in processor time, best of its repetitions: the whole over its far sum at the bare rate, the
+/// shares of the phases in what the whole took on average, and the tangent over one evaluation.
+void velocity_evaluation(benchmark::State& state) {
+  const Scene scene(static_cast<int>(state.range(0)));
+  coupling::Ranks ranks;
+  Phases phases;
+  coupling::CapsuleParameters parameters;
+  parameters.law = membrane::NeoHookean{1 / 0.3};
+  stokes::FlowOptions shear;
+  coupling::Capsule capsule(scene.space, scene.unstressed, scene.unstressed, stokes::AmbientFlow(shear), parameters, ranks, phases);
+  benchmark::DoNotOptimize(capsule.velocity(scene.x));
+  const long long far = capsule.kernel_evaluations().far;
+  const Phases before = phases;
+  double best = 1e9, tangent = 1e9;
+  for (auto _ : state) {
+    const double start = now();
+    benchmark::DoNotOptimize(capsule.velocity(scene.x));
+    best = std::min(best, now() - start);
+  }
+  for (const Phases::Phase& phase : phases.all())
+    state.counters[phase.name] = (phase.seconds - before.seconds(phase.name)) / (phases.total() - before.total());
+  for (int k = 0; k < 10; ++k) {
+    const double start = now();
+    capsule.linearise(scene.x);
+    tangent = std::min(tangent, now() - start);
+  }
+  state.counters["all / far"] = best * bare_rate / static_cast<double>(far);
+  state.counters["tangent / all"] = tangent / best;
+}
+BENCHMARK(velocity_evaluation)->Arg(6)->Arg(12)->Arg(24)->Unit(benchmark::kMillisecond)->Iterations(30);
 
 }  // namespace
