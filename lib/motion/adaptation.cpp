@@ -1,0 +1,79 @@
+#include "motion/adaptation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "deck/section.hpp"
+
+namespace tanktread::motion {
+
+void AdaptationOptions::declare(deck::Section& section) {
+  section.key("enabled", enabled, "refine the mesh as the particle deforms (P-37)");
+  section.key("reference length", reference_length, deck::positive(), "length", "L_ref: longest element where nothing varies");
+  section.key("reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
+              "chi_ref; if not given, curvature is not looked at");
+  section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
+              "T_ref; if not given, traction is not looked at");
+  section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
+              "V_ref; if not given, velocity is not looked at");
+  section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1", "D_ref: an element that is longer than this times its width is cut");
+  section.key("order", order, deck::positive(), "1", "kappa: how strongly a variation above its reference shortens elements");
+  section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut");
+  section.key("interval", interval, deck::at_least(1), "steps", "accepted steps between two looks at the mesh");
+  section.key("levels", levels, deck::between(0, 8), "1", "how often an element of the first mesh may be halved in a direction");
+  section.key("largest number of points", largest_number_of_points, deck::at_least(56), "1", "refinement ends at so many control points");
+  section.key("coarsen", coarsen, "take cuts back where they are no longer needed");
+  section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1", "part of every limit below which a doubled element must stay");
+  section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length", "largest change of a surface by one coarsening");
+}
+
+namespace {
+
+/// L_ref min{1, (phi_ref / phi)^kappa}.
+double allowed_length(const surface::MidLine& line, const AdaptationOptions& options) {
+  double factor = 1;
+  const auto heed = [&](const std::optional<double>& reference, double variation) {
+    if (reference && variation > *reference) factor = std::min(factor, std::pow(*reference / variation, options.order));
+  };
+  heed(options.reference_curvature_variation, line.curvature);
+  heed(options.reference_traction_variation, line.traction);
+  heed(options.reference_velocity_variation, line.velocity);
+  return options.reference_length * factor;
+}
+
+}  // namespace
+
+std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options) {
+  std::vector<spline::Mark> found;
+  for (size_t e = 0; e < metrics.size(); ++e) {
+    bool cut[2];
+    for (int a = 0; a < 2; ++a) {
+      const surface::MidLine& line = metrics[e].along[a];
+      cut[a] = line.length > options.minimum_length &&
+               (line.length > allowed_length(line, options) || metrics[e].aspect_ratio(a) > options.limit_aspect_ratio);
+    }
+    if (cut[0] || cut[1]) found.push_back({static_cast<int>(e), cut[0], cut[1]});
+  }
+  return found;
+}
+
+std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options) {
+  std::vector<spline::Merge> found;
+  for (size_t e = 0; e < metrics.size(); ++e) {
+    bool merge[2];
+    for (int a = 0; a < 2; ++a) {
+      const surface::MidLine& line = metrics[e].along[a];
+      merge[a] = 2 * line.length < options.coarsening_margin * allowed_length(line, options) &&
+                 2 * metrics[e].aspect_ratio(a) < options.coarsening_margin * options.limit_aspect_ratio;
+    }
+    // Both at once keeps the aspect ratio, whatever it would be in between.
+    const surface::ElementMetrics& m = metrics[e];
+    if (!merge[0] && !merge[1] && std::max(m.aspect_ratio(0), m.aspect_ratio(1)) < options.coarsening_margin * options.limit_aspect_ratio)
+      merge[0] = merge[1] = 2 * m.along[0].length < options.coarsening_margin * allowed_length(m.along[0], options) &&
+                            2 * m.along[1].length < options.coarsening_margin * allowed_length(m.along[1], options);
+    if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0] ? 1 : 0, merge[1] ? 1 : 0});
+  }
+  return found;
+}
+
+}  // namespace tanktread::motion

@@ -1,0 +1,45 @@
+#pragma once
+// Where the mesh is to be cut and where cuts may be taken back.
+
+#include <optional>
+#include <vector>
+
+#include "spline/coarsening.hpp"
+#include "spline/refinement.hpp"
+#include "surface/metrics.hpp"
+
+namespace tanktread::deck {
+class Section;
+}
+
+namespace tanktread::motion {
+
+/// Mesh adaptation: `Adaptation/*` of the deck. Lengths and fields in the deck's units.
+struct AdaptationOptions {
+  bool enabled = false;
+  double reference_length = 0.35;                          ///< L_ref
+  std::optional<double> reference_curvature_variation;     ///< chi_ref, 1/length^2; empty: not in use
+  std::optional<double> reference_traction_variation;      ///< T_ref, of the traction per current area, per length
+  std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
+  double limit_aspect_ratio = 2.5;                         ///< D_ref
+  double order = 1;                                        ///< kappa
+  double minimum_length = 0.035;                           ///< L_min, a floor under every cut
+  int interval = 1;                                        ///< accepted steps between checks
+  int levels = 4;                                          ///< how often an element of the first mesh may be halved in a direction
+  int largest_number_of_points = 4000;                     ///< refinement ends here, with a warning
+  bool coarsen = false;
+  double coarsening_margin = 0.7;                          ///< a doubled element must stay below this part of every limit
+  double coarsening_tolerance = 1e-5;                      ///< largest change of either surface by one coarsening, length
+
+  void declare(deck::Section& section);
+};
+
+/// Elements and directions that the rule wants to be cut (P-37), in the order of elements(mesh):
+///
+///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa over the quantities in use}  or  L_a / L_b > D_ref )
+std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
+
+/// Elements that stay below `coarsening margin` of every limit of (P-37) when they are twice as long, in the directions in which they do.
+std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
+
+}  // namespace tanktread::motion
