@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "spline/coarsening.hpp"
+#include "spline/polar.hpp"
+#include "spline/projection.hpp"
 #include "tests/unit/spline/sequences.hpp"
 
 namespace tanktread::spline {
@@ -33,6 +36,71 @@ TEST(Refinement, TwoHundredSequencesSixLevelsDeepStayNested) {
   expect_nested(found);
   EXPECT_EQ(found.steps, 1200);
   EXPECT_EQ(found.finest, 1);  // all six levels were reached
+}
+
+SequenceOptions on_poles(PoleRule poles) {
+  SequenceOptions options;
+  options.steps = 6;
+  options.fraction = 0.01;
+  options.space = [poles](const TMesh& mesh) { return space(mesh, poles); };
+  options.per_pole = poles == PoleRule::c1 ? 3 : 1;
+  return options;
+}
+
+TEST(Refinement, TwoHundredSequencesOnSurfacesWithPolesStayNested) {
+  const TMesh base[2] = {polar(8, 4, 6), polar(12, 6, 6)};
+  for (PoleRule poles : {PoleRule::plain, PoleRule::c1}) {
+    Findings found;
+    auto options = on_poles(poles);
+    for (unsigned seed = 0; seed < 100; ++seed) {
+      options.condition = seed % 4 == 0;
+      run_sequence(base[seed % 2], seed, options, found);
+    }
+    EXPECT_EQ(found.crossings, 0);
+    EXPECT_EQ(found.overlaps, 0);
+    EXPECT_EQ(found.straddling, 0);
+    EXPECT_EQ(found.wrong_counts, 0);
+    EXPECT_LT(found.unity, 1e-13);
+    EXPECT_LT(found.residual, 1e-12);
+    EXPECT_EQ(found.finest, 1);
+    // The wide function of a pole costs: without cuts 14 (8 x 4) to 19 (32 x 16) where the cube has 9.
+    EXPECT_LT(found.condition, poles == PoleRule::c1 ? 200 : 25);
+  }
+}
+
+/// Refines a field step by step, then takes everything back at once and projects it. Returns the largest change of a control point.
+double error_of_return(const TMesh& base, unsigned seed, int steps, const SpaceOf& space_of) {
+  std::mt19937 generator(seed);
+  TMesh mesh = base;
+  const Space first = space_of(base);
+  auto now = std::make_unique<Space>(first);
+  const Net original = random_net(first.n_points, seed);
+  Net net = original;
+  for (int step = 0; step < steps; ++step) {
+    mesh = refine(mesh, random_marks(mesh, 2, 1, generator)).mesh;
+    auto next = std::make_unique<Space>(space_of(mesh));
+    net = Transfer(*now, *next)(net).net;
+    now = std::move(next);
+  }
+  for (int round = 0; round < 10 && mesh.edges != base.edges; ++round) {
+    std::vector<Merge> all;
+    for (int i = 0; i < int(elements(mesh).tiles.size()); ++i) all.push_back({i, steps, steps});
+    mesh = coarsen(mesh, all).mesh;
+    auto next = std::make_unique<Space>(space_of(mesh));
+    net = Projection(*now, *next)(net).net;
+    now = std::move(next);
+  }
+  return mesh.edges == base.edges ? (net - original).cwiseAbs().maxCoeff() : HUGE_VAL;
+}
+
+TEST(Refinement, WhatWasRefinedSixLevelsDeepComesBackToTheOriginalControlPoints) {
+  const TMesh cubes[2] = {cube(3, 6), cube(4, 6)}, globe = polar(8, 4, 6);
+  double worst = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    worst = std::max(worst, error_of_return(cubes[seed % 2], seed, 6, catmull_clark_space));
+    for (PoleRule poles : {PoleRule::plain, PoleRule::c1}) worst = std::max(worst, error_of_return(globe, seed, 6, on_poles(poles).space));
+  }
+  EXPECT_LT(worst, 1e-11);
 }
 
 TEST(RefinementLong, AThousandSequencesStayNested) {
