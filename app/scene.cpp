@@ -94,7 +94,8 @@ void Scene::check() const {
         "Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
         "the load per reference area (3.7) needs `flux` or `exact`.");
   if (quadrature.rule == "desingularised" && surface.polar() && surface.poles == "plain")
-    throw UserError("Quadrature/rule `desingularised` and Surface/poles `plain` contradict each other: a degenerate element has no normal at its pole.");
+    throw UserError("Quadrature/rule `desingularised` and Surface/poles `plain` contradict each other: a degenerate element has no normal "
+                    "at its pole.");
   if (adaptation.enabled && surface.polar())
     throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
   if (interface_motion() != "material" && membrane.law != "surface tension")

@@ -14,7 +14,8 @@ void InterfaceOptions::declare(deck::Section& section) {
   section.key("motion", motion, deck::Choice{"material", "normal", "relaxed"},
               "control points of a drop move with the fluid, across the interface only, or along it so that elements keep their shape (the "
               "default for a surface tension)");
-  section.key("relaxation", relaxation, deck::not_negative(), "1", "`relaxed`: the mesh slides as an elastic bag of capillary number 1/relaxation would");
+  section.key("relaxation", relaxation, deck::not_negative(), "1",
+              "`relaxed`: the mesh slides as an elastic bag of capillary number 1/relaxation would");
 }
 
 void SolverOptions::declare(deck::Section& section) {
