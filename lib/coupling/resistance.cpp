@@ -45,9 +45,11 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
 
 /// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
 Net Resistance::apply(const Net& f) const {
-  const Eigen::VectorXd out = rows_ * Eigen::Map<const Eigen::VectorXd>(f.data(), f.size());
+  const Eigen::Map<const Eigen::VectorXd> flat(f.data(), f.size());
   Net u(f.rows(), 3);
-  for (size_t k = 0; k < own_points_.size(); ++k) u.row(own_points_[k]) = out.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+  for (size_t k = 0; k < own_points_.size(); ++k)
+    for (int i = 0; i < 3; ++i)  // row by row: the sum of a row does not depend on how many rows this rank has
+      u(own_points_[k], i) = rows_.row(3 * static_cast<Eigen::Index>(k) + i).dot(flat);
   ranks_.replicate(u);
   return collocation_.solve(u) + weight_ * flux_.cwiseProduct(f).sum() * normal_;
 }

@@ -12,12 +12,14 @@ namespace {
 double pressure_error(const std::string& poles, const std::string& rule, int meridional) {
   return rigid_solution("spheroid_polar.yaml",
                         {"Surface/poles=" + poles, "Quadrature/rule=" + rule, "Particle/forces=integral",
-                         "Surface/meridional elements=" + std::to_string(meridional), "Surface/azimuthal elements=" + std::to_string(2 * meridional)})
+                         "Surface/meridional elements=" + std::to_string(meridional),
+                         "Surface/azimuthal elements=" + std::to_string(2 * meridional)})
       .surface.pressure;
 }
 
 TEST(PlainPoles, StagnateUnderAFixedRule) {
-  const double coarse = pressure_error("plain", "fixed", 4), middle = pressure_error("plain", "fixed", 8), fine = pressure_error("plain", "fixed", 16);
+  const double coarse = pressure_error("plain", "fixed", 4), middle = pressure_error("plain", "fixed", 8),
+               fine = pressure_error("plain", "fixed", 16);
   EXPECT_GT(middle, coarse / 3);  // the space's order would be a factor of 8
   EXPECT_GT(fine, coarse / 3);    // and here 64
   EXPECT_GT(fine, 1e-3);

@@ -67,7 +67,8 @@ TEST(RigidSpheroid, TurnsAgainstTheExactTorque) {
 
 TEST(RigidSpheroid, FeelsOnlyItsMotionRelativeToTheFlow) {
   const RigidSolution moving = on_cube(3);
-  const RigidSolution held = on_cube(3, {"Flow/type=uniform", "Flow/velocity=[0.7071067811865476, 0, 0.7071067811865476]", "Particle/velocity=[0, 0, 0]"});
+  const RigidSolution held =
+      on_cube(3, {"Flow/type=uniform", "Flow/velocity=[0.7071067811865476, 0, 0.7071067811865476]", "Particle/velocity=[0, 0, 0]"});
   EXPECT_LT((moving.force - held.force).norm() / held.force.norm(), 1e-9);  // the solver's tolerance
   EXPECT_NEAR(moving.error, held.error, 1e-9);
 }
