@@ -199,7 +199,7 @@ def draw_pressure_error(axes, run, title):
     mesh = axes.tripcolor(points[..., 0].ravel(), points[..., 2].ravel(), triangles, error.ravel(), shading="gouraud", cmap=style.FIELD,
                           norm=plt.matplotlib.colors.LogNorm(1e-7, 1e-2), rasterized=True)
     for cell in points:
-        if numpy.ptp(cell, axis=(0, 1)).max() < 0.075:  # the pieces of transformed elements would be all outline
+        if numpy.linalg.norm(numpy.cross(cell[-1, -1] - cell[0, 0], cell[-1, 0] - cell[0, -1])) < 4e-4:  # the slim pieces of transformed elements would be all outline
             continue
         edge = numpy.concatenate([cell[0], cell[:, -1], cell[-1, ::-1], cell[::-1, 0]])
         axes.plot(edge[:, 0], edge[:, 2], color="white", linewidth=0.25, alpha=0.6)
