@@ -160,7 +160,7 @@ int resist(const Scene& scene, const RunRequest& request) {
                         {"kernel_evaluations_far", static_cast<long>(kernel.far)},
                         {"kernel_evaluations_near", static_cast<long>(kernel.near)},
                         {"kernel_evaluations_self", static_cast<long>(kernel.self)}},
-                       phases, {{"drag", solution.force}, {"torque", solution.torque}});
+                       phases, {}, {{"drag", solution.force}, {"torque", solution.torque}});
 }
 
 }  // namespace tanktread

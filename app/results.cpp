@@ -148,37 +148,38 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   series_->add(standing.step, state.time);
 }
 
-int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,
                    const output::Entries<Vec3>& vectors) {
-  const bool passed = finish(plan, counts, phases, vectors);
+  const std::string missed = finish(plan, counts, phases, vectors);
   if (writes_) {
     if (!request_.quiet) std::fputs(output::closing_table(phases, counts, directory_).c_str(), stdout);
-    if (!passed) std::fprintf(stderr, "tanktread: an Expect was missed; see %s\n", (directory_ / "summary.yaml").c_str());
+    const std::string line = remark + (remark.empty() || missed.empty() ? "" : "; ") + missed;
+    if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
   }
-  return ranks_.any(!passed) ? 1 : 0;
+  return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
-bool Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
-                     const output::Entries<Vec3>& vectors) {
-  if (!writes_) return true;
+/// Writes the summary; returns what was expected and missed, in one line.
+std::string Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+                            const output::Entries<Vec3>& vectors) {
+  if (!writes_) return {};
   output::Summary summary;
   deck::SeriesTable table;
   for (const output::Series& series : record_->series()) {
     table[series.name] = series.values;
     summary.final.emplace_back(series.name, series.values.back());
   }
-  bool passed = true;
+  std::string missed;
   for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table)) {
     summary.expect.push_back({verdict.name, verdict.value, verdict.expected, verdict.error, verdict.passed});
-    if (!verdict.passed) std::fprintf(stderr, "Expect/%s: %s\n", verdict.name.c_str(), verdict.reason.c_str());
-    passed = passed && verdict.passed;
+    if (!verdict.passed) missed += (missed.empty() ? "missed Expect/" : "; Expect/") + verdict.name + ": " + verdict.reason;
   }
   for (const auto& [name, value] : vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
   summary.counts = counts;
   for (const Phases::Phase& phase : phases.all()) summary.seconds.emplace_back(phase.name, phase.seconds);
   summary.plan = plan;
   output::write_summary(directory_ / "summary.yaml", summary);
-  return passed;
+  return missed;
 }
 
 }  // namespace tanktread

@@ -37,7 +37,8 @@ class Results {
 
   /// Holds the record against `Expect`, writes the summary and the closing table. `vectors`: for `final`, made of the last row. Returns the exit
   /// code: 0 every expectation was met, 1 one was missed.
-  int close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+  /// `remark`: why the run ended before its time, if it did; it shares the one line on standard error with the expectations missed.
+  int close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,
             const output::Entries<Vec3>& vectors = {});
 
   /// Step of the last checkpoint; -1 before the first.
@@ -49,8 +50,8 @@ class Results {
   void write(const Write& action);
   void declare_columns();
   void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait);
-  bool finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
-              const output::Entries<Vec3>& vectors);
+  std::string finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
+                     const output::Entries<Vec3>& vectors);
   std::map<std::string, std::string> origin() const;
 
   const Scene& scene_;

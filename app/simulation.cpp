@@ -144,8 +144,9 @@ class Run {
 
   int end(const std::string& reason) {
     const output::Entries<long> work = counts(standing_, particle_->work(), particle_->kernel_evaluations());
-    if (ranks_.rank() == 0 && !reason.empty()) std::fprintf(stderr, "tanktread: %s at time %.6g\n", reason.c_str(), state_.time);
-    return results_.close(plan(scene_, particle_->body(), ranks_.size()), work, phases_);
+    std::ostringstream remark;
+    if (!reason.empty()) remark << reason << " at time " << state_.time;
+    return results_.close(plan(scene_, particle_->body(), ranks_.size()), work, phases_, remark.str());
   }
 
   /// The value of one series in this step; zero for a series that this particle has not.
