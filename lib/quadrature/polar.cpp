@@ -22,6 +22,9 @@ constexpr int max_order = 80;
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
+/// To an even number, beyond 16 to a multiple of four: so that few different rules come up.
+int rounded_up(int order) { return order > 16 ? (order + 3) / 4 * 4 : (order + 1) / 2 * 2; }
+
 /// Calls use(k, A, B) with the ends, seen from (s, t), of every side k of the square that does not hold (s, t).
 template <class Use>
 void each_triangle(double s, double t, const Use& use) {
@@ -101,6 +104,8 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
   });
   for (int k = 0; k < 4; ++k)  // along the ray to a corner x = r affine + r^2 (corner - affine) has zeros other than r = 0
     orders.radial = std::max(orders.radial, std::min(max_order, 1 + order_for(tolerance, rho_along_ray(affine[k], corner[k] - affine[k]))));
+  orders.radial = rounded_up(orders.radial);
+  for (int& order : orders.angular) order = rounded_up(order);
   return orders;
 }
 

@@ -15,6 +15,9 @@ namespace {
 /// Radial points for a tolerance. The integrand is smooth along a ray; measured on the cube mesh, n = 3 and up (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
+/// Rules kept at a time: metrics come and go in a long run.
+constexpr std::size_t most_tables = 1000;
+
 quadrature::Rule whole_square(int order) {
   const auto& gauss = quadrature::tensor_gauss(order);
   return {{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}};
@@ -68,8 +71,8 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
   }
   if (!pair.table || shear != pair.shear || orders != pair.orders) {
     pair.shear = shear, pair.orders = orders;
-    pair.table = &made(pair, degree);
     pair.weights.clear();
+    pair.table = &made(pair, degree);
   }
   return *pair.table;
 }
@@ -92,6 +95,7 @@ quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degre
 }
 
 const PointTable& SelfField::made(const SelfPair& pair, int degree) {
+  if (tables_.size() > most_tables) forget_rules();
   auto& table = tables_[{degree, pair.s, pair.t, pair.shear, pair.orders}];
   if (table) return *table;
   table = std::make_unique<PointTable>();
@@ -105,6 +109,11 @@ const PointTable& SelfField::made(const SelfPair& pair, int degree) {
   else
     tabulate(quadrature::polar(s, t, shear, orders), degree, *table);
   return *table;
+}
+
+void SelfField::forget_rules() {
+  for (SelfPair& pair : pairs_) pair.table = nullptr, pair.weights.clear();
+  tables_.clear();
 }
 
 void SelfField::forget_weights() {

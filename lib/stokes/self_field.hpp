@@ -49,6 +49,7 @@ class SelfField {
 
  private:
   const PointTable& made(const SelfPair& pair, int degree);
+  void forget_rules();
   quadrature::PolarOrders raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear, const Vec3& a1,
                                         const Vec3& a2) const;
 
