@@ -10,6 +10,7 @@
 namespace tanktread::spline {
 
 /// Least squares at the 4 x 4 Gauss points of the elements of both spaces, weighted by parametric area. One factorisation serves all fields.
+/// Both spaces must outlive it.
 class Projection {
  public:
   Projection(const Space& from, const Space& to);

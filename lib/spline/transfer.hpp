@@ -14,6 +14,7 @@ namespace tanktread::spline {
 ///
 /// Exact when the spaces are nested; the residual tells. Every element of `to` must lie in one element of `from` (refinement; `straddling`
 /// counts those that do not). One sparse Cholesky factorisation serves all fields.
+/// Both spaces must outlive it.
 class Transfer {
  public:
   Transfer(const Space& from, const Space& to);
