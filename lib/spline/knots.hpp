@@ -5,9 +5,9 @@
 
 namespace tanktread::spline {
 
-/// In each slot of an anchor, the distances (lattice units) to the first and second perpendicular touch. A ray that runs into an
-/// extraordinary point first gets d, 2 d (mirror: the rings there are uniform), and so does every slot of such a point. Beyond the border of an open face the end knot is
-/// repeated. Parametric distances: Lattice::length.
+/// In each slot of an anchor, the distances (lattice units) to the first and second perpendicular touch. A ray that runs into an extraordinary
+/// point first gets d, 2 d (mirror: the rings there are uniform), and so does every slot of such a point. Beyond the border of an open face the
+/// end knot is repeated. Parametric distances: Lattice::length.
 struct Knots {
   int reach[4][2];
 };
