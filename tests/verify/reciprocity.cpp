@@ -1,0 +1,63 @@
+// Lorentz' reciprocal theorem for two surfaces apart: what the layers of one do on the other is what those of the other do on the first.
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "quadrature/gauss.hpp"
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "stokes/potentials.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// A deformed surface with a smooth density on it.
+struct Body {
+  spline::Space space;
+  Net x, density;
+
+  explicit Body(int n, const Vec3& centre, double bend) {
+    const spline::TMesh mesh = spline::cube(n);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    x = surface::initial_shape(space, mesh, {});
+    density = Net(x.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const Vec3 p = x.row(i).transpose();
+      x.row(i) << centre[0] + 1.4 * p[0] + 0.2 * p[2], centre[1] + 0.8 * p[1] + bend * p[0] * p[0], centre[2] + 0.9 * p[2] - bend * p[0] * p[1];
+      density.row(i) << std::sin(p[0] + centre[0]) + p[1], p[2] * p[0], std::cos(p[2]) - centre[1] * p[1];
+    }
+  }
+};
+
+/// int g.(S f) dG over `on`, with f on `from`: Gauss quadrature of `order` points a direction.
+double work(const Body& on, const Body& from, int order) {
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(order);
+  std::vector<Vec3> places, strengths;
+  for (int e = 0; e < static_cast<int>(on.space.elements.size()); ++e)
+    for (int q = 0; q < rule.size(); ++q) {
+      const spline::Site site{e, rule.s[q], rule.t[q]};
+      const surface::Point p = surface::point(on.space, on.x, site);
+      places.push_back(p.x);
+      strengths.push_back(rule.weights[q] * p.jacobian * surface::value(on.space, on.density, site));
+    }
+  Potentials potentials(from.space, {.tolerance = 1e-12});
+  potentials.place(from.x);
+  const std::vector<Vec3> u = potentials.single_layer(from.density, places);
+  double sum = 0;
+  for (size_t k = 0; k < u.size(); ++k) sum += strengths[k].dot(u[k]);
+  return sum;
+}
+
+TEST(Reciprocity, SingleLayersOfTwoDeformedSurfacesWorkOnEachOtherAlike) {
+  const Body one(3, {0, 0, 0}, 0.2), other(4, {0.5, 3.2, -0.4}, -0.15);
+  const double there = work(other, one, 12), back = work(one, other, 12);
+  EXPECT_GT(std::abs(there), 0.1);
+  EXPECT_NEAR(there, back, 1e-10 * std::abs(there));  // layers to 1e-12, outer Gauss rule of 12 points
+}
+
+}  // namespace
+}  // namespace tanktread::stokes
