@@ -19,7 +19,7 @@ struct SolveReport {
   int iterations = 0;
   bool converged = false;
   double achieved = 0;          ///< relative residual that Belos reports
-  std::vector<double> history;  ///< relative residual after each iteration
+  std::vector<double> history;  ///< relative residual after each iteration; on the first rank, which is the one that speaks
 };
 
 /// Throws RunFailure with the residual history when `report` is of a solve of `system` that did not reach `tolerance`.

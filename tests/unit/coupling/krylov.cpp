@@ -59,6 +59,7 @@ TEST(Krylov, KeepsTheResidualHistory) {
   };
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   const SolveReport report = Krylov("GMRES", nullptr).solve(apply, Eigen::VectorXd::Ones(n), x, 1e-8);
+  if (Ranks().rank() != 0) return;  // Belos tells its residuals to the first rank
   ASSERT_GT(report.history.size(), 2u);
   EXPECT_NEAR(report.history.front(), 1, 1e-12);
   for (size_t i = 1; i < report.history.size(); ++i) EXPECT_LE(report.history[i], report.history[i - 1]);  // GMRES never rises
