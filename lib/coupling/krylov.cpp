@@ -102,7 +102,7 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
 
 Krylov::~Krylov() = default;
 
-SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
+SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance, const Apply& precondition) const {
   if (b.squaredNorm() == 0) {
     x.setZero();
     return {0, true, 0, {}};
@@ -115,6 +115,7 @@ SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::V
   std::copy_n(b.data(), b.size(), rhs->getDataNonConst(0).getRawPtr());
 
   const auto problem = Teuchos::rcp(new Problem(op, lhs, rhs));
+  if (precondition) problem->setRightPrec(Teuchos::rcp(new FunctionOperator(map, precondition)));
   problem->setProblem();
   const auto now = Teuchos::rcp(new Teuchos::ParameterList(*impl_->list));
   now->set("Convergence Tolerance", tolerance);

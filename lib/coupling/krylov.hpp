@@ -38,8 +38,8 @@ class Krylov {
   ~Krylov();
 
   /// Solves apply(x) = b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw when it
-  /// stops short; see the report.
-  SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
+  /// stops short; see the report. `precondition`: an approximate inverse of apply, from the right, so that residuals are those of the system.
+  SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance, const Apply& precondition = {}) const;
 
  private:
   struct Impl;

@@ -36,6 +36,22 @@ TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
     }
 }
 
+TEST(Krylov, TheInverseAsPreconditionerLeavesOneIteration) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n), inverse = a.inverse();
+  const auto product = [](const Eigen::MatrixXd& m) {
+    return [&m](const double* in, double* out) { Eigen::Map<Eigen::VectorXd>(out, n) = m * Eigen::Map<const Eigen::VectorXd>(in, n); };
+  };
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const char* name : {"GMRES", "BICGSTAB"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    const SolveReport report = Krylov(name, nullptr).solve(product(a), b, x, 1e-10, product(inverse));
+    EXPECT_TRUE(report.converged) << name;
+    EXPECT_EQ(report.iterations, 1) << name;
+    EXPECT_LT((a * x - b).norm(), 1e-10 * b.norm()) << name;
+  }
+}
+
 TEST(Krylov, TellsWhenItStopsShort) {
   const int n = 40;
   const Krylov::Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before step n
