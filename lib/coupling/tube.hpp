@@ -1,0 +1,105 @@
+#pragma once
+// A particle in a tube: the wall's traction and the pressure drop, eliminated.
+
+#include <memory>
+#include <vector>
+
+#include "base/timing.hpp"
+#include "base/types.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/options.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/duct_flow.hpp"
+#include "stokes/kernels.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/tube_wall.hpp"
+
+namespace tanktread::coupling {
+
+struct TubeParameters {
+  double viscosity = 1;                                  ///< mu of the outer fluid
+  double viscosity_ratio = 1;                            ///< lambda
+  stokes::Measure measure = stokes::Measure::reference;  ///< of the particle's load
+  quadrature::Options quadrature;
+  membrane::DirectSolverOptions direct;
+};
+
+/// What the wall and the pressure drop answer to a load f and a velocity v on the particle (control values, linear in both together):
+///
+///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG            at the wall      (2.6)
+///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
+///   answer    u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
+///
+/// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of the traction on the wall, dp that of
+/// the pressure drop
+/// between the ends, Q the flow rate of v_inf; in quiescent fluid v_inf is the duct's flow of any mean velocity.
+///
+/// The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the particle's centroid. So what depends on
+/// the wall alone is assembled and
+/// factored once. Points of the particle are true ones everywhere; nets of the wall are in the wall's frame. Nets are replicated; calls
+/// are collective but for queries.
+class Tube {
+ public:
+  Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
+       Ranks& ranks, Phases& phases);
+
+  /// The same tube around another mesh of the particle: nothing of the wall is made again.
+  Tube(const Tube& tube, const spline::Space& particle);
+  ~Tube();
+
+  /// The unstressed particle, which Measure::reference needs.
+  void set_reference(const Net& unstressed);
+
+  /// The particle's control net, in true places. All that follows belongs to this shape.
+  void place(const Net& x);
+
+  struct Response {
+    Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
+    Net wall_traction;  ///< f^D, control values on the wall
+    double pressure_drop = 0;
+  };
+
+  /// Either net may be empty: then it is zero. v counts for lambda != 1 only.
+  Response respond(const Net& f, const Net& v = {});
+
+  /// Keeps the present shape's operators, as blocks of few bits, for `frozen_response`, which is the answer u at the particle's
+  /// collocation points.
+  void freeze();
+  Net frozen_response(const Net& f, const Net& v = {});
+
+  /// The parts of the block system, at the collocation points of wall and particle.
+  Net load_on_wall(const Net& f);             ///< -(1/mu) G_C f
+  Net velocity_on_wall(const Net& v);         ///< (1 - lambda) (1 / 8 pi) int T v n
+  Net wall_on_particle(const Net& traction);  ///< -(1/mu) G_W f^D
+  Net wall_on_wall(const Net& traction);      ///< (1/mu) G_W f^D
+  const Net& inlet_on_particle() const;       ///< c
+  const Net& inlet_on_wall() const;
+  double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
+  Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors
+
+  /// Independent routes to what a response satisfies, and how far off they are.
+  struct Checks {
+    double flux = 0;                                     ///< disturbance of the flow rate through the inlet, over Q
+    double force = 0;                                    ///< A dp less the axial forces on wall and particle, over the duct's own A G R_T
+    double cap_velocity = 0;                             ///< largest disturbance velocity left on the caps, over the mean velocity
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< the pressure drop with which flux or force would vanish
+  };
+  Checks checks(const Net& f, const Net& v, const Response& response);
+
+  /// Smallest distance of the particle's surface to the wall; negative where they cross.
+  double gap() const;
+
+  const surface::TubeWall& wall() const;
+  const stokes::DuctFlow& flow() const;
+  double centroid() const;                         ///< x1 of the particle placed
+  stokes::Evaluations kernel_evaluations() const;  ///< of both surfaces, the assembly of the wall included
+
+ private:
+  struct Wall;
+  struct Particle;
+  std::shared_ptr<Wall> wall_;
+  std::unique_ptr<Particle> particle_;
+};
+
+}  // namespace tanktread::coupling

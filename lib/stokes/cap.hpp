@@ -1,0 +1,56 @@
+#pragma once
+// The open ends of a tube.
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "surface/outline.hpp"
+
+namespace tanktread::stokes {
+
+/// A plane cap across a tube at x1 = `place`, on which the traction is -p e1 with a constant p:
+///
+///   c(x0) = (1 / 8 pi) int G(x, x0) e1 dS                                                                        (2.13)
+///
+/// by its closed line integral over the outline, exact for any section. With rho = (x - x0) in the plane, nu the outline's outward
+/// normal there,
+/// h = place - x0_1 and r^2 = rho^2 + h^2,
+///
+///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
+///
+/// By reciprocity c_j(y) is also the flow rate along x1 through the cap of a point force e_j at y, times mu.
+class Cap {
+ public:
+  /// `tolerance`: of the integrals, relative to their largest value.
+  Cap(const surface::Outline& outline, double place, double tolerance);
+
+  double place() const { return place_; }
+
+  /// c at any point, on the rim included. Units length.
+  Vec3 integral(const Vec3& x0) const;
+
+  /// c at the rows of x; fast for points off the plane of the cap.
+  Net integral(const Net& x) const;
+
+  /// Flow rate along x1 through the cap of the double layer of one point: int (1 / 8 pi) v_j T_ijk(y, x) n_k dS(x) with T's index i
+  /// along x1. Of points off the
+  /// plane of the cap.
+  double double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const;
+
+  /// Flow rate through the cap of c itself: int c_1 dS.
+  double own_flow() const;
+
+ private:
+  struct Nodes {
+    std::vector<double> y, z, ny, nz;  ///< places and normals times weights dl
+  };
+  Nodes nodes(int order) const;
+  const Nodes& nodes_for(double distance) const;
+
+  surface::Outline outline_;
+  double place_, tolerance_, reach_;             ///< reach: half of the longest piece
+  std::vector<std::pair<double, Nodes>> rules_;  ///< least distance, nodes
+};
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,42 @@
+#pragma once
+// The wall of a tube as a spline surface.
+
+#include "base/types.hpp"
+#include "spline/space.hpp"
+#include "surface/outline.hpp"
+
+namespace tanktread::surface {
+
+/// An outline drawn along x1 from `start` to `end`, open there: cubic splines around (periodic, or open ones between corners, where
+/// nothing is shared) times
+/// open cubic knots along, denser around x1 = 0. The normal x_,s x x_,t (s along x1, t around) points into the fluid.
+///
+/// Control point i n_around + k is number k of ring i; rings ascend along x1. Collocation points are Greville points, those of the
+/// first and last ring on the
+/// rims; the ones at a corner are moved away from it by half of the first spacing, for two sides meet there.
+struct TubeWall {
+  spline::Space space;
+  Net net;
+  Outline outline;  ///< of the wall itself: cubic sides
+  double start = 0, end = 0;
+  int n_around = 0, n_along = 0;
+  double widest = 0;  ///< the larger side of the largest element at x1 = 0, about
+
+  double length() const { return end - start; }
+  double radius() const { return outline.radius(); }  ///< R_T
+};
+
+/// The wall of a section over [-length/2, length/2], with the elements and the grading of the options: density 1 + (g - 1)/(1 +
+/// (x1/w)^4), w = R_T or
+/// `half_length` of the particle where that is more.
+TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
+
+/// The length that the options ask for: by default 2 pi R_T, or the particle's length and 4.6 R_T where that is more (the disturbance
+/// decays like exp(-4.5 x1/R_T)).
+double tube_length(const TubeOptions& options, double radius, double particle_length);
+
+/// Throws UserError when the particle, from x1 = `first` to `last`, is closer than 1.7 R_T to an end of the wall: what is neglected
+/// there is 1e-5 at 1.7 R_T.
+void check_length(const TubeWall& wall, double first, double last);
+
+}  // namespace tanktread::surface
