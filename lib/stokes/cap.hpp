@@ -49,7 +49,7 @@ class Cap {
   const Nodes& nodes_for(double distance) const;
 
   surface::Outline outline_;
-  double place_, tolerance_, reach_;             ///< reach: half of the longest piece
+  double place_, reach_ = 0;                     ///< reach: half of the longest piece
   std::vector<std::pair<double, Nodes>> rules_;  ///< least distance, nodes
 };
 

@@ -80,6 +80,7 @@ void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
 }
 
 /// Assembles rows of a layer that knows
+///   near(i, x0), own(i)                                panels that need a near rule for target i at x0, and those that it lies on
 ///   own_moments(target, x0, e, table, pair, moments)   one panel under its own rule; `pair` for a panel that the target lies on
 ///   far_nodes(nodes, e)                                puts weights or normals into a panel's far nodes
 ///   finish(target, x0, sums)                           what is left to do with the sums of a target
@@ -112,8 +113,8 @@ void dense_rows(LayerSurface& surface, std::span<const int> targets, const std::
         add_moments(panels, e, moments.data(), &sums[l]);
         (pair ? count.self : count.near) += table.points;
       };
-      for (const int e : surface.near(i, at)) add(e, surface.near_field.rule(e, at), nullptr);
-      for (SelfPair& pair : surface.own(i)) add(pair.panel, surface.self_field.rule(pair, panels, surface.bezier), &pair);
+      for (const int e : layer.near(i, at)) add(e, surface.near_field.rule(e, at), nullptr);
+      for (SelfPair& pair : layer.own(i)) add(pair.panel, surface.self_field.rule(pair, panels, surface.bezier), &pair);
     }
     for (int e = 0; e < panels.size(); ++e) {
       PanelNodes<Real> nodes = basis.nodes(surface, e);

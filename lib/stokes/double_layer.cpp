@@ -91,6 +91,9 @@ struct DoubleLayer::Moments {
   DoubleLayer& layer;
   std::vector<Pack> scratch;
 
+  const std::vector<int>& near(int i, const Vec3& x0) { return layer.surface_.near(i, x0); }
+  std::span<SelfPair> own(int i) { return layer.surface_.own(i); }
+
   void own_moments(const Vec3& x0, int e, const PointTable& table, SelfPair*, double* moments) {
     scratch.resize(static_cast<std::size_t>(6) * table.packs());
     double_moments(table, &layer.surface_.bezier[layer.surface_.panels[e].first_bezier], x0.data(), scratch.data(), moments);

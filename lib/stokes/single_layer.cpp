@@ -173,6 +173,9 @@ struct SingleLayer::Moments {
   SingleLayer& layer;
   std::vector<Pack> scratch;
 
+  const std::vector<int>& near(int i, const Vec3& x0) { return layer.surface_.near(i, x0); }
+  std::span<SelfPair> own(int i) { return layer.surface_.own(i); }
+
   void own_moments(const Vec3& x0, int e, const PointTable& table, SelfPair* pair, double* moments) {
     scratch.resize(static_cast<std::size_t>(6) * table.packs());
     const Pack* weights = layer.area_weights_of(e, table, pair);

@@ -1,0 +1,186 @@
+#include "stokes/cross_layer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numbers>
+
+#include "stokes/far_kernel.hpp"
+#include "stokes/pair_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+constexpr double factor = 1 / (8 * std::numbers::pi);
+
+/// Nodes that all targets meet before the next ones are loaded.
+constexpr int nodes_in_cache = 4096;
+
+void sum_of(const PointForces& part, const double* x0, const double*, double* u) { node_sum(part, x0, u); }
+void sum_of(const Stresslets& part, const double* x0, const double* v0, double* u) { node_sum(part, x0, v0, u); }
+
+}  // namespace
+
+CrossLayer::CrossLayer(const spline::Space& source, const quadrature::Options& options, Kernel kernel)
+    : kernel_(kernel), surface_(source, options, kernel == Kernel::double_layer) {}
+
+void CrossLayer::set_reference(const Net& unstressed) {
+  surface_.panels.bezier(unstressed, bezier_unstressed_);
+  node_weights(surface_.panels, bezier_unstressed_, weight_unstressed_);
+}
+
+void CrossLayer::place(const Net& x, Measure measure) {
+  assert((measure == Measure::current || !weight_unstressed_.empty()) && "set_reference() comes first");
+  const auto clock = phases_.time("setup");
+  measure_ = measure;
+  surface_.place(x);
+  if (kernel_ == Kernel::double_layer) return node_normals(surface_.panels, surface_.bezier, normal_);
+  if (measure == Measure::current)
+    node_weights(surface_.panels, surface_.bezier, weight_);
+  else
+    weight_ = weight_unstressed_;
+}
+
+const Pack* CrossLayer::area_weights_of(int e, const PointTable& table) {
+  const auto& surface = measure_ == Measure::current ? surface_.bezier : bezier_unstressed_;
+  point_weights_.resize(table.packs());
+  area_weights(table, &surface[surface_.panels[e].first_bezier], point_weights_.data());
+  return point_weights_.data();
+}
+
+/// `own(e, table, k, sum)`: what panel e gives the target k under its near rule.
+template <class Sources, class Own>
+void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, const Net& at, std::span<const int> targets, Net& u) {
+  const int n = static_cast<int>(targets.size());
+  {
+    const auto clock = phases_.time("far");
+    double block[6 * far_block] = {}, sums[3 * far_block];
+    for (const int i : targets) u.row(i).setZero();
+    for (int node = 0; node < all.n; node += nodes_in_cache) {
+      const Sources part = all.part(node, std::min(nodes_in_cache, all.n - node));
+      for (int first = 0; first < n; first += far_block) {
+        for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
+          for (int c = 0; c < 3; ++c) {
+            const int i = targets[std::min(first + l, n - 1)];
+            block[far_block * c + l] = at(i, c);
+            if (v0) block[far_block * (3 + c) + l] = (*v0)(i, c);
+          }
+        far_sum(part, block, sums);
+        for (int l = 0; l < std::min(far_block, n - first); ++l)
+          for (int c = 0; c < 3; ++c) u(targets[first + l], c) += sums[far_block * c + l];
+      }
+    }
+    evaluations_.far += static_cast<long long>(n) * all.n;
+  }
+  const auto clock = phases_.time("near");
+  const double zero[3] = {0, 0, 0};
+  for (const int i : targets) {
+    const Vec3 y = at.row(i).transpose();
+    for (const int e : surface_.near(y)) {
+      const Panel& panel = surface_.panels[e];
+      const PointTable& table = surface_.near_field.rule(e, y);
+      Vec3 close, far;
+      own(e, table, i, y, close);
+      sum_of(all.part(panel.first_node, panel.table->n_nodes), y.data(), v0 ? v0->row(i).data() : zero, far.data());
+      u.row(i) += (close - far).transpose();
+      evaluations_.near += table.points + panel.table->n_nodes;
+    }
+    u.row(i) *= factor;
+  }
+}
+
+void CrossLayer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u) {
+  if (kernel_ == Kernel::double_layer) return apply(f, Net::Zero(at.rows(), 3), at, targets, u);
+  {
+    const auto clock = phases_.time("setup");
+    values(f, strength_);
+    for (auto& component : strength_)
+      for (int k = 0; k < n_nodes(); ++k) component[k] *= weight_[k];
+  }
+  const auto& node = surface_.node;
+  const PointForces all{n_nodes(),           node[0].data(),      node[1].data(),     node[2].data(),
+                        strength_[0].data(), strength_[1].data(), strength_[2].data()};
+  const auto own = [&](int e, const PointTable& table, int, const Vec3& y, Vec3& sum) {
+    const std::size_t bezier = surface_.panels[e].first_bezier;
+    single_sum(table, &surface_.bezier[bezier], &bezier_f_[bezier], area_weights_of(e, table), y.data(), sum.data());
+  };
+  integrate(all, nullptr, own, at, targets, u);
+}
+
+void CrossLayer::apply(const Net& v, const Net& v0, const Net& at, std::span<const int> targets, Net& u) {
+  assert(kernel_ == Kernel::double_layer);
+  {
+    const auto clock = phases_.time("setup");
+    values(v, strength_);
+  }
+  const auto& node = surface_.node;
+  const Stresslets all{n_nodes(),           node[0].data(),      node[1].data(),    node[2].data(),    strength_[0].data(),
+                       strength_[1].data(), strength_[2].data(), normal_[0].data(), normal_[1].data(), normal_[2].data()};
+  const auto own = [&](int e, const PointTable& table, int i, const Vec3& y, Vec3& sum) {
+    const std::size_t bezier = surface_.panels[e].first_bezier;
+    double_sum(table, &surface_.bezier[bezier], &bezier_f_[bezier], y.data(), v0.row(i).data(), sum.data());
+  };
+  integrate(all, &v0, own, at, targets, u);
+}
+
+void CrossLayer::values(const Net& field, std::vector<double> (&value)[3]) {
+  surface_.panels.bezier(field, bezier_f_);
+  node_values(surface_.panels, bezier_f_, value);
+}
+
+Net CrossLayer::moments(const std::vector<double> (&g)[3]) const {
+  Net sums = Net::Zero(surface_.n_points, 3);
+  std::vector<double> dual;
+  for (int e = 0; e < surface_.panels.size(); ++e) {
+    const Panel& panel = surface_.panels[e];
+    const NodeTable& t = *panel.table;
+    using Matrix = Eigen::Map<const Rows<double>>;
+    const Matrix table(t.value.data(), t.n_bernstein, t.n_nodes), extraction(surface_.panels.extraction(e), panel.functions, t.n_bernstein);
+    for (int c = 0; c < 3; ++c) {
+      const Eigen::VectorXd of_functions =
+          extraction * (table * Eigen::Map<const Eigen::VectorXd>(&g[c][panel.first_node], t.n_nodes));
+      for (int a = 0; a < panel.functions; ++a) sums(surface_.panels.points(e)[a], c) += of_functions[a];
+    }
+  }
+  return sums;
+}
+
+/// The layer as dense_rows() wants it.
+struct CrossLayer::Moments {
+  CrossLayer& layer;
+  std::vector<Pack> scratch;
+
+  const std::vector<int>& near(int, const Vec3& y) { return layer.surface_.near(y); }
+  std::span<SelfPair> own(int) { return {}; }
+
+  void own_moments(const Vec3& y, int e, const PointTable& table, SelfPair*, double* moments) {
+    scratch.resize(static_cast<std::size_t>(6) * table.packs());
+    const double* bezier = &layer.surface_.bezier[layer.surface_.panels[e].first_bezier];
+    if (layer.kernel_ == Kernel::double_layer) return double_moments(table, bezier, y.data(), scratch.data(), moments);
+    single_moments(table, bezier, layer.area_weights_of(e, table), y.data(), scratch.data(), moments);
+  }
+
+  template <class Real>
+  void far_nodes(PanelNodes<Real>& nodes, int first) const {
+    if (layer.kernel_ == Kernel::single_layer)
+      nodes.weight = layer.weight_.data() + first;
+    else
+      for (int c = 0; c < 3; ++c) nodes.normal[c] = layer.normal_[c].data() + first;
+  }
+
+  template <class Real>
+  void finish(int, const Vec3&, Real*) const {}
+};
+
+template <class Real>
+void CrossLayer::assemble_rows(const Net& at, std::span<const int> targets, Rows<Real>& a) {
+  const auto clock = phases_.time("assembly");
+  std::vector<Vec3> points;
+  for (const int i : targets) points.push_back(at.row(i).transpose());
+  Moments moments{*this, {}};
+  dense_rows(surface_, targets, points, moments, evaluations_, a);
+}
+
+void CrossLayer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a) { assemble_rows(at, targets, a); }
+void CrossLayer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(at, targets, a); }
+
+}  // namespace tanktread::stokes

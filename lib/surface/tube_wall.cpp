@@ -1,0 +1,184 @@
+#include "surface/tube_wall.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "spline/knots.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+/// Cubic splines along a line: pieces with four functions each, and collocation points with every piece that holds them.
+struct Line {
+  struct Piece {
+    std::array<int, 4> functions;
+    Eigen::Matrix4d extraction;  ///< row: function; column: Bernstein polynomial
+  };
+  int n = 0;
+  std::vector<Piece> pieces;
+  std::vector<std::vector<std::pair<int, double>>> sites;
+
+  /// Adds a site at u, given the knots of the pieces from `first` on.
+  void add_site(double u, const std::vector<double>& knots, int first, bool closed) {
+    const int m = static_cast<int>(knots.size()) - 1;
+    const double tiny = 1e-9 * (knots[m] - knots[0]);
+    std::vector<std::pair<int, double>> at;
+    for (int e = 0; e < m; ++e)
+      if (u > knots[e] - tiny && u < knots[e + 1] + tiny)
+        at.emplace_back(first + e, std::clamp((u - knots[e]) / (knots[e + 1] - knots[e]), 0., 1.));
+    if (closed && std::abs(u - knots[0]) <= tiny) at.emplace_back(first + m - 1, 1.);
+    for (auto& [e, s] : at)
+      for (const double end : {0., 1.})
+        if (std::abs(s - end) < 1e-9) s = end;
+    sites.push_back(std::move(at));
+  }
+
+  /// Adds pieces between the knots; function j of the extended knots has the number number(j).
+  template <class Number>
+  void add_pieces(const std::vector<double>& extended, int m, const Number& number) {
+    for (int e = 0; e < m; ++e) {
+      Piece piece;
+      for (int a = 0; a < 4; ++a) {
+        std::array<double, 5> k;
+        std::copy_n(extended.begin() + e + a, 5, k.begin());
+        const std::array<double, 4> values = spline::b_spline_on(k, extended[e + 3], extended[e + 4]);
+        for (int b = 0; b < 4; ++b) piece.extraction(a, b) = values[static_cast<std::size_t>(b)];
+        piece.functions[static_cast<std::size_t>(a)] = number(e + a);
+      }
+      pieces.push_back(piece);
+    }
+  }
+};
+
+/// Function i has its middle knot at knots[i].
+void add_closed(Line& line, const std::vector<double>& knots) {
+  const int m = static_cast<int>(knots.size()) - 1, first = static_cast<int>(line.pieces.size()), offset = line.n;
+  const double period = knots[m] - knots[0];
+  std::vector<double> extended;
+  for (int k = -3; k <= m + 3; ++k) extended.push_back(knots[(k + m) % m] + period * std::floor(static_cast<double>(k) / m));
+  line.add_pieces(extended, m, [&](int j) { return offset + (j - 1 + m) % m; });
+  for (int i = 0; i < m; ++i) {
+    double u = (extended[i + 2] + extended[i + 3] + extended[i + 4]) / 3;
+    if (u < knots[0] - 1e-9 * period) u += period;
+    line.add_site(u, knots, first, true);
+  }
+  line.n += m;
+}
+
+/// End knots fourfold. `inwards`: the sites at the ends go half of the way to the next ones.
+void add_open(Line& line, const std::vector<double>& knots, bool inwards) {
+  const int m = static_cast<int>(knots.size()) - 1, first = static_cast<int>(line.pieces.size()), offset = line.n;
+  std::vector<double> extended(3, knots[0]);
+  extended.insert(extended.end(), knots.begin(), knots.end());
+  extended.insert(extended.end(), 3, knots[m]);
+  line.add_pieces(extended, m, [&](int j) { return offset + j; });
+  std::vector<double> greville;
+  for (int i = 0; i < m + 3; ++i) greville.push_back((extended[i + 1] + extended[i + 2] + extended[i + 3]) / 3);
+  if (inwards) {
+    greville[0] = (greville[0] + greville[1]) / 2;
+    greville[m + 2] = (greville[m + 2] + greville[m + 1]) / 2;
+  }
+  for (const double u : greville) line.add_site(u, knots, first, false);
+  line.n += m + 3;
+}
+
+/// Integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x.
+double count(double x, double grading) {
+  const double r = std::numbers::sqrt2;
+  const double bell = std::log((x * x + r * x + 1) / (x * x - r * x + 1)) / (4 * r) + (std::atan(r * x + 1) + std::atan(r * x - 1)) / (2 * r);
+  return x + (grading - 1) * bell;
+}
+
+std::vector<double> graded_knots(double length, int elements, double grading, double width) {
+  const double total = count(length / (2 * width), grading);
+  std::vector<double> knots;
+  for (int k = 0; k <= elements; ++k) {
+    const double wanted = total * (2. * k / elements - 1);
+    double low = -length / (2 * width), high = -low;
+    for (int step = 0; step < 60; ++step) (count((low + high) / 2, grading) < wanted ? low : high) = (low + high) / 2;
+    knots.push_back(width * (low + high) / 2);
+  }
+  knots.front() = -length / 2, knots.back() = length / 2;
+  return knots;
+}
+
+spline::Space product(const Line& along, const Line& around) {
+  spline::Space space;
+  space.n_points = along.n * around.n;
+  const int m = static_cast<int>(around.pieces.size());
+  for (std::size_t i = 0; i < along.pieces.size(); ++i)
+    for (int k = 0; k < m; ++k) {
+      const Line::Piece &s = along.pieces[i], &t = around.pieces[static_cast<std::size_t>(k)];
+      spline::Element element;
+      element.extraction.resize(16, 16);
+      element.origin = {static_cast<double>(i), static_cast<double>(k)};
+      for (int b = 0; b < 4; ++b)
+        for (int a = 0; a < 4; ++a) {
+          element.points.push_back(s.functions[static_cast<std::size_t>(a)] * around.n + t.functions[static_cast<std::size_t>(b)]);
+          for (int q = 0; q < 4; ++q)
+            for (int p = 0; p < 4; ++p) element.extraction(4 * b + a, 4 * q + p) = s.extraction(a, p) * t.extraction(b, q);
+        }
+      space.elements.push_back(std::move(element));
+    }
+  for (const auto& in_s : along.sites)
+    for (const auto& in_t : around.sites) {
+      std::vector<spline::Site> sites;
+      for (const auto& [i, s] : in_s)
+        for (const auto& [k, t] : in_t) sites.push_back({i * m + k, s, t});
+      space.collocation.push_back(std::move(sites));
+    }
+  return space;
+}
+
+}  // namespace
+
+TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
+  const double width = std::max(section.radius(), half_length);
+  const std::vector<double> knots = graded_knots(length, options.axial_elements, options.grading, width);
+  Line along, around;
+  add_open(along, knots, false);
+  TubeWall wall{{}, {}, section.spline(options.azimuthal_elements), -length / 2, length / 2, 0, 0, 0};
+  std::vector<Vec2> ring;
+  for (int k = 0; k < wall.outline.n_sides(); ++k) {
+    const CubicCurve& side = std::get<CubicCurve>(wall.outline.side(k));
+    const std::vector<Vec2> points = control_points(side);
+    ring.insert(ring.end(), points.begin(), points.end());
+    side.closed ? add_closed(around, side.breaks) : add_open(around, side.breaks, true);
+  }
+  wall.space = product(along, around);
+  wall.n_along = along.n, wall.n_around = around.n;
+  std::ostringstream text;
+  text << "tube, " << options.azimuthal_elements << " x " << options.axial_elements << " cubic elements, " << wall.space.n_points << " control points";
+  wall.space.description = text.str();
+  wall.net.resize(wall.space.n_points, 3);
+  const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, options.axial_elements))]; };
+  for (int i = 0; i < along.n; ++i) {
+    const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // the control points of x1 itself
+    for (int k = 0; k < around.n; ++k)
+      wall.net.row(i * around.n + k) << place, ring[static_cast<std::size_t>(k)][0], ring[static_cast<std::size_t>(k)][1];
+  }
+  const int middle = options.axial_elements / 2;
+  wall.widest = std::max(knot(middle + 1) - knot(middle), wall.outline.length() / options.azimuthal_elements);
+  return wall;
+}
+
+double tube_length(const TubeOptions& options, double radius, double particle_length) {
+  return options.length.value_or(std::max(2 * std::numbers::pi * radius, particle_length + 4.6 * radius));
+}
+
+void check_length(const TubeWall& wall, double first, double last) {
+  const double margin = 1.7 * wall.radius(), needed = 2 * (std::max(-first, last) + margin);
+  if (wall.length() >= needed) return;
+  std::ostringstream text;
+  text << "Tube/length must be at least " << needed << " for this particle, which reaches from x1 = " << first << " to " << last
+       << " of its centroid, but is " << wall.length() << ": 1.7 R_T = " << margin << " must be left at either end.";
+  throw UserError(text.str());
+}
+
+}  // namespace tanktread::surface
