@@ -38,7 +38,7 @@ Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, cons
   if (fits)
     for (const double number : *numbers) good = good && std::isfinite(number) && each.holds(number);
   if (!good) {
-    const std::string wording = std::string(columns == 1 ? "three" : "nine") + " numbers in brackets";
+    const std::string wording = std::string(rows * columns == 2 ? "two" : columns == 1 ? "three" : "nine") + " numbers in brackets";
     refuse(path, each.text == any().text ? wording : wording + ", each " + each.text, unit, description(entry));
   }
   Eigen::Matrix<double, rows, columns> out;
@@ -102,6 +102,14 @@ void state_vector(List& list, std::string_view name, Field& field, const Rule& e
   state<Vec3>(list, name, field, array_rule(each, "three"), unit, meaning, read, array_text<3, 1>);
 }
 
+void state_pair(List& list, std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit,
+                std::string_view meaning) {
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    return checked_array<2, 1>(path, entry, each, unit);
+  };
+  state<Eigen::Vector2d>(list, name, field, array_rule(each, "two"), unit, meaning, read, array_text<2, 1>);
+}
+
 template <class Field>
 void state_matrix(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
@@ -128,6 +136,11 @@ void Section::key(std::string_view name, int& field, const Rule& rule, std::stri
 
 void Section::key(std::string_view name, std::optional<int>& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
   state_whole_number(*state_->list, name, field, rule, unit, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit,
+                  std::string_view meaning) {
+  state_pair(*state_->list, name, field, each, unit, meaning);
 }
 
 void Section::key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
@@ -218,6 +231,8 @@ void Section::each(std::string_view meaning, const std::function<void(const std:
 }
 
 bool Section::given(std::string_view name) const { return state_->list->given && state_->list->given->isParameter(std::string(name)); }
+
+bool Section::documenting() const { return state_->documenting; }
 
 std::string Section::path(std::string_view name) const { return name.empty() ? state_->list->path : state_->list->path_of(name); }
 

@@ -50,6 +50,7 @@ class Section {
   void key(std::string_view name, bool& field, std::string_view meaning);
   void key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning);
   void key(std::string_view name, std::optional<std::string>& field, const Choice& choice, std::string_view meaning);
+  void key(std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
   void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit,
@@ -71,6 +72,7 @@ class Section {
 
   /// Whether the user gave this key (for contradictory alternatives), and its path for messages.
   bool given(std::string_view name) const;
+  bool documenting() const;  ///< whether the manual is being made: then every list is stated
   std::string path(std::string_view name = {}) const;
 
   struct State;

@@ -10,16 +10,21 @@
 namespace tanktread::stokes {
 
 void FlowOptions::declare(deck::Section& section) {
-  section.key("type", type,
-              deck::Choice{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear"},
-              "ambient flow: `simple shear` is rate (x3, 0, 0), `planar hyperbolic` rate (x1, 0, -x3), `uniaxial extension` rate "
-              "(-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, `uniform` by `velocity`");
+  section.key(
+      "type", type,
+      deck::Choice{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "duct"},
+      "ambient flow: `simple shear` is rate (x3, 0, 0), `planar hyperbolic` rate (x1, 0, -x3), `uniaxial extension` rate "
+      "(-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, `uniform` by `velocity`, `duct` along x1 "
+      "through the section of the Tube, with `mean velocity`");
   section.key("shear rate", shear_rate, deck::positive(), "1/time", "rate of the flow; for `linear` it stays 1, the gradient says all");
   section.key("viscosity", viscosity, deck::positive(), "stress x time", "of the outer fluid");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
               "a of (P-48), for `four-roll`: 1 is planar hyperbolic flow, 0 simple shear turned by 45 degrees, -1 rotation");
   section.key("gradient", gradient, deck::any(), "1/time", "dv_i/dx_j of the `linear` flow, nine numbers row by row, without trace");
   section.key("velocity", velocity, deck::any(), "length/time", "of the `uniform` flow, three numbers");
+  if (type == "duct") mean_velocity = 1;
+  section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
+              "of the `duct` flow: flow rate over area of the section; 1 if not given");
 }
 
 void FlowOptions::check() const {
@@ -31,6 +36,9 @@ void FlowOptions::check() const {
   belongs("roll parameter", roll_parameter.has_value(), "four-roll");
   belongs("gradient", gradient.has_value(), "linear");
   belongs("velocity", velocity.has_value(), "uniform");
+  belongs("mean velocity", mean_velocity.has_value(), "duct");
+  if (type == "duct" && shear_rate != 1.0)
+    throw UserError("Flow/shear rate and Flow/type `duct` contradict each other: give Flow/mean velocity.");
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
     throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
                     ".");
@@ -39,9 +47,11 @@ void FlowOptions::check() const {
 }
 
 double FlowOptions::rate() const {
-  if (type == "quiescent" || type == "uniform") return 0.0;
+  if (type == "quiescent" || type == "uniform" || type == "duct") return 0.0;
   if (type == "linear") return Eigen::JacobiSVD<Mat3>(gradient.value()).singularValues()[0];
   return shear_rate;
 }
+
+double FlowOptions::speed(double radius) const { return mean_velocity.value_or(rate() * radius); }
 
 }  // namespace tanktread::stokes

@@ -1,0 +1,88 @@
+#pragma once
+// The cross-section of a tube.
+
+#include <string>
+
+#include "surface/plane_curve.hpp"
+#include "surface/tube_options.hpp"
+
+namespace tanktread::surface {
+
+/// The nearest place of an outline to a point, and on which side of the outline the point is.
+struct Nearest {
+  int side = 0;
+  double u = 0;
+  Vec2 x;               ///< the place
+  double distance = 0;  ///< to it; positive for a point inside the outline, negative outside
+};
+
+/// A closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), counter-clockwise: x2 towards x3, seen against x1. Either one closed
+/// smooth side, or several smooth sides that meet at corners, each starting where the one before ends.
+class Outline {
+ public:
+  /// Throws UserError, a sentence that begins with `name`, for sides that cross or run clockwise.
+  explicit Outline(std::vector<PlaneCurve> sides, const std::string& name = "The outline");
+
+  int n_sides() const { return static_cast<int>(sides_.size()); }
+  const PlaneCurve& side(int k) const { return sides_[static_cast<std::size_t>(k)]; }
+  bool smooth() const { return n_sides() == 1; }  ///< no corners
+
+  PlaneJet at(int k, double u) const { return jet(side(k), u); }
+  Vec2 point(int k, double u) const { return at(k, u).x; }
+  Vec2 tangent(int k, double u) const { return at(k, u).d.normalized(); }
+  Vec2 normal(int k, double u) const;  ///< unit, out of the tube's interior (into the wall)
+
+  double length() const { return length_; }
+  double side_length(int k) const { return lengths_[static_cast<std::size_t>(k)]; }
+  double area() const { return area_; }
+  Vec2 centroid() const { return centroid_; }
+  double radius() const;                            ///< R_T = sqrt(area/pi)
+  std::array<Vec2, 2> box() const { return box_; }  ///< smallest and largest coordinates
+
+  Nearest nearest(const Vec2& p) const;
+  double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
+  bool inside(const Vec2& p) const { return distance(p) > 0; }
+
+  /// The number of elements of each side when `elements` are shared out by length, at least `least` on each.
+  std::vector<int> shares(int elements, int least = 1) const;
+
+  /// m + 1 knots of m elements on side k, evenly in its parameter.
+  std::vector<double> knots(int k, int m) const;
+
+  /// The outline as cubic splines on shares(elements, 2) even elements: through the points at the knots, open sides with the end tangents as
+  /// well. All sides of the result are CubicCurves; an order-4 approximation, exact for straight sides.
+  Outline spline(int elements) const;
+
+ private:
+  /// Short chords of the sides, each with a bound on the curve's distance from it.
+  struct Chord {
+    int side;
+    double begin, end;
+    Vec2 a, b;
+    double sag;
+  };
+  const Chord& chord(int i) const { return chords_[static_cast<std::size_t>(i)]; }
+  void add_chords(int k);
+  void measure();
+  const Chord* first_crossing() const;
+  Nearest nearest_on(const Chord& chord, const Vec2& p) const;
+  bool within(const Vec2& p, const Nearest& nearest) const;
+
+  std::vector<PlaneCurve> sides_;
+  std::vector<double> lengths_;
+  std::vector<Chord> chords_;
+  double length_ = 0, area_ = 0, sag_ = 0;
+  Vec2 centroid_ = Vec2::Zero();
+  std::array<Vec2, 2> box_;
+};
+
+/// The section of a tube: circle and ellipse themselves, four straight sides, or the spline through the points of a file. Throws UserError.
+Outline outline(const TubeOptions& options);
+
+/// The same as cubic splines on `elements` elements.
+inline Outline outline(const TubeOptions& options, int elements) { return outline(options).spline(elements); }
+
+/// Points of a file as TubeOptions::outline describes it. Throws UserError: one sentence with file, line and numbers.
+Outline read_outline(const std::string& path);
+
+}  // namespace tanktread::surface

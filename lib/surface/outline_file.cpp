@@ -1,0 +1,145 @@
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "base/errors.hpp"
+#include "surface/outline.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+constexpr int fewest_smooth = 8, fewest_with_corners = 3;
+
+struct Row {
+  int line;
+  Vec2 x;
+  bool corner;
+};
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::vector<std::string> fields(const std::string& line) {
+  std::vector<std::string> out;
+  std::stringstream in(line);
+  for (std::string field; std::getline(in, field, ',');) out.push_back(trimmed(field));
+  return out;
+}
+
+class File {
+ public:
+  explicit File(const std::string& path) : name_("Tube/outline \"" + path + "\"") {
+    std::ifstream in(path);
+    if (!in) throw UserError(name_ + " cannot be read.");
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      line = trimmed(line.substr(0, line.find('#')));
+      const bool heading = rows_.empty() && line.rfind("x2", 0) == 0;
+      if (!line.empty() && !heading) rows_.push_back(row(number, line));
+    }
+    if (rows_.size() > 1 && rows_.front().x == rows_.back().x) rows_.pop_back();
+    check();
+  }
+
+  const std::string& name() const { return name_; }
+  const std::vector<Row>& rows() const { return rows_; }
+
+ private:
+  std::string at(int line) const { return name_ + ", line " + std::to_string(line) + ": "; }
+
+  double number(int line, const std::string& text) const {
+    std::size_t used = 0;
+    double value = NAN;
+    try {
+      value = std::stod(text, &used);
+    } catch (const std::logic_error&) {
+    }
+    if (used != text.size() || !std::isfinite(value)) throw UserError(at(line) + "\"" + text + "\" is not a finite number.");
+    return value;
+  }
+
+  Row row(int line, const std::string& text) const {
+    const auto field = fields(text);
+    if (field.size() < 2 || field.size() > 3)
+      throw UserError(at(line) + "a point is two numbers x2,x3 and, where two sides meet, the word `corner`, but this line holds " +
+                      std::to_string(field.size()) + (field.size() == 1 ? " entry." : " entries."));
+    const bool third = field.size() == 3 && !field[2].empty();
+    if (third && field[2] != "corner")
+      throw UserError(at(line) + "the third entry must be `corner` or nothing, but is \"" + field[2] + "\".");
+    return {line, {number(line, field[0]), number(line, field[1])}, third};
+  }
+
+  void check() const {
+    bool corners = false;
+    for (const Row& row : rows_) corners = corners || row.corner;
+    const int fewest = corners ? fewest_with_corners : fewest_smooth, n = static_cast<int>(rows_.size());
+    if (n < fewest)
+      throw UserError(name_ + " must hold at least " + std::to_string(fewest) + " points" + (corners ? "" : " without corners") +
+                      ", but holds " + std::to_string(n) + ".");
+    double longest = 0;
+    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
+      const double step = (rows_[i + 1].x - rows_[i].x).norm();
+      if (step == 0)
+        throw UserError(at(rows_[i + 1].line) + "the point of line " + std::to_string(rows_[i].line) + " stands here once more.");
+      longest = std::max(longest, step);
+    }
+    const double gap = (rows_.front().x - rows_.back().x).norm();
+    const bool straight = rows_.front().corner && rows_.back().corner;
+    if (gap > 3 * longest && !straight)
+      throw UserError(name_ + " is open: its last point is " + std::to_string(gap) +
+                      " from its first, but no two others that follow each other are " + "more than " + std::to_string(longest) +
+                      " apart.");
+  }
+
+  std::string name_;
+  std::vector<Row> rows_;
+};
+
+/// The spline through n + 1 points from rows[first] on (n of them when closed), by the length of the chords.
+CubicCurve fit(const std::vector<Row>& rows, std::size_t first, std::size_t n, bool closed) {
+  std::vector<double> breaks{0};
+  std::vector<Vec2> points{rows[first].x};
+  for (std::size_t i = 1; i <= n; ++i) {
+    const Vec2& x = rows[(first + i) % rows.size()].x;
+    breaks.push_back(breaks.back() + (x - rows[(first + i - 1) % rows.size()].x).norm());
+    if (!closed || i < n) points.push_back(x);
+  }
+  return closed ? interpolate_closed(breaks, points) : interpolate_open(breaks, points);
+}
+
+}  // namespace
+
+Outline read_outline(const std::string& path) {
+  const File file(path);
+  const auto& rows = file.rows();
+  std::vector<std::size_t> corners;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].corner) corners.push_back(i);
+  std::vector<PlaneCurve> sides;
+  if (corners.empty()) sides.push_back(fit(rows, 0, rows.size(), true));
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const std::size_t next = k + 1 < corners.size() ? corners[k + 1] : corners[0] + rows.size();
+    sides.push_back(fit(rows, corners[k], next - corners[k], false));
+  }
+  return Outline(std::move(sides), file.name());
+}
+
+Outline outline(const TubeOptions& options) {
+  if (options.section == "file") return read_outline(options.outline.value());
+  const Vec2 zero = Vec2::Zero();
+  if (options.section == "circle") return Outline({Ellipse{zero, Vec2::Constant(options.radius.value())}});
+  if (options.section == "ellipse") return Outline({Ellipse{zero, options.semi_axes.value()}});
+  const Vec2 half = options.sides.value() / 2;
+  const std::array<Vec2, 4> corner{Vec2(-half[0], -half[1]), Vec2(half[0], -half[1]), Vec2(half[0], half[1]), Vec2(-half[0], half[1])};
+  std::vector<PlaneCurve> sides;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec2 &a = corner[k], &b = corner[(k + 1) % 4];
+    sides.push_back(interpolate_open({0, (b - a).norm()}, {a, b}));
+  }
+  return Outline(std::move(sides));
+}
+
+}  // namespace tanktread::surface

@@ -1,0 +1,89 @@
+#include "stokes/duct_flow.hpp"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace tanktread::stokes {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+surface::TubeOptions circle(double radius) {
+  surface::TubeOptions tube;
+  tube.section = "circle", tube.radius = radius;
+  return tube;
+}
+
+surface::TubeOptions ellipse(double a, double b) {
+  surface::TubeOptions tube;
+  tube.section = "ellipse", tube.semi_axes = surface::Vec2(a, b);
+  return tube;
+}
+
+surface::TubeOptions rectangle(double w, double h) {
+  surface::TubeOptions tube;
+  tube.section = "rectangle", tube.sides = surface::Vec2(w, h);
+  return tube;
+}
+
+TEST(DuctFlow, IsPoiseuillesInACircle) {
+  const DuctFlow flow(circle(1.5), 2, 3);
+  EXPECT_NEAR(flow.velocity(Vec3(7, 0.3, -0.4))[0], 6 * (1 - 0.25 / 2.25), 1e-13) << "twice the mean on the axis";
+  EXPECT_NEAR(flow.pressure_gradient(), 8 * 2 * 3 / (1.5 * 1.5), 1e-12);
+  EXPECT_NEAR(flow.flow_rate(), 3 * pi * 1.5 * 1.5, 1e-12);
+  EXPECT_NEAR(flow.radius(), 1.5, 1e-14);
+  EXPECT_LT(flow.maximum().place.norm(), 1e-9);
+  EXPECT_NEAR(flow.maximum().velocity, 6, 1e-12);
+}
+
+TEST(DuctFlow, HasTheKnownFlowRates) {
+  EXPECT_NEAR(duct_profile(ellipse(1, 0.5), surface::outline(ellipse(1, 0.5)))->flow_rate(), pi * 0.125 / 5, 1e-15);
+  const auto rate = [](double w, double h) { return rectangle_profile({w, h})->flow_rate(); };
+  EXPECT_NEAR(rate(2, 2) / 16, 0.035144253739, 1e-12);  // to the digits of the reference
+  EXPECT_NEAR(rate(2, 1), 2 * 0.0571704193, 2e-10);
+  EXPECT_NEAR(rate(1, 3), 3 * 0.0658292328, 3e-10);
+  EXPECT_NEAR(rate(5, 1), 5 * 0.0728291885, 5e-10);
+}
+
+/// Mean of v and largest |v| on the wall by points, against what the flow says of itself.
+void expect_consistent(const DuctFlow& flow) {
+  const auto [low, high] = flow.outline().box();
+  const double h = 1e-4 * flow.radius();
+  for (const double s : {0.07, 0.3, 0.5, 0.8})
+    for (const double t : {0.06, 0.5, 0.7, 0.94}) {
+      const Vec3 x(0.3, low[0] + s * (high[0] - low[0]), low[1] + t * (high[1] - low[1]));
+      if (flow.outline().distance(x.tail<2>()) < 10 * h) continue;
+      const auto at = [&](int c, double d) { return Vec3(x + d * Vec3::Unit(c)); };
+      const Mat3 l = flow.gradient(x);
+      for (int c : {1, 2})
+        EXPECT_NEAR(l(0, c), (flow.velocity(at(c, h)) - flow.velocity(at(c, -h)))[0] / (2 * h), 1e-6);  // h^2 u''' and round-off/h
+      const double laplacian = (flow.gradient(at(1, h)) - flow.gradient(at(1, -h)))(0, 1) / (2 * h) +
+                               (flow.gradient(at(2, h)) - flow.gradient(at(2, -h)))(0, 2) / (2 * h);
+      EXPECT_NEAR(flow.viscosity() * laplacian, -flow.pressure_gradient(), 1e-5 * flow.pressure_gradient()) << x.transpose();
+      const Vec3 n = Vec3(1, 2, -2) / 3;
+      const Vec3 traction = flow.pressure_gradient() * x[0] * n + flow.viscosity() * (l + l.transpose()) * n;
+      EXPECT_LT((flow.traction(x, n) - traction).norm(), 1e-12 * traction.norm());
+    }
+}
+
+TEST(DuctFlow, SatisfiesItsEquationAndItsGradientIsOne) {
+  expect_consistent(DuctFlow(circle(1), 1.3, 0.7));
+  expect_consistent(DuctFlow(ellipse(1.2, 0.9), 1.3, 0.7));
+  expect_consistent(DuctFlow(rectangle(1, 3), 1.3, 0.7));
+  expect_consistent(DuctFlow(rectangle(2, 2), 1.3, 0.7));
+}
+
+TEST(DuctFlow, VanishesOnTheWallOfARectangle) {
+  const DuctFlow flow(rectangle(2, 3), 1, 1);
+  const auto& outline = flow.outline();
+  for (int k = 0; k < 4; ++k)
+    for (const double s : {1e-3, 0.2, 0.5, 0.93}) {
+      const surface::Vec2 p = outline.point(k, s * outline.side_length(k));
+      EXPECT_LT(std::abs(flow.velocity(Vec3(0, p[0], p[1]))[0]), 1e-12);
+    }
+  EXPECT_NEAR(DuctFlow(rectangle(1, 1), 1, 0.035144253739).maximum().velocity, 0.073671353282, 1e-11);  // digits of the reference
+}
+
+}  // namespace
+}  // namespace tanktread::stokes
