@@ -17,6 +17,8 @@
 
 namespace tanktread::coupling {
 
+class Wall;
+
 struct TubeParameters {
   double viscosity = 1;                                  ///< mu of the outer fluid
   double viscosity_ratio = 1;                            ///< lambda
@@ -74,7 +76,7 @@ class Tube {
   Net wall_on_particle(const Net& traction);  ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);      ///< (1/mu) G_W f^D
   const Net& inlet_on_particle() const;       ///< c
-  const Net& inlet_on_wall() const;
+  Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
   Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors
 
@@ -91,15 +93,20 @@ class Tube {
   double gap() const;
 
   const surface::TubeWall& wall() const;
-  const stokes::DuctFlow& flow() const;
+  const stokes::DuctFlow& flow() const { return *flow_; }
   double centroid() const;                         ///< x1 of the particle placed
   stokes::Evaluations kernel_evaluations() const;  ///< of both surfaces, the assembly of the wall included
 
  private:
-  struct Wall;
   struct Particle;
+  double viscosity() const;
+  double cap_velocity(const Net& f, const Net& v, const Response& response);
+
+  std::shared_ptr<const stokes::DuctFlow> flow_;
+  Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
+  Net flow_weights_, force_weights_;  // of the checks, made when first asked for
 };
 
 }  // namespace tanktread::coupling

@@ -56,7 +56,8 @@ Vec3 stretch(const surface::Outline& outline, int side, double begin, double end
 Cap::Cap(const surface::Outline& outline, double place, double tolerance) : outline_(outline), place_(place) {
   for (int k = 0; k < outline.n_sides(); ++k) {
     const std::vector<double> u = breaks(outline, k);
-    for (std::size_t e = 0; e + 1 < u.size(); ++e) reach_ = std::max(reach_, (outline.point(k, u[e + 1]) - outline.point(k, u[e])).norm() / 2);
+    for (std::size_t e = 0; e + 1 < u.size(); ++e)
+      reach_ = std::max(reach_, (outline.point(k, u[e + 1]) - outline.point(k, u[e])).norm() / 2);
   }
   for (const double times : {close_by, 2 * close_by, 4 * close_by})
     rules_.push_back({times * reach_, nodes(std::max(3, 1 + quadrature::order_for(tolerance, quadrature::ellipse(0, times))))});

@@ -136,8 +136,7 @@ Net CrossLayer::moments(const std::vector<double> (&g)[3]) const {
     using Matrix = Eigen::Map<const Rows<double>>;
     const Matrix table(t.value.data(), t.n_bernstein, t.n_nodes), extraction(surface_.panels.extraction(e), panel.functions, t.n_bernstein);
     for (int c = 0; c < 3; ++c) {
-      const Eigen::VectorXd of_functions =
-          extraction * (table * Eigen::Map<const Eigen::VectorXd>(&g[c][panel.first_node], t.n_nodes));
+      const Eigen::VectorXd of_functions = extraction * (table * Eigen::Map<const Eigen::VectorXd>(&g[c][panel.first_node], t.n_nodes));
       for (int a = 0; a < panel.functions; ++a) sums(surface_.panels.points(e)[a], c) += of_functions[a];
     }
   }

@@ -45,7 +45,7 @@ class CrossLayer {
   /// The shape at its far nodes: places, weights with areas (of the measure) and normals times areas.
   int n_nodes() const { return surface_.panels.n_nodes(); }
   const std::vector<double> (&nodes() const)[3] { return surface_.node; }
-  const std::vector<double>& weights() const { return weight_; }                ///< of a single layer
+  const std::vector<double>& weights() const { return weight_; }  ///< of a single layer
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
   /// A field at the far nodes, and the transpose: int N_A g dG for every A, from what g times area is at the far nodes.

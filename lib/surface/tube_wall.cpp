@@ -91,7 +91,8 @@ void add_open(Line& line, const std::vector<double>& knots, bool inwards) {
 /// Integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x.
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
-  const double bell = std::log((x * x + r * x + 1) / (x * x - r * x + 1)) / (4 * r) + (std::atan(r * x + 1) + std::atan(r * x - 1)) / (2 * r);
+  const double bell =
+      std::log((x * x + r * x + 1) / (x * x - r * x + 1)) / (4 * r) + (std::atan(r * x + 1) + std::atan(r * x - 1)) / (2 * r);
   return x + (grading - 1) * bell;
 }
 
@@ -154,7 +155,8 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
   wall.space = product(along, around);
   wall.n_along = along.n, wall.n_around = around.n;
   std::ostringstream text;
-  text << "tube, " << options.azimuthal_elements << " x " << options.axial_elements << " cubic elements, " << wall.space.n_points << " control points";
+  text << "tube, " << options.azimuthal_elements << " x " << options.axial_elements << " cubic elements, " << wall.space.n_points
+       << " control points";
   wall.space.description = text.str();
   wall.net.resize(wall.space.n_points, 3);
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, options.axial_elements))]; };

@@ -1,0 +1,108 @@
+#include "coupling/tube.hpp"
+
+#include "coupling/tube_particle.hpp"
+
+namespace tanktread::coupling {
+
+Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
+           Ranks&, Phases& phases)
+    : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
+  const auto clock = phases_.time("wall assembly");
+  wall_ = std::make_shared<Wall>(wall, parameters.quadrature);
+  particle_ = std::make_unique<Particle>(particle, parameters);
+}
+
+Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_) {
+  particle_ = std::make_unique<Particle>(particle, tube.particle_->parameters);
+}
+
+Tube::~Tube() = default;
+
+const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
+double Tube::centroid() const { return particle_->centroid; }
+const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
+
+stokes::Evaluations Tube::kernel_evaluations() const {
+  const stokes::Evaluations of_wall = wall_->evaluations(), of_particle = particle_->evaluations();
+  return {of_wall.far + of_particle.far, of_wall.near + of_particle.near, of_wall.self + of_particle.self};
+}
+
+void Tube::set_reference(const Net& unstressed) { particle_->single.set_reference(unstressed); }
+
+void Tube::place(const Net& x) {
+  const auto clock = phases_.time("wall");
+  particle_->place(x, *flow_, *wall_);
+}
+
+double Tube::pressure_of(const Net& f, const Net& v) {
+  return dot(particle_->pressure_of_load, f) + dot(particle_->pressure_of_velocity, v);
+}
+
+Net Tube::load_on_wall(const Net& f) {
+  Net u(wall_->sites().rows(), 3);
+  particle_->single.apply(f, wall_->sites(), wall_->own(), u);
+  wall_->ranks().replicate(u);
+  return -u / viscosity();
+}
+
+Net Tube::velocity_on_wall(const Net& v) {
+  Net u = Net::Zero(wall_->sites().rows(), 3);
+  if (!particle_->dual) return u;
+  particle_->dual->apply(v, particle_->nearest_values(v), wall_->sites(), wall_->own(), u);
+  wall_->ranks().replicate(u);
+  return (1 - particle_->parameters.viscosity_ratio) * u;
+}
+
+Net Tube::wall_on_particle(const Net& traction) {
+  Net u(particle_->sites.rows(), 3);
+  wall_->layer().apply(traction, particle_->sites, particle_->own, u);
+  particle_->ranks.replicate(u);
+  return -u / viscosity();
+}
+
+Net Tube::wall_on_wall(const Net& traction) { return wall_->apply(traction) / viscosity(); }
+
+Net Tube::inlet_on_wall() const { return wall_->inlet_column() / viscosity(); }
+
+Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
+
+double Tube::viscosity() const { return particle_->parameters.viscosity; }
+
+Tube::Response Tube::respond(const Net& f, const Net& v) {
+  const auto clock = phases_.time("wall");
+  Response response;
+  response.pressure_drop = pressure_of(f, v);
+  Net on_wall = Net::Zero(wall_->sites().rows(), 3);
+  if (f.size() > 0) on_wall += load_on_wall(f);
+  if (v.size() > 0 && particle_->dual) on_wall += velocity_on_wall(v);
+  response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
+  response.velocity = wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
+  return response;
+}
+
+void Tube::freeze() {
+  const auto clock = phases_.time("assembly");
+  particle_->freeze(*wall_);
+}
+
+Net Tube::frozen_response(const Net& f, const Net& v) {
+  const Particle::Frozen& frozen = particle_->frozen;
+  const double ratio = particle_->parameters.viscosity_ratio,
+               pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
+  Net on_wall = Net::Zero(wall_->sites().rows(), 3), part = on_wall;
+  if (f.size() > 0) {
+    frozen.single.apply(f, part);
+    on_wall -= part / viscosity();
+  }
+  if (v.size() > 0 && particle_->dual) {
+    frozen.dual.apply(v, part);
+    on_wall += (1 - ratio) * part;
+  }
+  wall_->ranks().replicate(on_wall);
+  Net u(particle_->sites.rows(), 3);
+  frozen.wall.apply(solve_wall(on_wall) + pressure * wall_->pumped(), u);
+  particle_->ranks.replicate(u);
+  return -u / viscosity() + pressure * frozen.inlet;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,99 @@
+#include "coupling/tube_particle.hpp"
+
+#include "coupling/collocation.hpp"
+#include "surface/partition.hpp"
+
+namespace tanktread::coupling {
+
+using stokes::CrossLayer;
+
+Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& how)
+    : space(particle),
+      parameters(how),
+      geometry(particle),
+      collocation(collocation_matrix(particle)),
+      from_sites(how.direct),
+      single(particle, how.quadrature, CrossLayer::Kernel::single_layer) {
+  own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
+  ranks.own(own, space.n_points);
+  from_sites.factor(collocation);
+  if (how.viscosity_ratio != 1) dual.emplace(particle, how.quadrature, CrossLayer::Kernel::double_layer);
+}
+
+void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wall) {
+  centroid = geometry.measures(x).centroid[0];
+  shape = x;
+  shape.col(0).array() -= centroid;
+  sites = collocation * shape;
+  inlet = wall.inlet().integral(sites) / parameters.viscosity;
+  single.place(shape, parameters.measure);
+  if (dual) {
+    dual->place(shape);
+    find_nearest(wall.sites());
+  }
+  weigh_pressure(flow);
+}
+
+/// The weights of (2.7) over Q, with v_inf and its gradient interpolated at the collocation points: v_1, v_1,2 and v_1,3 make the three columns.
+///   f_inf.v = G x1 n.v + mu [v_1,2 (n_2 v_1 + n_1 v_2) + v_1,3 (n_3 v_1 + n_1 v_3)]
+void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
+  Net at_sites = Net::Zero(sites.rows(), 3);
+  at_sites.col(0) = flow.velocity(sites).col(0);
+  if (dual) {
+    const std::vector<Mat3> gradient = flow.gradients(sites);
+    for (std::size_t i = 0; i < gradient.size(); ++i) at_sites.row(static_cast<Eigen::Index>(i)).tail<2>() = gradient[i].row(0).tail<2>();
+  }
+  const Net field = from_sites.solve(at_sites);
+  const std::size_t n = static_cast<std::size_t>(single.n_nodes());
+  std::vector<double> flow_at[3], weighted[3];
+  single.values(field, flow_at);
+  for (auto& component : weighted) component.assign(n, 0.);
+  for (std::size_t k = 0; k < n; ++k) weighted[0][k] = single.weights()[k] * flow_at[0][k];
+  pressure_of_load = single.moments(weighted) / flow.flow_rate();
+  if (!dual) return;
+  const double mu = flow.viscosity(), gradient = flow.pressure_gradient();
+  const auto& normal = dual->normals();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double pressure = -gradient * dual->nodes()[0][k], n1 = normal[0][k], n2 = normal[1][k], n3 = normal[2][k];
+    weighted[0][k] = -pressure * n1 + mu * (flow_at[1][k] * n2 + flow_at[2][k] * n3);
+    weighted[1][k] = -pressure * n2 + mu * flow_at[1][k] * n1;
+    weighted[2][k] = -pressure * n3 + mu * flow_at[2][k] * n1;
+  }
+  pressure_of_velocity = -(1 - parameters.viscosity_ratio) / flow.flow_rate() * dual->moments(weighted);
+}
+
+void Tube::Particle::find_nearest(const Net& wall_sites) {
+  nearest.resize(static_cast<std::size_t>(wall_sites.rows()));
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    Eigen::Index at = 0;
+    (sites.rowwise() - wall_sites.row(static_cast<Eigen::Index>(i))).rowwise().squaredNorm().minCoeff(&at);
+    nearest[i] = static_cast<int>(at);
+  }
+}
+
+Net Tube::Particle::nearest_values(const Net& v) const {
+  const Net at_sites = collocation * v;
+  Net values(static_cast<Eigen::Index>(nearest.size()), 3);
+  for (std::size_t i = 0; i < nearest.size(); ++i) values.row(static_cast<Eigen::Index>(i)) = at_sites.row(nearest[i]);
+  return values;
+}
+
+void Tube::Particle::freeze(Wall& wall) {
+  using Targets = std::span<const int>;
+  frozen.single.assemble(wall.own(), space.n_points,
+                         [&](Targets targets, stokes::Rows<float>& rows) { single.assemble(wall.sites(), targets, rows); });
+  if (dual)
+    frozen.dual.assemble(wall.own(), space.n_points,
+                         [&](Targets targets, stokes::Rows<float>& rows) { dual->assemble(wall.sites(), targets, rows); });
+  frozen.wall.assemble(own, wall.surface().space.n_points,
+                       [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
+  frozen.inlet = inlet, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
+}
+
+stokes::Evaluations Tube::Particle::evaluations() const {
+  stokes::Evaluations sum = single.evaluations();
+  if (dual) sum.far += dual->evaluations().far, sum.near += dual->evaluations().near;
+  return sum;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,61 @@
+#pragma once
+// The particle in the tube: what changes with its shape.
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "coupling/frozen_operator.hpp"
+#include "coupling/tube.hpp"
+#include "coupling/wall.hpp"
+#include "membrane/direct_solver.hpp"
+#include "stokes/cross_layer.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+/// Sum over the control points of a.b; 0 where one of them is empty.
+inline double dot(const Net& a, const Net& b) { return a.size() == 0 || b.size() == 0 ? 0 : a.cwiseProduct(b).sum(); }
+
+struct Tube::Particle {
+  Particle(const spline::Space& space, const TubeParameters& parameters);
+
+  void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
+  void freeze(Wall& wall);
+
+  /// v at the collocation point of the particle that is nearest to each one of the wall.
+  Net nearest_values(const Net& v) const;
+
+  stokes::Evaluations evaluations() const;
+
+  const spline::Space& space;
+  TubeParameters parameters;
+  std::vector<int> own;  ///< points of this rank
+  Ranks ranks;
+  surface::Geometry geometry;
+  Eigen::SparseMatrix<double> collocation;  ///< R
+  membrane::DirectSolver from_sites;        ///< R^-1
+  stokes::CrossLayer single;
+  std::optional<stokes::CrossLayer> dual;  ///< lambda != 1
+
+  Net shape;                                   ///< in the wall's frame
+  double centroid = 0;                         ///< where that frame has its origin
+  Net sites;                                   ///< collocation points, in the wall's frame
+  Net inlet;                                   ///< (1/mu) c there
+  Net pressure_of_load, pressure_of_velocity;  ///< the weights of f and v in (2.7); of v empty for lambda = 1
+  std::vector<int> nearest;                    ///< to a collocation point of the wall
+
+  struct Frozen {
+    FrozenOperator single, dual, wall;
+    Net inlet, pressure_of_load, pressure_of_velocity;
+  };
+  Frozen frozen;
+
+ private:
+  void weigh_pressure(const stokes::DuctFlow& flow);
+  void find_nearest(const Net& wall_sites);
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,103 @@
+#include "coupling/wall.hpp"
+
+#include <algorithm>
+
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// The wall's own matrix is made once, so it can be sharper than what changes with the particle.
+quadrature::Options sharper(quadrature::Options options) {
+  options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
+  return options;
+}
+
+Net collocation_points(const spline::Space& space, const Net& net) {
+  Net at(space.n_points, 3);
+  for (int i = 0; i < space.n_points; ++i)
+    at.row(i) = surface::value(space, net, space.collocation[static_cast<std::size_t>(i)].front()).transpose();
+  return at;
+}
+
+Eigen::Map<const Eigen::VectorXd> flat(const Net& net) { return {net.data(), net.size()}; }
+
+}  // namespace
+
+Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature)
+    : surface_(wall),
+      layer_(surface_.space, quadrature, stokes::CrossLayer::Kernel::single_layer),
+      inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
+      sites_(collocation_points(wall.space, wall.net)) {
+  const int n = wall.space.n_points;
+  for (int i = n * ranks_.rank() / ranks_.size(); i < n * (ranks_.rank() + 1) / ranks_.size(); ++i) own_.push_back(i);
+  ranks_.own(own_, n);
+  layer_.place(wall.net);
+
+  stokes::SingleLayer own_layer(surface_.space, sharper(quadrature));
+  own_layer.assemble(wall.net, stokes::Measure::current, own_, rows_);
+  assembly_ = own_layer.evaluations();
+  Eigen::MatrixXd all(3 * n, 3 * n);
+  Net column(n, 3);
+  for (int j = 0; j < 3 * n; ++j) {
+    for (std::size_t k = 0; k < own_.size(); ++k)
+      column.row(own_[k]) = rows_.col(j).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    ranks_.replicate(column);
+    all.col(j) = flat(column);
+  }
+  factors_.compute(all);
+
+  inlet_column_ = inlet_.integral(sites_);
+  pumped_ = solve(inlet_column_);
+}
+
+Net Wall::apply(const Net& f) const {
+  Net u(f.rows(), 3);
+  for (std::size_t k = 0; k < own_.size(); ++k)
+    for (int i = 0; i < 3; ++i) u(own_[k], i) = rows_.row(3 * static_cast<Eigen::Index>(k) + i).dot(flat(f));
+  ranks_.replicate(u);
+  return u;
+}
+
+Net Wall::solve(const Net& rhs) const {
+  const Eigen::VectorXd f = factors_.solve(flat(rhs));
+  return Eigen::Map<const Net>(f.data(), rhs.rows(), 3);
+}
+
+/// Along the wall with the points crowded towards the ends of each element, where the inlet's integral is steep at the rim: s = 3 q^2 - 2 q^3.
+Net Wall::weights(const std::function<Vec3(const Vec3&)>& field) const {
+  constexpr int along = 16, around = 6;
+  const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);
+  const spline::Space& space = surface_.space;
+  Net sum = Net::Zero(space.n_points, 3);
+  for (std::size_t e = 0; e < space.elements.size(); ++e)
+    for (int i = 0; i < along; ++i)
+      for (int j = 0; j < around; ++j) {
+        const double q = in_s.nodes[i];
+        const spline::Site site{static_cast<int>(e), q * q * (3 - 2 * q), in_t.nodes[j]};
+        const surface::Point at = surface::point(space, surface_.net, site);
+        const Vec3 value = in_s.weights[i] * 6 * q * (1 - q) * in_t.weights[j] * at.jacobian * field(at.x);
+        const Eigen::VectorXd basis = spline::basis(space.elements[e], site.s, site.t, 0).value;
+        for (std::size_t a = 0; a < space.elements[e].points.size(); ++a)
+          sum.row(space.elements[e].points[a]) += basis[static_cast<Eigen::Index>(a)] * value.transpose();
+      }
+  return sum;
+}
+
+Net Wall::flow_weights() const {
+  return weights([&](const Vec3& x) -> Vec3 { return inlet_.integral(Net(x.transpose())).row(0).transpose(); });
+}
+
+Net Wall::force_weights() const {
+  return weights([](const Vec3&) -> Vec3 { return Vec3::UnitX(); });
+}
+
+stokes::Evaluations Wall::evaluations() const {
+  const stokes::Evaluations& off = layer_.evaluations();
+  return {assembly_.far + off.far, assembly_.near + off.near, assembly_.self + off.self};
+}
+
+}  // namespace tanktread::coupling

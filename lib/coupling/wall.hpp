@@ -1,0 +1,58 @@
+#pragma once
+// What depends on a tube's wall alone, made once a run.
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "base/types.hpp"
+#include "coupling/ranks.hpp"
+#include "quadrature/options.hpp"
+#include "stokes/cap.hpp"
+#include "stokes/cross_layer.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/tube_wall.hpp"
+
+namespace tanktread::coupling {
+
+/// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
+class Wall {
+ public:
+  /// Collective, like solve's and apply's replication of rows.
+  Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature);
+
+  const surface::TubeWall& surface() const { return surface_; }
+  const std::vector<int>& own() const { return own_; }  ///< rows of this rank
+  const Net& sites() const { return sites_; }           ///< collocation points
+  const Ranks& ranks() const { return ranks_; }
+  stokes::CrossLayer& layer() { return layer_; }  ///< of the wall, at points off it
+  const stokes::Cap& inlet() const { return inlet_; }
+
+  Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG
+  Net solve(const Net& rhs) const;  ///< A^-1 rhs
+
+  const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet at the collocation points
+  const Net& pumped() const { return pumped_; }              ///< A^-1 c: the traction of the open, empty tube with a unit of pressure drop
+
+  /// int N_A c dG and int N_A e1 dG for every A: what a traction does to the flow rate through the inlet, and to the axial force.
+  Net flow_weights() const;
+  Net force_weights() const;
+
+  stokes::Evaluations evaluations() const;
+
+ private:
+  Net weights(const std::function<Vec3(const Vec3&)>& field) const;
+
+  surface::TubeWall surface_;
+  std::vector<int> own_;
+  Ranks ranks_;
+  stokes::CrossLayer layer_;
+  stokes::Cap inlet_;
+  Net sites_, inlet_column_, pumped_;
+  stokes::Rows<double> rows_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  stokes::Evaluations assembly_;
+};
+
+}  // namespace tanktread::coupling
