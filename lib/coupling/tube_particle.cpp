@@ -38,7 +38,7 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
 ///   f_inf.v = G x1 n.v + mu [v_1,2 (n_2 v_1 + n_1 v_2) + v_1,3 (n_3 v_1 + n_1 v_3)]
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
   Net at_sites = Net::Zero(sites.rows(), 3);
-  at_sites.col(0) = flow.velocity(sites).col(0);
+  at_sites.col(0) = flow.velocities(sites).col(0);
   if (dual) {
     const std::vector<Mat3> gradient = flow.gradients(sites);
     for (std::size_t i = 0; i < gradient.size(); ++i) at_sites.row(static_cast<Eigen::Index>(i)).tail<2>() = gradient[i].row(0).tail<2>();
