@@ -22,11 +22,22 @@ class Dynamics {
   /// delta = (I - shift J)^{-1} r with the Jacobian (4.3), to the relative residual `tolerance`. `shift` is gamma dt.
   virtual Net solve(double shift, const Net& r, double tolerance) = 0;
 
+  /// J delta at x, where the velocity is v, delta of the norm of a shape: with the frozen operators (4.3) where there are any, else by a
+  /// difference of velocities, which costs an evaluation.
+  virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
+
   /// Moves x onto the initial volume, if the constraint is `exact`; otherwise does nothing.
   virtual void restore_volume(Net& x) = 0;
 
   /// The norm of `Time/tolerance`: root mean square of the control points' displacement over R_C.
   virtual double norm(const Net& displacement) const = 0;
+
+ protected:
+  /// (v(x + e delta) - v)/e for e delta of norm 1e-4: above the noise of adaptive quadrature, below what bends.
+  Net difference(const Net& x, const Net& v, const Net& delta) {
+    const double e = 1e-4 / norm(delta);
+    return (velocity(x + e * delta) - v) / e;
+  }
 };
 
 }  // namespace tanktread::coupling
