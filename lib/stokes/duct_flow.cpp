@@ -2,15 +2,15 @@
 
 #include <Eigen/LU>
 
-#include "base/errors.hpp"
+#include "stokes/duct_boundary.hpp"
 
 namespace tanktread::stokes {
 
-std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline&) {
-  if (options.exact_flow() && options.section == "circle") return ellipse_profile(surface::Vec2::Constant(options.radius.value()));
-  if (options.exact_flow() && options.section == "ellipse") return ellipse_profile(options.semi_axes.value());
-  if (options.exact_flow()) return rectangle_profile(options.sides.value());
-  throw RunFailure("The boundary elements of a duct's flow are not there yet.");
+std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline& outline) {
+  if (!options.exact_flow()) return std::make_unique<BoundaryProfile>(outline, options.flow_elements);
+  if (options.section == "circle") return ellipse_profile(surface::Vec2::Constant(options.radius.value()));
+  if (options.section == "ellipse") return ellipse_profile(options.semi_axes.value());
+  return rectangle_profile(options.sides.value());
 }
 
 DuctFlow::DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity)

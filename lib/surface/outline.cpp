@@ -117,6 +117,13 @@ Vec2 Outline::normal(int k, double u) const {
   return {t[1], -t[0]};
 }
 
+double Outline::corner_angle(int k) const {
+  if (smooth()) return std::numbers::pi;
+  const int before = (k + n_sides() - 1) % n_sides();
+  const Vec2 in = tangent(before, range(side(before))[1]), out = tangent(k, range(side(k))[0]);
+  return std::numbers::pi - std::atan2(cross(in, out), in.dot(out));
+}
+
 double Outline::radius() const { return std::sqrt(area_ / std::numbers::pi); }
 
 /// Newton's method for the foot of the perpendicular, kept on the chord's piece of the curve; the ends count as well.

@@ -25,12 +25,15 @@ class Outline {
 
   int n_sides() const { return static_cast<int>(sides_.size()); }
   const PlaneCurve& side(int k) const { return sides_[static_cast<std::size_t>(k)]; }
-  bool smooth() const { return n_sides() == 1; }  ///< no corners
+  bool smooth() const { return closed(sides_[0]); }  ///< no corners
 
   PlaneJet at(int k, double u) const { return jet(side(k), u); }
   Vec2 point(int k, double u) const { return at(k, u).x; }
   Vec2 tangent(int k, double u) const { return at(k, u).d.normalized(); }
   Vec2 normal(int k, double u) const;  ///< unit, out of the tube's interior (into the wall)
+
+  /// Angle inside the outline where side k begins, 0 .. 2 pi; pi where nothing turns.
+  double corner_angle(int k) const;
 
   double length() const { return length_; }
   double side_length(int k) const { return lengths_[static_cast<std::size_t>(k)]; }
