@@ -1,6 +1,7 @@
 #include "stokes/cauchy_kernel.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "stokes/pack.hpp"
 
@@ -18,32 +19,32 @@ Complex operator/(const Complex& a, const Complex& b) {
   return {(a.re * b.re + a.im * b.im) * inverse, (a.im * b.re - a.re * b.im) * inverse};
 }
 
-/// zeta_j - z, never quite zero.
-Complex difference(const CauchyNodes& nodes, int j, const Complex& z, double tiny) {
-  Complex d{nodes.x[j] - z.re, nodes.y[j] - z.im};
-  d.re = d.re * d.re + d.im * d.im < tiny * tiny ? d.re + tiny : d.re;
-  return d;
+/// 1/(zeta_j - z); not a number or infinite where z is the node.
+inline Complex inverse(const CauchyNodes& nodes, int j, const Complex& z) {
+  const Pack x = nodes.x[j] - z.re, y = nodes.y[j] - z.im, square = 1 / (x * x + y * y);
+  return {x * square, -y * square};
 }
 
 struct Value {
   Complex f, slope;
 };
 
-Value value(const CauchyNodes& nodes, const Complex& z, double tiny, bool with_slope) {
+Value value(const CauchyNodes& nodes, const Complex& z, bool with_slope) {
   Complex one{}, sum{};
   for (int j = 0; j < nodes.n; ++j) {
-    const Complex c = Complex{nodes.dx[j] + Pack{}, nodes.dy[j] + Pack{}} / difference(nodes, j, z, tiny);
-    one.re += c.re, one.im += c.im;
-    sum.re += nodes.f[j] * c.re - nodes.g[j] * c.im;
-    sum.im += nodes.f[j] * c.im + nodes.g[j] * c.re;
+    const Complex r = inverse(nodes, j, z);
+    const Pack c_re = nodes.dx[j] * r.re - nodes.dy[j] * r.im, c_im = nodes.dx[j] * r.im + nodes.dy[j] * r.re;
+    one.re += c_re, one.im += c_im;
+    sum.re += nodes.f[j] * c_re - nodes.g[j] * c_im;
+    sum.im += nodes.f[j] * c_im + nodes.g[j] * c_re;
   }
   const Complex f = sum / one;
   if (!with_slope) return {f, Complex{}};
   Complex slope{};
   for (int j = 0; j < nodes.n; ++j) {
-    const Complex d = difference(nodes, j, z, tiny);
-    const Complex c = Complex{nodes.dx[j] + Pack{}, nodes.dy[j] + Pack{}} / d;
-    const Complex term = Complex{nodes.f[j] - f.re, nodes.g[j] - f.im} * (c / d);
+    const Complex r = inverse(nodes, j, z);
+    const Complex c = {nodes.dx[j] * r.re - nodes.dy[j] * r.im, nodes.dx[j] * r.im + nodes.dy[j] * r.re};
+    const Complex term = Complex{nodes.f[j] - f.re, nodes.g[j] - f.im} * (c * r);
     slope.re += term.re, slope.im += term.im;
   }
   return {f, slope / one};
@@ -59,7 +60,11 @@ void cauchy_sums(const CauchyNodes& nodes, double scale, int n, const double* x,
       const int i = begin + std::min(l, count - 1);
       z.re[l] = x[i], z.im[l] = y[i];
     }
-    const Value v = value(nodes, z, 1e-15 * scale, fx != nullptr);
+    Value v = value(nodes, z, fx != nullptr);
+    bool node = false;
+    for (int l = 0; l < lanes; ++l)
+      if (std::isnan(v.f.re[l])) z.re[l] += 1e-14 * scale, node = true;
+    if (node) v = value(nodes, z, fx != nullptr);
     for (int l = 0; l < count; ++l) {
       f[begin + l] = v.f.re[l];
       if (fx) fx[begin + l] = v.slope.re[l], fy[begin + l] = -v.slope.im[l];

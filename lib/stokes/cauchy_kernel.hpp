@@ -11,8 +11,8 @@ struct CauchyNodes {
 
 /// At n points z = x + i y inside the curve
 ///   F(z) = sum_j F_j c_j / sum_j c_j,   c_j = dzeta_j/(zeta_j - z),   F'(z) = sum_j (F_j - F) c_j/(zeta_j - z) / sum_j c_j        (2.17)
-/// into f = Re F and, unless `fx` is null, fx = Re F', fy = -Im F' (the gradient of f). Accurate up to the curve and on it. Points that coincide with a
-/// node to 1e-15 `scale` are moved by as much.
+/// into f = Re F and, unless `fx` is null, fx = Re F', fy = -Im F' (the gradient of f). Accurate up to the curve and on it. A point that is a
+/// node is moved by 1e-14 `scale`.
 void cauchy_sums(const CauchyNodes& nodes, double scale, int n, const double* x, const double* y, double* f, double* fx, double* fy);
 
 }  // namespace tanktread::stokes
