@@ -35,7 +35,7 @@ std::vector<int> everybody(Eigen::Index n) {
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
   const double mu = viscosity(), factor = 1 - particle.parameters.viscosity_ratio, dp = response.pressure_drop;
-  const double area = flow_->outline().area();
+  const double area = wall_->surface().outline.area();
   const stokes::Cap& inlet = wall_->inlet();
   if (flow_weights_.size() == 0) flow_weights_ = wall_->flow_weights(), force_weights_ = wall_->force_weights();
 

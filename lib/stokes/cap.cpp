@@ -35,19 +35,37 @@ Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   return Vec3(rho.dot(nu), -h * nu[0], -h * nu[1]) / r;
 }
 
-/// Over a stretch of one side, halved until its ends are as far away as it is long.
-Vec3 stretch(const surface::Outline& outline, int side, double begin, double end, const Vec2& p, double h, double smallest) {
+/// The integrand of own_flow(): r nu.
+Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
+  const Vec2 nu = (at.x - p).norm() * weighted_normal(at);
+  return {0, nu[0], nu[1]};
+}
+
+/// The integral of f over a stretch of one side, halved until it is no longer than it is far away.
+template <class Integrand>
+Vec3 stretch(const Integrand& f, const surface::Outline& outline, int side, double begin, double end, const Vec2& p, double h,
+             double smallest) {
   const Vec2 a = outline.point(side, begin), b = outline.point(side, end), chord = b - a;
   const double along = std::clamp((p - a).dot(chord) / chord.squaredNorm(), 0., 1.);
   const double distance = std::hypot((a + along * chord - p).norm(), h), length = chord.norm();
   if (distance < length && length > smallest) {
     const double middle = (begin + end) / 2;
-    return stretch(outline, side, begin, middle, p, h, smallest) + stretch(outline, side, middle, end, p, h, smallest);
+    return stretch(f, outline, side, begin, middle, p, h, smallest) + stretch(f, outline, side, middle, end, p, h, smallest);
   }
   const quadrature::GaussRule& rule = quadrature::gauss(close_order);
   Vec3 sum = Vec3::Zero();
   for (int q = 0; q < rule.size(); ++q)
-    sum += rule.weights[q] * (end - begin) * integrand(outline.at(side, begin + rule.nodes[q] * (end - begin)), p, h);
+    sum += rule.weights[q] * (end - begin) * f(outline.at(side, begin + rule.nodes[q] * (end - begin)), p, h);
+  return sum;
+}
+
+template <class Integrand>
+Vec3 around(const Integrand& f, const surface::Outline& outline, const Vec2& p, double h, double smallest) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < outline.n_sides(); ++k) {
+    const std::vector<double> u = breaks(outline, k);
+    for (std::size_t e = 0; e + 1 < u.size(); ++e) sum += stretch(f, outline, k, u[e], u[e + 1], p, h, smallest);
+  }
   return sum;
 }
 
@@ -87,12 +105,7 @@ const Cap::Nodes& Cap::nodes_for(double distance) const {
 Vec3 Cap::integral(const Vec3& x0) const {
   const Vec2 p(x0[1], x0[2]);
   const double h = place_ - x0[0];
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < outline_.n_sides(); ++k) {
-    const std::vector<double> u = breaks(outline_, k);
-    for (std::size_t e = 0; e + 1 < u.size(); ++e) sum += stretch(outline_, k, u[e], u[e + 1], p, h, 1e-10 * reach_);
-  }
-  return factor * sum;
+  return factor * around(integrand, outline_, p, h, 1e-10 * reach_);
 }
 
 Net Cap::integral(const Net& x) const {
@@ -137,11 +150,10 @@ double Cap::double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const
 
 /// int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'
 double Cap::own_flow() const {
-  const Nodes n = nodes(close_order);
+  const Nodes n = nodes(6);
   double sum = 0;
   for (std::size_t k = 0; k < n.y.size(); ++k)
-    for (std::size_t l = 0; l < n.y.size(); ++l)
-      sum -= std::hypot(n.y[k] - n.y[l], n.z[k] - n.z[l]) * (n.ny[k] * n.ny[l] + n.nz[k] * n.nz[l]);
+    sum -= around(distance_times_normal, outline_, {n.y[k], n.z[k]}, 0, 1e-4 * reach_).dot(Vec3(0, n.ny[k], n.nz[k]));
   return factor * sum;
 }
 
