@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/prescribed.hpp"
+#include "app/tube.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
 
@@ -41,14 +42,22 @@ Body body(const Scene& scene) {
     b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
   }
   b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
-  b.flow = stokes::AmbientFlow(scene.flow);
+  b.duct = duct(scene);
+  b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
   b.radius = scene.radius();
   b.modulus = scene.modulus();
   b.law = law(scene.membrane, b.modulus);
+  b.wall = wall(scene, b);
   return b;
 }
 
-std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases) {
+stokes::Measure load_measure(const Scene& scene) {
+  const bool reference = scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
+  return reference ? stokes::Measure::reference : stokes::Measure::current;
+}
+
+std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases,
+                                           std::unique_ptr<coupling::Tube> tube) {
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
   parameters.viscosity_ratio = scene.particle.viscosity_ratio;
@@ -56,27 +65,26 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
   parameters.radius = body.radius;
   parameters.law = body.law;
   parameters.strong_load = scene.membrane.load == "strong";
-  // A drop has no unstressed state, so its load is always per current area.
-  const bool reference = scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
-  parameters.measure = reference ? stokes::Measure::reference : stokes::Measure::current;
+  parameters.measure = load_measure(scene);
   parameters.interface_motion = scene.interface_motion();
   const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : body.modulus / (scene.flow.viscosity * body.radius);
-  parameters.interface_speed = scene.interface.relaxation * rate * body.radius;
+  parameters.interface_speed = scene.interface.relaxation * (scene.flow.type == "duct" ? scene.speed() : rate * body.radius);
   parameters.volume = scene.volume;
   parameters.solvers = scene.solvers;
   parameters.quadrature = scene.quadrature;
-  return std::make_unique<coupling::Capsule>(body.space, body.unstressed, body.rest, body.flow, parameters, ranks, phases);
+  return std::make_unique<coupling::Capsule>(body.space, body.unstressed, body.rest, body.flow, parameters, ranks, phases, std::move(tube));
 }
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (scene.particle.rigid()) return rigid_plan(scene, body, ranks);
   const double points = body.space.n_points;
   const bool implicit = scene.time.scheme == "tr-bdf2";
-  return {
+  output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
+  if (body.wall) fluid = tube_plan(scene, body);
+  output::Entries<std::string> lines = {
       {"surface", text("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
                        body.space.description.c_str())},
       {"unknowns", text("%d positions", 3 * body.space.n_points)},
-      {"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"},
       {"viscosity", scene.particle.viscosity_ratio == 1
                         ? std::string("ratio 1: no double layer, no system for the velocity")
                         : text("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
@@ -93,6 +101,8 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
       {"mesh", scene.adaptation.enabled ? "refined as the particle deforms (P-37)" : "fixed"},
       {"symmetry", "none used"},
   };
+  lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
+  return lines;
 }
 
 }  // namespace tanktread

@@ -12,6 +12,7 @@
 #include "output/summary.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
+#include "surface/tube_wall.hpp"
 
 namespace tanktread {
 
@@ -25,14 +26,20 @@ struct Body {
   membrane::Law law;
   double radius = 1;   ///< R_C
   double modulus = 1;  ///< G_s, or sigma of an interface
+  std::shared_ptr<const stokes::DuctFlow> duct;     ///< of the tube, if there is one
+  std::shared_ptr<const surface::TubeWall> wall;
 };
 Body body(const Scene& scene);
 
 /// The spline space that the deck wants on a mesh.
 spline::Space space(const Scene& scene, const spline::TMesh& mesh);
 
-/// The coupled system that the scene needs, and no more.
-std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases);
+/// What the load is measured on: a drop has no unstressed state, so its load is always per current area.
+stokes::Measure load_measure(const Scene& scene);
+
+/// The coupled system that the scene needs, and no more, in a tube if there is one.
+std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases,
+                                           std::unique_ptr<coupling::Tube> tube);
 
 /// What the run has chosen: blocks, unknowns, memory, kernel evaluations, and what the scene made superfluous.
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);

@@ -4,6 +4,7 @@
 
 #include "app/adaptation.hpp"
 #include "app/moving.hpp"
+#include "app/tube.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread {
@@ -14,7 +15,9 @@ class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), body_(std::make_unique<Body>(tanktread::body(scene))),
-        capsule_(capsule(scene, *body_, ranks, phases)) {}
+        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, ranks, phases))), columns_(tanktread::columns()) {
+    if (body_->wall) columns_.insert(columns_.end(), tube_columns().begin(), tube_columns().end());
+  }
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
   const Body& body() const override { return *body_; }
@@ -51,10 +54,14 @@ class Deforming : public Moving {
     return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
   }
 
-  const std::vector<Column>& columns() const override { return tanktread::columns(); }
+  const std::vector<Column>& columns() const override { return columns_; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    return tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds);
+    std::vector<double> row = tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds);
+    if (!body_->wall) return row;
+    const std::vector<double> more = tube_row(*body_, *capsule_, state);
+    row.insert(row.end(), more.begin(), more.end());
+    return row;
   }
 
   Portrait portrait(const motion::State& state) override {
@@ -67,9 +74,11 @@ class Deforming : public Moving {
   void settle(std::unique_ptr<Body> body) {
     const coupling::Work work = capsule_->work();
     kernel_evaluations_ = kernel_evaluations();
+    std::unique_ptr<coupling::Tube> tube;
+    if (capsule_->tube()) tube = std::make_unique<coupling::Tube>(*capsule_->tube(), body->space);
     capsule_.reset();
     body_ = std::move(body);
-    capsule_ = capsule(scene_, *body_, ranks_, phases_);
+    capsule_ = capsule(scene_, *body_, ranks_, phases_, std::move(tube));
     capsule_->work() = work;
   }
 
@@ -99,6 +108,7 @@ class Deforming : public Moving {
   Phases& phases_;
   std::unique_ptr<Body> body_;
   std::unique_ptr<coupling::Capsule> capsule_;
+  std::vector<Column> columns_;
   stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
   bool warned_of_size_ = false;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surface/geometry.hpp"
+#include "surface/transport.hpp"
 
 namespace tanktread {
 
@@ -29,7 +30,8 @@ const std::vector<Column>& columns() {
       {"length_x1", "length", "extent along x1"},
       {"length_x2", "length", "extent along x2"},
       {"length_x3", "length", "extent along x3"},
-      {"normal_velocity", "1", "largest |v.n| over rate x R_C: zero when the shape is steady"},
+      {"normal_velocity", "1",
+       "largest |v.n| over rate x R_C (in a tube over the mean velocity, in the particle's frame): zero when the shape is steady"},
       {"n_control_points", "1", "control points of the surface"},
       {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"},
       {"rejected_steps", "1", "attempts given up in this step"},
@@ -70,7 +72,7 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           shape.lengths[0],
           shape.lengths[1],
           shape.lengths[2],
-          normal_velocity(scene, body, state),
+          normal_velocity(scene, body, capsule.geometry(), state),
           static_cast<double>(body.space.n_points),
           report.error,
           static_cast<double>(report.rejected),
@@ -82,15 +84,17 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           wall_seconds};
 }
 
-double normal_velocity(const Scene& scene, const Body& body, const motion::State& state) {
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state) {
   if (state.history.empty()) return 0;
   double largest = 0;
+  Vec3 frame = Vec3::Zero();
+  if (scene.tube.present) frame[0] = surface::centroid_velocity(geometry, state.x, state.history.front())[0];
   for (const auto& sites : body.space.collocation) {
-    const Vec3 v = surface::value(body.space, state.history.front(), sites.front());
+    const Vec3 v = surface::value(body.space, state.history.front(), sites.front()) - frame;
     largest = std::max(largest, std::abs(v.dot(surface::point(body.space, state.x, sites.front()).n)));
   }
-  const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : 1;
-  return largest / (rate * body.radius);
+  const double speed = scene.speed();
+  return largest / (speed > 0 ? speed : body.radius);
 }
 
 }  // namespace tanktread

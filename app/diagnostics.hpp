@@ -20,7 +20,8 @@ const std::vector<Column>& columns();
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
                         const motion::StepReport& report, double wall_seconds);
 
-/// Largest |v.n| over the collocation sites, over rate x R_C: zero when the shape is steady.
-double normal_velocity(const Scene& scene, const Body& body, const motion::State& state);
+/// Largest |v.n| over the collocation sites, over rate x R_C: zero when the shape is steady. In a tube of the velocity relative to the centroid's
+/// along the tube, over the mean velocity.
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state);
 
 }  // namespace tanktread

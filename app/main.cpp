@@ -50,6 +50,18 @@ void check_changes(const std::string& stored, const deck::Document& now) {
                       ", and now is " + value + ".");
 }
 
+/// A file that a deck names: of the run that goes on, from where the program was started, or beside a deck; as it is named where there is none.
+std::string found(const std::string& name, const Arguments& arguments) {
+  const std::filesystem::path path(name);
+  std::vector<std::filesystem::path> places;
+  if (!arguments.resume.empty()) places.push_back(std::filesystem::path(arguments.resume) / path.filename());
+  places.push_back(path);
+  for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
+  for (const auto& place : places)
+    if (std::filesystem::is_regular_file(place)) return place.string();
+  return name;
+}
+
 int run(const Arguments& arguments, bool speaks) {
   if (arguments.reference) {
     if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene{});
@@ -66,6 +78,7 @@ int run(const Arguments& arguments, bool speaks) {
   deck::Document deck = deck::read(arguments.decks, arguments.settings, stored);
   deck.declare(scene);
   if (resume) check_changes(stored, deck);
+  if (scene.tube.outline) scene.tube.outline = found(*scene.tube.outline, arguments);
   scene.check();
 
   if (arguments.check) {

@@ -26,6 +26,8 @@ void store(const Standing& standing, output::Checkpoint& checkpoint) {
   checkpoint.numbers["solves"] = static_cast<double>(standing.work.solves);
   checkpoint.numbers["solver iterations"] = static_cast<double>(standing.work.solver_iterations);
   checkpoint.numbers["velocity iterations"] = static_cast<double>(standing.work.velocity_iterations);
+  checkpoint.numbers["velocity solves"] = static_cast<double>(standing.work.velocity_solves);
+  checkpoint.numbers["most velocity iterations"] = static_cast<double>(standing.work.most_velocity_iterations);
 }
 
 Standing stored_standing(const output::Checkpoint& checkpoint) {
@@ -33,7 +35,7 @@ Standing stored_standing(const output::Checkpoint& checkpoint) {
   return {static_cast<int>(count("step number")),
           checkpoint.numbers.at("wall seconds"),
           {count("evaluations"), count("assemblies"), count("tangents"), count("solves"), count("solver iterations"),
-           count("velocity iterations")},
+           count("velocity iterations"), count("velocity solves"), count("most velocity iterations")},
           static_cast<int>(count("refinements")),
           static_cast<int>(count("coarsenings"))};
 }
@@ -92,6 +94,9 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
     output::tidy_directory(directory_);
   } else {
     output::start_directory(directory_);
+    if (scene.tube.outline)  // a run goes on without its deck
+      std::filesystem::copy_file(*scene.tube.outline, directory_ / std::filesystem::path(*scene.tube.outline).filename(),
+                                 std::filesystem::copy_options::overwrite_existing);
     record_.emplace(directory_ / "run.h5", request.deck_text, origin());
     series_.emplace(directory_);
     declare_columns();

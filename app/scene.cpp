@@ -28,6 +28,8 @@ void Scene::declare(deck::Section& root) {
   const bool deforming = !particle.rigid();
   if (deforming || membrane_given) root.section("Membrane", membrane, "what its surface is made of");
   root.section("Surface", surface, "the spline space of its surface");
+  tube.present = root.given("Tube");
+  if (tube.present || root.documenting()) root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
@@ -81,8 +83,28 @@ void check_motion(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+void check_tube(const Scene& scene) {
+  const std::string flow = "Flow/type `" + scene.flow.type + "`";
+  if (!scene.tube.present) {
+    if (scene.flow.type == "duct") throw UserError(flow + " needs a list Tube, at least Tube/section.");
+    return;
+  }
+  scene.tube.check();
+  if (scene.flow.type != "duct" && scene.flow.type != "quiescent")
+    throw UserError("Tube and " + flow + " contradict each other: that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`.");
+  if (scene.particle.rigid())
+    throw UserError("Tube and Particle/motion `" + scene.particle.motion + "` contradict each other: rigid particles are in unbounded fluid.");
+  if (scene.quadrature.rule == "desingularised")
+    throw UserError("Quadrature/rule `desingularised` and Tube contradict each other: the wall is not closed.");
+}
+
+}  // namespace
+
 void Scene::check() const {
   flow.check();
+  check_tube(*this);
   particle.shape.check();
   surface.check();
   check_motion(*this);
@@ -110,9 +132,11 @@ std::string Scene::interface_motion() const {
 
 double Scene::radius() const { return particle.shape.equivalent_radius(); }
 
+double Scene::speed() const { return flow.speed(radius()); }
+
 double Scene::modulus() const {
   if (particle.rigid()) return 0;
-  return membrane.modulus(flow.viscosity, flow.rate(), radius());
+  return tube.present ? membrane.modulus(flow.viscosity, speed(), 1.0) : membrane.modulus(flow.viscosity, flow.rate(), radius());
 }
 
 bool Scene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
@@ -120,7 +144,8 @@ bool Scene::reciprocal_forces() const { return particle.forces ? *particle.force
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 
 bool may_change_on_resume(const std::string& path) {
-  for (const char* fixed : {"Flow", "Particle", "Membrane", "Surface", "Volume"})
+  if (path == "Tube/contact gap") return true;
+  for (const char* fixed : {"Flow", "Particle", "Membrane", "Surface", "Volume", "Tube"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

@@ -14,6 +14,7 @@
 #include "quadrature/options.hpp"
 #include "stokes/flow_options.hpp"
 #include "surface/options.hpp"
+#include "surface/tube_options.hpp"
 
 namespace tanktread {
 
@@ -36,6 +37,7 @@ struct Scene {
   ParticleOptions particle;
   membrane::Options membrane;
   surface::MeshOptions surface;
+  surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
   motion::TimeOptions time;
@@ -53,6 +55,7 @@ struct Scene {
 
   bool reciprocal_forces() const;    ///< `Particle/forces`, or its default
   double radius() const;             ///< R_C: of the sphere of equal volume
+  double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law
   double snapshot_interval() const;  ///< simulated time between snapshots

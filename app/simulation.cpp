@@ -11,6 +11,7 @@
 #include "app/moving.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
+#include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
@@ -50,6 +51,8 @@ output::Entries<long> counts(const Standing& standing, const coupling::Work& wor
           {"linear_solves", work.solves},
           {"solver_iterations", work.solver_iterations},
           {"velocity_iterations", work.velocity_iterations},
+          {"velocity_solves", work.velocity_solves},
+          {"most_velocity_iterations", work.most_velocity_iterations},
           {"kernel_evaluations_far", static_cast<long>(kernel.far)},
           {"kernel_evaluations_near", static_cast<long>(kernel.near)},
           {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
@@ -108,15 +111,22 @@ class Run {
     try {
       report_ = scheme_->advance(particle_->dynamics(), state_, stop_);
     } catch (const RunFailure& failure) {
-      if (results_.last_saved() != standing_.step) save();
-      char where[300];
-      std::snprintf(where, sizeof where, " at time %.6g, step %d; the checkpoint of the last good step is in %s", state_.time, standing_.step,
-                    results_.directory().c_str());
-      throw RunFailure(failure.what() + std::string(where));
+      fail(failure.what());
     }
     ++standing_.step;
     if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body());
     record();
+    if (!scene_.tube.present) return;
+    const std::string reason = contact(scene_, entry("gap"));
+    if (!reason.empty()) fail(reason);
+  }
+
+  [[noreturn]] void fail(const std::string& reason) {
+    if (results_.last_saved() != standing_.step) save();
+    char where[300];
+    std::snprintf(where, sizeof where, " at time %.6g, step %d; the checkpoint of the last good step is in %s", state_.time, standing_.step,
+                  results_.directory().c_str());
+    throw RunFailure(reason + where);
   }
 
   void record() {

@@ -1,7 +1,11 @@
 #include "coupling/capsule.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
+#include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
 #include "surface/partition.hpp"
 
@@ -14,7 +18,7 @@ double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 }  // namespace
 
 Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
-                 const CapsuleParameters& parameters, Ranks& ranks, Phases& phases)
+                 const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
     : space_(space),
       flow_(flow),
       parameters_(parameters),
@@ -28,7 +32,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       collocation_(parameters.solvers.direct),
       mass_(parameters.solvers.direct),
       krylov_(parameters.solvers.krylov, parameters.solvers.belos),
-      inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos) {
+      inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos),
+      tube_(std::move(tube)) {
   const surface::Share share = surface::share(space, surface::partition(space, ranks.size()), ranks.rank());
   own_points_ = share.points;
   own_elements_ = share.elements;
@@ -37,6 +42,10 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   mass_.factor(mass_matrix_.update(unstressed));
   layer_.set_reference(unstressed);
   if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
+  if (tube_) {
+    sites_ = collocation_matrix(space);
+    if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
+  }
   volume0_ = geometry_.volume(initial);
   if (parameters.interface_motion != "material")
     interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, own_elements_,
@@ -45,10 +54,11 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
 
 Capsule::~Capsule() = default;
 
+/// Control values of v_inf without a tube: exact, for the flow is affine and the basis sums to one.
 Net Capsule::ambient(const Net& x) const {
   Net v(x.rows(), 3);
   for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = flow_.velocity(x.row(i).transpose()).transpose();
-  return v;  // exact: every flow without a tube is affine, and the basis sums to one
+  return v;
 }
 
 Net Capsule::energy_gradient(const Net& x) {
@@ -82,7 +92,27 @@ Net Capsule::flux_vector(const Net& x) {
 
 Net Capsule::velocity(const Net& x) {
   ++work_.evaluations;
+  if (tube_ && !enter_tube(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const Net f = load(x);
+  Net v = load_velocity(x, f);
+  const bool constrained = parameters_.volume.constraint != "none";
+  const Net b = constrained ? flux_vector(x) : Net(), c = constrained ? mass_.solve(b) : Net();
+  if (constrained) v -= dot(b, v) / dot(b, c) * c;
+  if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v);
+  if (!interface_) return v;
+  const auto clock = phases_.time("interface motion");
+  if (tube_) {
+    const Eigen::RowVector3d carried = drift(x, constrained ? b : flux_vector(x), v);
+    v = interface_->velocity(x, v.rowwise() - carried).rowwise() + carried;
+  } else {
+    v = interface_->velocity(x, v);
+  }
+  if (constrained) v -= dot(b, v) / dot(b, c) * c;  // interpolation of the normal motion lets a little flux in
+  return v;
+}
+
+/// v_inf - R^-1 A f, and what the wall answers to the load where it is eliminated.
+Net Capsule::load_velocity(const Net& x, const Net& f) {
   Net u(x.rows(), 3);
   {
     const auto clock = phases_.time("single layer");
@@ -92,37 +122,56 @@ Net Capsule::velocity(const Net& x) {
     const auto clock = phases_.time("exchange");
     ranks_.replicate(u);
   }
-  Net v = ambient(x);
-  {
+  if (tube_) {
+    u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
+    if (schur()) u += tube_->respond(f).velocity;
     const auto clock = phases_.time("projection");
-    v -= collocation_.solve(u) / parameters_.viscosity;
+    return collocation_.solve(u);
   }
-  const bool constrained = parameters_.volume.constraint != "none";
-  const Net b = constrained ? flux_vector(x) : Net(), c = constrained ? mass_.solve(b) : Net();
-  if (constrained) v -= dot(b, v) / dot(b, c) * c;
-  if (double_layer_) v = solve_velocity(x, b, c, v);
-  if (!interface_) return v;
-  const auto clock = phases_.time("interface motion");
-  v = interface_->velocity(x, v);
-  if (constrained) v -= dot(b, v) / dot(b, c) * c;  // interpolation of the normal motion lets a little flux in
+  Net v = ambient(x);
+  const auto clock = phases_.time("projection");
+  v -= collocation_.solve(u) / parameters_.viscosity;
   return v;
+}
+
+/// Takes the shape into the tube; whether that can be: no point of it is outside.
+bool Capsule::enter_tube(const Net& x) {
+  if (!x.allFinite()) return false;
+  tube_->place(x);
+  const Net at_sites = sites_ * x;
+  const bool outside = std::ranges::any_of(own_points_, [&](int i) { return !tube_->wall().outline.inside({at_sites(i, 1), at_sites(i, 2)}); });
+  return !ranks_.any(outside);
+}
+
+/// What the mesh of an interface is carried by in a tube, while its points slide along the interface: int x v.n dG / V, nearly the centroid's velocity,
+/// with b = dV/dx.
+Eigen::RowVector3d Capsule::drift(const Net& x, const Net& b, const Net& v) const {
+  const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
+  const Net from_mean = x.rowwise() - x.colwise().mean();
+  return outward.transpose() * from_mean / volume0_;
 }
 
 /// B v = v - (1 - lambda) R^-1 (H v), from what the double layer gives at the sites.
 Net Capsule::viscous(const Net& v, const Net& hv) const { return v - (1 - parameters_.viscosity_ratio) * collocation_.solve(hv); }
 
-/// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free.
-Net Capsule::solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs) {
-  const auto clock = phases_.time("double layer");
+void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
+  ++work_.velocity_solves;
+  work_.velocity_iterations += report.iterations;
+  work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
+  if (v.allFinite())
+    require_convergence(report, "the velocity at viscosity ratio " + std::to_string(parameters_.viscosity_ratio), parameters_.solvers.tolerance);
+}
+
+/// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
+/// are solved for.
+Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs) {
+  const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
-  const bool assembled = parameters_.solvers.double_layer == "assembled";
+  const bool assembled = double_layer_ && parameters_.solvers.double_layer == "assembled";
   if (assembled) double_layer_->assemble(x, own_points_, double_rows_);
-  const auto project = [&](Net& v) {
-    if (b.size() > 0) v -= dot(b, v) / dot(b, c) * c;
-  };
-  const auto apply = [&](const double* in, double* out) {
-    Net v = Eigen::Map<const Net>(in, n, 3), hv(n, 3);
-    project(v);
+  const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall
+    if (!double_layer_) return v;
+    Net hv(n, 3);
     if (assembled) {
       const Eigen::VectorXd rows = double_rows_ * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
       for (size_t k = 0; k < own_points_.size(); ++k) hv.row(own_points_[k]) = rows.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
@@ -130,20 +179,37 @@ Net Capsule::solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs) {
       double_layer_->apply(x, v, own_points_, hv);
     }
     ranks_.replicate(hv);
-    v = viscous(v, hv);
+    return viscous(v, hv);
+  };
+  if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);
+  const auto project = [&](Net& v) {
+    if (b.size() > 0) v -= dot(b, v) / dot(b, c) * c;
+  };
+  const auto apply = [&](const double* in, double* out) {
+    Net v = Eigen::Map<const Net>(in, n, 3);
     project(v);
-    Eigen::Map<Net>(out, n, 3) = v;
+    Net bv = unbounded(v);
+    if (tube_) bv -= collocation_.solve(tube_->respond({}, v).velocity);
+    project(bv);
+    Eigen::Map<Net>(out, n, 3) = bv;
   };
   Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   const Eigen::VectorXd right = v;
-  const SolveReport report = krylov_.solve(apply, right, v, parameters_.solvers.tolerance);
-  work_.velocity_iterations += report.iterations;
-  if (v.allFinite()) {
-    require_convergence(report, "the velocity at viscosity ratio " + std::to_string(parameters_.viscosity_ratio), parameters_.solvers.tolerance);
-  }
+  note(krylov_.solve(apply, right, v, parameters_.solvers.tolerance), v);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
   return solution;
+}
+
+/// v, f^D, dp and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f; the start is what it would be without a wall.
+Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
+  const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
+  const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
+  const Net on_wall = tube_->load_on_wall(f);
+  BlockVector x{rhs, Net::Zero(on_wall.rows(), 3), 0, 0};
+  note(coupling::solve(system, parameters_.solvers.tube, krylov_, {rhs, on_wall, tube_->pressure_of(f), 0}, x, parameters_.solvers.tolerance),
+       Eigen::Map<const Eigen::VectorXd>(x.velocity.data(), x.velocity.size()));
+  return x.velocity;
 }
 
 void Capsule::freeze(const Net& x) {
@@ -152,6 +218,10 @@ void Capsule::freeze(const Net& x) {
   frozen_.assemble(own_points_, space_.n_points, [&](std::span<const int> targets, stokes::Rows<float>& rows) {
     layer_.assemble(x, stokes::Measure::reference, targets, rows);
   });
+  if (tube_) {
+    tube_->place(x);
+    tube_->freeze();
+  }
   if (!double_layer_) return;
   frozen_double_.assemble(own_points_, space_.n_points,
                           [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(x, targets, rows); });
@@ -162,6 +232,12 @@ void Capsule::linearise(const Net& x) {
   ++work_.tangents;
   tangent_.update(x, own_elements_);
   if (interface_) interface_->linearise(x);
+  if (!tube_) return;
+  gradients_ = flow_.gradients(sites_ * x);
+  if (interface_) {
+    linearised_ = x;
+    linearised_flux_ = flux_vector(x);
+  }
 }
 
 /// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
@@ -169,8 +245,15 @@ Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3), u(delta.rows(), 3);
   tangent_.apply(delta, h);
   ranks_.replicate(h);
-  frozen_.apply(mass_.solve(h), u);
+  const Net f = mass_.solve(h);
+  frozen_.apply(f, u);
   ranks_.replicate(u);
+  if (tube_) {
+    u = tube_->frozen_response(f) - u / parameters_.viscosity;
+    const Net at_sites = sites_ * delta;
+    for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
+    return collocation_.solve(u);
+  }
   return delta * flow_.gradient(Vec3::Zero()).transpose() - collocation_.solve(u) / parameters_.viscosity;
 }
 
@@ -180,7 +263,8 @@ Net Capsule::frozen_viscous(const Net& v) {
   Net hv(v.rows(), 3);
   frozen_double_.apply(v, hv);
   ranks_.replicate(hv);
-  return viscous(v, hv);
+  if (!tube_) return viscous(v, hv);
+  return v - collocation_.solve((1 - parameters_.viscosity_ratio) * hv + tube_->frozen_response({}, v));
 }
 
 /// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
@@ -203,7 +287,7 @@ Net Capsule::solve(double shift, const Net& r, double tolerance) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
     Eigen::Map<Net> result(out, n, 3);
     if (interface_)
-      result = delta - shift * interface_->derivative(fluid_velocity_change(delta), delta);
+      result = delta - shift * interface_change(fluid_velocity_change(delta), delta);
     else
       result = frozen_viscous(delta) - shift * energy_part(delta);
   };
@@ -215,6 +299,21 @@ Net Capsule::solve(double shift, const Net& r, double tolerance) {
   return Eigen::Map<const Net>(solution.data(), n, 3);
 }
 
+Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
+  if (frozen_.empty()) return difference(x, v, delta);
+  const auto clock = phases_.time("stiffness");
+  linearise(x);
+  const Net dv = fluid_velocity_change(delta);
+  return interface_ ? interface_change(dv, delta) : dv;
+}
+
+/// Change of the velocity of an interface's control points.
+Net Capsule::interface_change(const Net& dv, const Net& delta) {
+  if (!tube_) return interface_->derivative(dv, delta);
+  const Eigen::RowVector3d carried = drift(linearised_, linearised_flux_, dv);
+  return interface_->derivative(dv.rowwise() - carried, delta).rowwise() + carried;
+}
+
 void Capsule::restore_volume(Net& x) {
   if (parameters_.volume.constraint != "exact") return;
   for (int k = 0; k < 2; ++k) {
@@ -224,6 +323,11 @@ void Capsule::restore_volume(Net& x) {
 }
 
 double Capsule::norm(const Net& displacement) const {
+  if (tube_) {
+    Net across = displacement;
+    across.col(0).array() -= across.col(0).mean();
+    return across.norm() / (parameters_.radius * std::sqrt(static_cast<double>(across.rows())));
+  }
   return displacement.norm() / (parameters_.radius * std::sqrt(static_cast<double>(displacement.rows())));
 }
 
@@ -235,9 +339,12 @@ Mat3 Capsule::stresslet(const Net& x, const Net& v) {
 
 stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layer_.evaluations();
-  if (!double_layer_) return sum;
-  const stokes::Evaluations& other = double_layer_->evaluations();
-  return {sum.far + other.far, sum.near + other.near, sum.self + other.self};
+  const auto add = [&sum](const stokes::Evaluations& other) {
+    sum = {sum.far + other.far, sum.near + other.near, sum.self + other.self};
+  };
+  if (double_layer_) add(double_layer_->evaluations());
+  if (tube_) add(tube_->kernel_evaluations());
+  return sum;
 }
 
 double Capsule::volume_error(const Net& x) const { return geometry_.volume(x) / volume0_ - 1; }

@@ -1,6 +1,7 @@
 #pragma once
-// A capsule or drop in unbounded flow: fluid and membrane meet here.
+// A capsule or drop, in unbounded flow or in a tube: fluid and membrane meet here.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "coupling/krylov.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/tube.hpp"
 #include "membrane/direct_solver.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
@@ -35,7 +37,9 @@ struct Work {
   long tangents = 0;           ///< of the membrane
   long solves = 0;             ///< linear solves of the implicit step
   long solver_iterations = 0;  ///< of all of them
-  long velocity_iterations = 0;  ///< of the systems that velocities come from when the viscosities differ
+  long velocity_iterations = 0;  ///< of the systems that velocities come from when the viscosities differ, or blocks are asked for in a tube
+  long velocity_solves = 0;      ///< of these systems
+  long most_velocity_iterations = 0;  ///< of one of them
 };
 
 /// What a capsule is made of and how it is solved.
@@ -60,19 +64,23 @@ struct CapsuleParameters {
 ///
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
+///
+/// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the right-hand side and B,
+/// here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
 class Capsule : public Dynamics {
  public:
   /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`; the volume of `initial` is the one to be kept.
   Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
-          const CapsuleParameters& parameters, Ranks& ranks, Phases& phases);
+          const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
   Net velocity(const Net& x) override;
   void freeze(const Net& x) override;
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance) override;
+  Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
-  double norm(const Net& displacement) const override;
+  double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
 
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say.
   Net load(const Net& x);
@@ -82,6 +90,7 @@ class Capsule : public Dynamics {
   Mat3 stresslet(const Net& x, const Net& v);
 
   double volume_error(const Net& x) const;  ///< V/V0 - 1
+  Tube* tube() { return tube_.get(); }      ///< nothing without one
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const surface::Geometry& geometry() const { return geometry_; }
@@ -91,13 +100,20 @@ class Capsule : public Dynamics {
 
  private:
   Net ambient(const Net& x) const;
+  Net load_velocity(const Net& x, const Net& f);
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);
-  Net solve_velocity(const Net& x, const Net& b, const Net& c, Net rhs);
+  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs);
+  Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
+  void note(const SolveReport& report, const Eigen::VectorXd& v);
+  bool enter_tube(const Net& x);
+  bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
+  Eigen::RowVector3d drift(const Net& x, const Net& b, const Net& v) const;
+  Net interface_change(const Net& dv, const Net& delta);
 
   const spline::Space& space_;
   stokes::AmbientFlow flow_;
@@ -114,9 +130,13 @@ class Capsule : public Dynamics {
   membrane::DirectSolver collocation_;
   membrane::MassSolver mass_;
   Krylov krylov_, inner_krylov_;
-  FrozenOperator frozen_, frozen_double_;
+  FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_;
+  std::unique_ptr<Tube> tube_;
+  Eigen::SparseMatrix<double> sites_;   // R, in a tube
+  std::vector<Mat3> gradients_;         // of the flow in a tube at the sites, as linearised
+  Net linearised_, linearised_flux_;    // x and b of the interface in a tube, as linearised
   double volume0_ = 0;
   Work work_;
 };

@@ -20,7 +20,7 @@ struct TubeOptions {
   std::optional<double> radius;              ///< of the circle; 1 if not given
   std::optional<Eigen::Vector2d> semi_axes;  ///< of the ellipse, along x2 and x3
   std::optional<Eigen::Vector2d> sides;      ///< of the rectangle, along x2 and x3
-  std::optional<std::string> outline;        ///< path of the file of points; as given, from where the program is started
+  std::optional<std::string> outline;        ///< path of the file of points
 
   std::optional<double> length;  ///< of the wall; 2 pi R_T, or more for a long particle, if not given
   int azimuthal_elements = 24;   ///< of the wall, around

@@ -1,0 +1,156 @@
+#include "app/tube.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/errors.hpp"
+#include "deck/words.hpp"
+#include "surface/geometry.hpp"
+#include "surface/transport.hpp"
+
+namespace tanktread {
+
+namespace {
+
+std::string text(const char* format, auto... values) {
+  char line[400];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+/// The place of the particle's surface that is nearest to the wall, or farthest beyond it, among 5 x 5 points an element.
+struct Closest {
+  Vec3 x;
+  double gap = 1e300;
+};
+
+Closest closest(const Body& body, const surface::Outline& outline) {
+  Closest result;
+  for (int e = 0; e < static_cast<int>(body.space.elements.size()); ++e)
+    for (int k = 0; k < 25; ++k) {
+      const Vec3 x = surface::value(body.space, body.rest, {e, k % 5 / 4.0, k / 5 / 4.0});
+      const double gap = outline.distance({x[1], x[2]});
+      if (gap < result.gap) result = {x, gap};
+    }
+  return result;
+}
+
+void check_fit(const Scene& scene, const Body& body, const surface::Outline& outline) {
+  const Vec3& centre = scene.particle.shape.center;
+  const double from_axis = outline.distance({centre[1], centre[2]});
+  if (from_axis <= 0)
+    throw UserError(text("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
+  const Closest nearest = closest(body, outline);
+  const std::string where = text("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
+  if (nearest.gap <= 0)
+    throw UserError(text("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.", where.c_str(),
+                         -nearest.gap, body.radius, outline.radius()));
+  const double least = scene.tube.contact_gap * body.radius;
+  if (nearest.gap < least)
+    throw UserError(text("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
+                         where.c_str(), nearest.gap, scene.tube.contact_gap, least));
+}
+
+}  // namespace
+
+std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
+  if (!scene.tube.present) return {};
+  return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0));
+}
+
+std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body) {
+  if (!scene.tube.present) return {};
+  const surface::Outline& outline = body.duct->outline();
+  check_fit(scene, body, outline);
+  const double centroid = surface::measures(body.space, body.rest).centroid[0];
+  const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
+  const double length = x1.maxCoeff() - x1.minCoeff();
+  auto wall = std::make_shared<surface::TubeWall>(
+      surface::tube_wall(outline, scene.tube, surface::tube_length(scene.tube, outline.radius(), length), length / 2));
+  surface::check_length(*wall, x1.minCoeff(), x1.maxCoeff());
+  return wall;
+}
+
+std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases) {
+  if (!body.wall) return {};
+  coupling::TubeParameters parameters;
+  parameters.viscosity = scene.flow.viscosity;
+  parameters.viscosity_ratio = scene.particle.viscosity_ratio;
+  parameters.measure = load_measure(scene);
+  parameters.quadrature = scene.quadrature;
+  parameters.direct = scene.solvers.direct;
+  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, ranks, phases);
+}
+
+const std::vector<Column>& tube_columns() {
+  static const std::vector<Column> all = {
+      {"centroid_x1", "length", "centroid, component 1: what the frame has travelled"},
+      {"centroid_x2", "length", "centroid, component 2"},
+      {"centroid_x3", "length", "centroid, component 3"},
+      {"velocity_x1", "length/time", "of the centroid along the tube"},
+      {"velocity_x2", "length/time", "of the centroid, component 2"},
+      {"velocity_x3", "length/time", "of the centroid, component 3"},
+      {"migration_velocity", "length/time", "speed of the centroid in the x2 x3 plane, positive towards the axis"},
+      {"tank_treading_velocity", "length/time",
+       "mean tangential velocity relative to the centroid on the curve that the plane x2 = centroid cuts out; positive where the side of larger x3 moves on"},
+      {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
+      {"gap", "length", "smallest distance between particle and wall"},
+      {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish"},
+      {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: should vanish"},
+      {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity"},
+      {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance vanishes"},
+      {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance"},
+  };
+  return all;
+}
+
+std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state) {
+  coupling::Tube& tube = *capsule.tube();
+  const Net& v = state.history.front();
+  const Vec3 c = capsule.geometry().measures(state.x).centroid, u = surface::centroid_velocity(capsule.geometry(), state.x, v);
+  const Eigen::Vector2d across = c.tail<2>(), moves = u.tail<2>();
+  const Net f = capsule.load(state.x);
+  tube.place(state.x);
+  const coupling::Tube::Response response = tube.respond(f, v);
+  const coupling::Tube::Checks checks = tube.checks(f, v, response);
+  return {c[0],
+          c[1],
+          c[2],
+          u[0],
+          u[1],
+          u[2],
+          across.dot(moves) > 0 ? -moves.norm() : moves.norm(),
+          surface::tank_treading_velocity(body.space, state.x, v, c, u),
+          response.pressure_drop,
+          tube.gap(),
+          checks.flux,
+          checks.force,
+          checks.cap_velocity,
+          checks.pressure_by_flux,
+          checks.pressure_by_force};
+}
+
+output::Entries<std::string> tube_plan(const Scene& scene, const Body& body) {
+  const surface::TubeWall& wall = *body.wall;
+  const double unknowns = 3.0 * wall.space.n_points;
+  const std::string own_flow = scene.flow.type == "quiescent" ? std::string("quiescent fluid")
+                                                              : text("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(),
+                                                                     -body.duct->pressure_gradient());
+  const bool system = scene.particle.viscosity_ratio != 1 || scene.solvers.tube != "schur";
+  const std::string solved = scene.particle.rigid()            ? std::string("eliminated from the system of the traction")
+                             : scene.solvers.tube != "schur"   ? "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube
+                             : system                          ? std::string("eliminated from the system of the velocity")
+                                                               : std::string("solved for directly");
+  return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : text(" by %d boundary elements", scene.tube.flow_elements))},
+          {"tube", text("%s of R_T = %.6g, length %.6g, %s", scene.tube.section.c_str(), wall.radius(), wall.length(), wall.space.description.c_str())},
+          {"wall", text("%.0f unknowns of the traction and the pressure drop, %s; factored once, %.1f MB", unknowns, solved.c_str(),
+                        8e-6 * unknowns * unknowns)}};
+}
+
+std::string contact(const Scene& scene, double gap) {
+  const double least = scene.tube.contact_gap * scene.radius();
+  if (gap >= least) return {};
+  return text("the particle touches the wall: the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g,", gap, scene.tube.contact_gap, least);
+}
+
+}  // namespace tanktread
