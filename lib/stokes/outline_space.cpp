@@ -61,12 +61,12 @@ std::vector<int> shares(const Outline& outline, int elements) {
   return out;
 }
 
-/// Every interval cut evenly into pieces of at most (last - first)/elements.
+/// Every interval cut evenly into pieces of about (last - first)/elements, no longer than 1.25 times as much.
 std::vector<double> divided(const std::vector<double>& knots, int elements) {
-  const double most = (knots.back() - knots.front()) / elements;
+  const double most = 1.25 * (knots.back() - knots.front()) / elements;
   std::vector<double> out;
   for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    const int pieces = static_cast<int>(std::ceil((knots[i + 1] - knots[i]) / most - 1e-9));
+    const int pieces = knots.size() == 2 ? elements : static_cast<int>(std::ceil((knots[i + 1] - knots[i]) / most));
     for (int j = 0; j < pieces; ++j) out.push_back(knots[i] + (knots[i + 1] - knots[i]) * j / pieces);
   }
   out.push_back(knots.back());

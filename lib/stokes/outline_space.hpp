@@ -36,7 +36,7 @@ class OutlineSpace {
     double first, last;
   };
 
-  /// At least `elements` elements, shared out by the square root of the sides' lengths, on a side even in t but for what its own knots ask for.
+  /// About `elements` elements, shared out by the square root of the sides' lengths, on a side even in t but for what its own knots ask for.
   OutlineSpace(const surface::Outline& outline, int elements);
 
   int size() const { return static_cast<int>(sites_.size()); }  ///< functions, and collocation points

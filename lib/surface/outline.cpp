@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "base/errors.hpp"
 #include "quadrature/gauss.hpp"
@@ -42,11 +43,16 @@ double foot(const Vec2& p, const Vec2& a, const Vec2& b) {
   return std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
 }
 
-bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  return cross(b - a, c - a) * cross(b - a, d - a) < 0 && cross(d - c, a - c) * cross(d - c, b - c) < 0;
+/// A point that two segments have in common.
+std::optional<Vec2> meeting(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const auto apart = [&](int k) { return std::max(a[k], b[k]) < std::min(c[k], d[k]) || std::max(c[k], d[k]) < std::min(a[k], b[k]); };
+  if (apart(0) || apart(1)) return std::nullopt;
+  const double from_c = cross(b - a, c - a), from_d = cross(b - a, d - a);
+  if (from_c * from_d > 0 || cross(d - c, a - c) * cross(d - c, b - c) > 0) return std::nullopt;
+  return from_c == from_d ? c : Vec2(c + from_c / (from_c - from_d) * (d - c));
 }
 
-std::string place(const Vec2& x) {
+std::string text_of(const Vec2& x) {
   char text[64];
   std::snprintf(text, sizeof text, "(%.4g, %.4g)", x[0], x[1]);
   return text;
@@ -57,10 +63,8 @@ std::string place(const Vec2& x) {
 Outline::Outline(std::vector<PlaneCurve> sides, const std::string& name) : sides_(std::move(sides)) {
   for (int k = 0; k < n_sides(); ++k) add_chords(k);
   measure();
-  if (const Chord* chord = first_crossing()) throw UserError(name + " crosses itself near (x2, x3) = " + place(chord->a) + ".");
-  if (area_ <= 0)
-    throw UserError(name + " must run counter-clockwise, from x2 towards x3, but runs clockwise: its area is " + std::to_string(area_) +
-                    ".");
+  if (const auto crossing = first_crossing()) throw UserError(name + " crosses itself near (x2, x3) = " + text_of(*crossing) + ".");
+  if (area_ <= 0) throw UserError(name + " must run counter-clockwise, from x2 towards x3, but runs clockwise.");
 }
 
 void Outline::add_chords(int k) {
@@ -94,22 +98,25 @@ void Outline::measure() {
   length_ = std::accumulate(lengths_.begin(), lengths_.end(), 0.0);
 }
 
-/// Chords that are not neighbours may not cross. Sweep along x2: only chords whose ranges overlap are compared.
-const Outline::Chord* Outline::first_crossing() const {
+/// Chords that are not neighbours may not meet. Sweep along x2: only chords whose ranges overlap are compared.
+std::optional<Vec2> Outline::first_crossing() const {
   const auto low = [](const Chord& c) { return std::min(c.a[0], c.b[0]); };
   const int n = static_cast<int>(chords_.size());
   std::vector<int> order(chords_.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int i, int j) { return low(chord(i)) < low(chord(j)); });
   for (int i = 0; i < n; ++i) {
-    const Chord& first = chord(order[static_cast<std::size_t>(i)]);
+    const int one = order[static_cast<std::size_t>(i)];
+    const Chord& first = chord(one);
     for (int j = i + 1; j < n; ++j) {
-      const Chord& second = chord(order[static_cast<std::size_t>(j)]);
+      const int other = order[static_cast<std::size_t>(j)], between = std::abs(one - other);
+      const Chord& second = chord(other);
       if (low(second) > std::max(first.a[0], first.b[0])) break;
-      if (cross_each_other(first.a, first.b, second.a, second.b)) return &first;
+      if (between == 1 || between == n - 1) continue;
+      if (const auto place = meeting(first.a, first.b, second.a, second.b)) return place;
     }
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 Vec2 Outline::normal(int k, double u) const {

@@ -1,6 +1,7 @@
 #pragma once
 // The cross-section of a tube.
 
+#include <optional>
 #include <string>
 
 #include "surface/plane_curve.hpp"
@@ -67,7 +68,7 @@ class Outline {
   const Chord& chord(int i) const { return chords_[static_cast<std::size_t>(i)]; }
   void add_chords(int k);
   void measure();
-  const Chord* first_crossing() const;
+  std::optional<Vec2> first_crossing() const;
   Nearest nearest_on(const Chord& chord, const Vec2& p) const;
   bool within(const Vec2& p, const Nearest& nearest) const;
 
