@@ -123,7 +123,7 @@ def _text(value):
     return value.decode("utf-8") if isinstance(value, bytes) else str(value)
 
 
-def _node_order(p):
+def node_order(p):
     """(i, j) of the nodes of a Lagrange quadrilateral, as lib/output/lagrange.hpp states it."""
     inner = range(1, p)
     edges = [(i, 0) for i in inner] + [(p, j) for j in inner] + [(i, p) for i in inner] + [(0, j) for j in inner]
@@ -138,7 +138,7 @@ def _lagrange_table(p, k):
         for other in range(p + 1):
             if other != i:
                 line[:, i] *= (grid - nodes[other]) / (nodes[i] - nodes[other])
-    return numpy.array([numpy.outer(line[:, j], line[:, i]).ravel() for i, j in _node_order(p)]).T
+    return numpy.array([numpy.outer(line[:, j], line[:, i]).ravel() for i, j in node_order(p)]).T
 
 
 def main():
