@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "stokes/ambient_flow.hpp"
+
 namespace tanktread::stokes {
 namespace {
 
@@ -67,7 +69,20 @@ void expect_consistent(const DuctFlow& flow) {
     }
 }
 
+surface::TubeOptions by_elements(surface::TubeOptions tube) {
+  tube.flow = "boundary elements";
+  return tube;
+}
+
+surface::TubeOptions capillary() {
+  surface::TubeOptions tube;
+  tube.section = "file", tube.outline = SOURCE_DIRECTORY "/inputs/capillary_outline.csv";
+  return tube;
+}
+
 TEST(DuctFlow, SatisfiesItsEquationAndItsGradientIsOne) {
+  expect_consistent(DuctFlow(capillary(), 1.3, 0.7));
+  expect_consistent(DuctFlow(by_elements(rectangle(1, 3)), 1.3, 0.7));
   expect_consistent(DuctFlow(circle(1), 1.3, 0.7));
   expect_consistent(DuctFlow(ellipse(1.2, 0.9), 1.3, 0.7));
   expect_consistent(DuctFlow(rectangle(1, 3), 1.3, 0.7));
@@ -83,6 +98,40 @@ TEST(DuctFlow, VanishesOnTheWallOfARectangle) {
       EXPECT_LT(std::abs(flow.velocity(Vec3(0, p[0], p[1]))[0]), 1e-12);
     }
   EXPECT_NEAR(DuctFlow(rectangle(1, 1), 1, 0.035144253739).maximum().velocity, 0.073671353282, 1e-11);  // digits of the reference
+}
+
+TEST(DuctFlow, HasTheMeanVelocityThatIsAskedFor) {
+  const DuctFlow flow(capillary(), 1, 0.7);
+  const auto [low, high] = flow.outline().box();
+  constexpr int grid = 100;  // a sum over the points of a grid, of order 2: v vanishes on the wall
+  Net x(grid * grid, 3);
+  Eigen::Index n = 0;
+  for (int j = 0; j < grid; ++j)
+    for (int i = 0; i < grid; ++i) {
+      const surface::Vec2 p = low + surface::Vec2((high - low).array() * Eigen::Array2d(i + 0.5, j + 0.5) / grid);
+      if (flow.outline().inside(p)) x.row(n++) << 0, p[0], p[1];
+    }
+  const double flow_rate = flow.velocities(x.topRows(n)).col(0).sum() * (high - low).prod() / (grid * grid);
+  EXPECT_NEAR(flow_rate / flow.flow_rate(), 1, 4e-4);
+  EXPECT_NEAR(flow.radius(), 1, 1e-9) << "the shipped outline is made so";
+  const auto top = flow.maximum();
+  EXPECT_GE(top.velocity, flow.velocities(x.topRows(n)).maxCoeff());
+  EXPECT_LT(flow.gradient(Vec3(0, top.place[0], top.place[1])).norm(), 1e-9);
+}
+
+TEST(DuctFlow, IsWhatFlowTypeDuctMeans) {
+  FlowOptions options;
+  options.type = "duct", options.mean_velocity = 2, options.shear_rate = 1;
+  const auto duct = std::make_shared<const DuctFlow>(circle(0.5), 1, 2);
+  const AmbientFlow flow(options, duct);
+  const Vec3 x(3, 0.1, 0.2);
+  EXPECT_EQ(flow.velocity(x), duct->velocity(x));
+  EXPECT_EQ(flow.gradient(x), duct->gradient(x));
+  EXPECT_EQ(flow.velocities(x.transpose()).row(0), duct->velocity(x).transpose());
+  EXPECT_NEAR(flow.rate(), 4, 1e-13) << "mean velocity over R_T";
+  EXPECT_EQ(options.speed(0.3), 2) << "of Ca";
+  EXPECT_FALSE(flow.affine());
+  EXPECT_THROW(AmbientFlow{options}, std::invalid_argument);
 }
 
 }  // namespace
