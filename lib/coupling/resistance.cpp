@@ -13,7 +13,7 @@
 namespace tanktread::coupling {
 
 Resistance::Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
-                       const SolverOptions& solvers, Ranks& ranks, Phases& phases)
+                       const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube)
     : space_(space),
       surface_(surface),
       viscosity_(viscosity),
@@ -22,12 +22,15 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
       phases_(phases),
       layer_(space, quadrature),
       collocation_(solvers.direct),
+      tube_(tube),
+      place_(surface),
       krylov_(solvers.krylov, solvers.belos),
       tolerance_(solvers.tolerance) {
   const auto clock = phases_.time("assembly");
   own_points_ = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
   ranks_.own(own_points_, space.n_points);
-  collocation_.factor(collocation_matrix(space));
+  sites_ = collocation_matrix(space);
+  collocation_.factor(sites_);
   mass_ = membrane::MassMatrix(space, 8).update(surface);  // eight points: the area is no polynomial
 
   const surface::Geometry geometry(space);
@@ -41,7 +44,21 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
 
   layer_.set_reference(surface);
   layer_.assemble(surface, stokes::Measure::reference, own_points_, rows_);
+  if (tube_) {
+    tube_->set_reference(surface);
+    tube_->place(surface);
+  }
 }
+
+void Resistance::place(const Net& x, const Mat3& turn) {
+  place_ = x;
+  turn_ = turn;
+  if (tube_) tube_->place(x);
+}
+
+Net Resistance::ambient(const stokes::AmbientFlow& flow) const { return collocation_.solve(Net(flow.velocities(sites_ * place_) * turn_)); }
+
+double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) : 0; }
 
 /// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
 Net Resistance::apply(const Net& f) const {
@@ -51,6 +68,7 @@ Net Resistance::apply(const Net& f) const {
     for (int i = 0; i < 3; ++i)  // row by row: the sum of a row does not depend on how many rows this rank has
       u(own_points_[k], i) = rows_.row(3 * static_cast<Eigen::Index>(k) + i).dot(flat);
   ranks_.replicate(u);
+  if (tube_) u -= viscosity_ * tube_->respond(f * turn_.transpose()).velocity * turn_;
   return collocation_.solve(u) + weight_ * flux_.cwiseProduct(f).sum() * normal_;
 }
 
@@ -87,12 +105,20 @@ Eigen::VectorXd Resistance::residual_work(const Net& u, const Net& f, std::span<
   const size_t n = static_cast<size_t>(space_.n_points);
   Eigen::VectorXd work = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(z.size()));
   spline::Space turn = space_;
+  const Tube::Response response = tube_ ? tube_->respond(f * turn_.transpose()) : Tube::Response{};
   for (size_t first = 0; first < sites.size(); first += n) {
     for (size_t i = 0; i < n; ++i) turn.collocation[i] = {sites[std::min(first + i, sites.size() - 1)]};
     stokes::SingleLayer layer(turn, quadrature_);
     layer.set_reference(surface_);
     Net v(u.rows(), 3);
     layer.apply(surface_, f, stokes::Measure::reference, own_points_, v);
+    if (tube_) {
+      Net at(u.rows(), 3), answer(u.rows(), 3);
+      for (const int i : own_points_)
+        at.row(i) = surface::value(space_, place_, turn.collocation[static_cast<size_t>(i)].front()).transpose();
+      tube_->velocity_at(at, response, own_points_, answer);
+      for (const int i : own_points_) v.row(i) -= viscosity_ * answer.row(i) * turn_;
+    }
     ranks_.replicate(v);
     residual_evaluations_.far += layer.evaluations().far;
     residual_evaluations_.near += layer.evaluations().near;

@@ -9,6 +9,7 @@
 #include "coupling/krylov.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/tube.hpp"
 #include "membrane/direct_solver.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
@@ -22,24 +23,44 @@ namespace tanktread::coupling {
 /// A n = 0, so f is only known up to a multiple of n (a constant pressure inside); and u must carry no flux. Both are said openly:
 /// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is R^-1 A + s c b^T / (b.c), which is regular and gives the f with
 /// no net normal force, int f.n dG = 0, and takes up whatever flux the discrete u has.                                  (2.10)
+///
+/// In a tube A f - mu u(f) takes the place of A f, u the answer of the wall and the pressure drop (2.5); then the place counts. Fields
+/// stay in the axes that the
+/// body has in `surface`, wherever it has gone.
 class Resistance {
  public:
-  /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own; nothing moves afterwards.
+  /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own, and serve for any place and
+  /// orientation.
+  /// `tube`: around the body, or nothing; it must outlive this.
   Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
-             const SolverOptions& solvers, Ranks& ranks, Phases& phases);
+             const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube = nullptr);
+
+  /// Where the body is now: control net in space, and the rotation from `surface` to it.
+  void place(const Net& x, const Mat3& turn);
+
+  /// Control values, in the body's axes, of the flow at the present place, interpolated at the collocation points.
+  Net ambient(const stokes::AmbientFlow& flow) const;
 
   /// Control values of f for velocities at control values u. Throws RunFailure, with the residuals, when the solver stops short.
   Net force_density(const Net& u);
 
-  /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
-  /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
+  /// The other way round, up to the multiple of n of (2.10): (1/mu) A f.
+  Net velocity(const Net& f) { return apply(f) / viscosity_; }
+
+  /// The pressure drop of the tube for the force density f (2.7).
+  double pressure_drop(const Net& f);
+
+  /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the
+  /// collocation sites,
+  /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the
+  /// density of a
   /// translation (a rotation) of unit size it is what the force (the torque) of f lacks. The remaining error is the fitted surface's own.
   /// `u`: control values of an affine field.
   Eigen::VectorXd residual_work(const Net& u, const Net& f, std::span<const Net> z);
 
-  Vec3 force(const Net& f) const;                         ///< int f dG
-  Vec3 torque(const Net& f, const Vec3& centre) const;    ///< int (x - centre) x f dG
-  Mat3 stresslet(const Net& f, const Vec3& centre) const; ///< symmetric, traceless part of int f (x - centre) dG
+  Vec3 force(const Net& f) const;                          ///< int f dG
+  Vec3 torque(const Net& f, const Vec3& centre) const;     ///< int (x - centre) x f dG
+  Mat3 stresslet(const Net& f, const Vec3& centre) const;  ///< symmetric, traceless part of int f (x - centre) dG
 
   /// Control values c of n, by projection: the density that no velocity tells of.
   const Net& normal() const { return normal_; }
@@ -60,11 +81,15 @@ class Resistance {
   Phases& phases_;
   std::vector<int> own_points_;
   stokes::SingleLayer layer_;
+  Eigen::SparseMatrix<double> sites_;  // R
   membrane::DirectSolver collocation_;
   Eigen::SparseMatrix<double> mass_;
   Net flux_, normal_;  // b and c
   double weight_ = 0;  // s / (b.c)
   stokes::Rows<double> rows_;
+  Tube* tube_;
+  Net place_;                     // in space
+  Mat3 turn_ = Mat3::Identity();  // from surface_ to place_
   Krylov krylov_;
   double tolerance_;
   long iterations_ = 0;

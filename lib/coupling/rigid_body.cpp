@@ -69,7 +69,7 @@ Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
 Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
 
 FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow)
-    : surface_(body.surface()), centre_(centre), radius_(radius), flow_(flow), modes_(body, centre) {
+    : RigidParticle(body.surface(), centre, radius), flow_(flow), modes_(body, centre) {
   drift_ = modes_.response.leftCols<6>().partialPivLu().solve(modes_.response.rightCols<5>());
 }
 
@@ -89,7 +89,7 @@ RigidMotion FreeBody::motion(const Net& place) const {
   return {flow_.velocity(centre) + turn * a.segment<3>(0), angular_velocity(flow_.gradient(centre)) + turn * a.segment<3>(3)};
 }
 
-Net FreeBody::velocity(const Net& place) {
+Net RigidParticle::velocity(const Net& place) {
   ++evaluations_;
   const RigidMotion now = motion(place);
   const Eigen::Quaterniond q = quaternion(place);
@@ -101,13 +101,13 @@ Net FreeBody::velocity(const Net& place) {
   return slope;
 }
 
-void FreeBody::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
+void RigidParticle::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
 
-double FreeBody::norm(const Net& displacement) const {
+double RigidParticle::norm(const Net& displacement) const {
   return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
 }
 
-Net FreeBody::surface(const Net& place) const {
+Net RigidParticle::surface(const Net& place) const {
   Net x = (surface_.rowwise() - centre_.transpose()) * rotation_of(place).transpose();
   x.rowwise() += place.row(0);
   return x;

@@ -24,24 +24,24 @@ Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& ce
 struct RigidModes {
   RigidModes(Resistance& body, const Vec3& centre);
 
-  std::vector<Net> density;                  ///< force densities on the fluid: three translations, three rotations, five strains
-  Eigen::Matrix<double, 6, 11> response;     ///< force and torque of each
-  std::array<Mat3, 11> stresslet;            ///< of each
-  int largest_iterations = 0;                ///< of the eleven solves
+  std::vector<Net> density;               ///< force densities on the fluid: three translations, three rotations, five strains
+  Eigen::Matrix<double, 6, 11> response;  ///< force and torque of each
+  std::array<Mat3, 11> stresslet;         ///< of each
+  int largest_iterations = 0;             ///< of the eleven solves
 };
 
-/// Where a rigid body is, as a net of three rows: the centre; the vector and, first in its row, the scalar part of the quaternion that turns
+/// Where a rigid body is, as a net of three rows: the centre; the vector and, first in its row, the scalar part of the quaternion that
+/// turns
 /// the body from its initial place.
 Net placed(const Vec3& centre);
 Vec3 centre_of(const Net& place);
 Mat3 rotation_of(const Net& place);
 
-/// Centre and orientation of a free rigid body as dx/dt = v(x):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf/2 + Omega',
-/// where (U', Omega') makes force and torque vanish in the strain of the flow. A few small matrices a call.
-class FreeBody : public Dynamics {
+/// Centre and orientation of a rigid body as dx/dt = v(x).
+class RigidParticle : public Dynamics {
  public:
-  /// `surface`: the body at its initial place; `radius`: R_C.
-  FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow);
+  /// `surface`: control net of the body at its initial place; `radius`: R_C.
+  RigidParticle(const Net& surface, const Vec3& centre, double radius) : surface_(surface), centre_(centre), radius_(radius) {}
 
   Net velocity(const Net& place) override;
   void freeze(const Net&) override {}
@@ -50,24 +50,82 @@ class FreeBody : public Dynamics {
   void restore_volume(Net& place) override;                       ///< a rigid body has its volume; here the quaternion gets back its length
   double norm(const Net& displacement) const override;            ///< displacement of the centre over R_C and angle, as one length
 
-  RigidMotion motion(const Net& place) const;
-  Net surface(const Net& place) const;        ///< control net of the surface in space
-  Net force_density(const Net& place) const;  ///< on the fluid, control values
-  Mat3 stresslet(const Net& place) const;     ///< of the particle: int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on it
+  virtual RigidMotion motion(const Net& place) const = 0;
+  virtual Net force_density(const Net& place) const = 0;  ///< on the fluid, control values
+  virtual Mat3 stresslet(const Net& place) const = 0;     ///< int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on the body
+  virtual double pressure_drop(const Net&) const { return 0; }  ///< that the body adds, in a tube
+
+  Net surface(const Net& place) const;            ///< control net of the surface in space
   const Vec3& centre() const { return centre_; }  ///< at the initial place
-  const RigidModes& modes() const { return modes_; }
   long evaluations() const { return evaluations_; }
+
+ protected:
+  Net surface_;
+  Vec3 centre_;
+  double radius_;
+
+ private:
+  long evaluations_ = 0;
+};
+
+/// A free body in an affine flow:  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf/2 + Omega', where (U', Omega')
+/// makes force and torque
+/// vanish in the strain of the flow. A few small matrices a call.
+class FreeBody : public RigidParticle {
+ public:
+  FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow);
+
+  RigidMotion motion(const Net& place) const override;
+  Net force_density(const Net& place) const override;
+  Mat3 stresslet(const Net& place) const override;
+  const RigidModes& modes() const { return modes_; }
 
  private:
   Eigen::Matrix<double, 11, 1> amplitudes(const Net& place) const;
 
-  Net surface_;
-  Vec3 centre_;
-  double radius_;
   stokes::AmbientFlow flow_;
   RigidModes modes_;
   Eigen::Matrix<double, 6, 5> drift_;  ///< rigid motion relative to the flow, for each strain
-  long evaluations_ = 0;
+};
+
+/// A free body in a tube: at each place the traction and the rigid motion are solved for together,
+///
+///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = 0,   int r x f dG = 0,
+///
+/// with u the answer of wall and pressure drop. Belos starts from the solution before. Calls are collective, and those at one place
+/// after another cost one solve.
+class FreeBodyInTube : public RigidParticle {
+ public:
+  /// `body`: with its tube. `solvers`: of the system above.
+  FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
+                 const SolverOptions& solvers);
+
+  RigidMotion motion(const Net& place) const override { return at(place).motion; }
+  Net force_density(const Net& place) const override { return at(place).density; }
+  Mat3 stresslet(const Net& place) const override { return at(place).stresslet; }
+  double pressure_drop(const Net& place) const override { return at(place).pressure_drop; }
+  long solver_iterations() const { return iterations_; }
+  int last_iterations() const { return last_iterations_; }
+
+ private:
+  struct Solution {
+    RigidMotion motion;
+    Net density;
+    Mat3 stresslet;
+    double pressure_drop = 0;
+  };
+  const Solution& at(const Net& place) const;
+
+  Resistance& body_;
+  stokes::AmbientFlow flow_;
+  double viscosity_;
+  Krylov krylov_;
+  double tolerance_;
+  mutable Net place_;  // the last one, its solution, and the unknowns it is made of
+  mutable Solution solution_;
+  mutable Eigen::VectorXd unknowns_;
+  mutable long iterations_ = 0;
+  mutable int last_iterations_ = 0;
 };
 
 }  // namespace tanktread::coupling

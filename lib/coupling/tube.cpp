@@ -80,6 +80,13 @@ Tube::Response Tube::respond(const Net& f, const Net& v) {
   return response;
 }
 
+void Tube::velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u) {
+  Net at = x;
+  at.col(0).array() -= particle_->centroid;
+  wall_->layer().apply(response.wall_traction, at, rows, u);
+  for (const int i : rows) u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - u.row(i)) / viscosity();
+}
+
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
   particle_->freeze(*wall_);

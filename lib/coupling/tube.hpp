@@ -2,6 +2,7 @@
 // A particle in a tube: the wall's traction and the pressure drop, eliminated.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/timing.hpp"
@@ -64,6 +65,10 @@ class Tube {
 
   /// Either net may be empty: then it is zero. v counts for lambda != 1 only.
   Response respond(const Net& f, const Net& v = {});
+
+  /// Rows `rows` of the answer u of a response at the points with rows `x`, true places, on the particle or anywhere in the fluid.
+  /// Not collective.
+  void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
   /// Keeps the present shape's operators, as blocks of few bits, for `frozen_response`, which is the answer u at the particle's
   /// collocation points.

@@ -19,7 +19,8 @@ namespace tanktread::stokes {
 ///
 ///   single: u(y) = (1 / 8 pi) int G(x, y) f dG       double: u(y) = (1 / 8 pi) int v_j(x) T_ijk(x, y) n_k dG      (2.1), (2.2)
 ///
-/// by a far sum over Gauss nodes, with a near rule for panels that a point is too close to. The shape is taken once and good for any number of densities.
+/// by a far sum over Gauss nodes, with a near rule for panels that a point is too close to. The shape is taken once and good for any
+/// number of densities.
 class CrossLayer {
  public:
   enum class Kernel { single_layer, double_layer };

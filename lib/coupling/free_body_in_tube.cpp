@@ -1,0 +1,47 @@
+#include <numbers>
+
+#include "coupling/rigid_body.hpp"
+
+namespace tanktread::coupling {
+
+FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
+                               const SolverOptions& solvers)
+    : RigidParticle(body.surface(), centre, radius),
+      body_(body),
+      flow_(flow),
+      viscosity_(viscosity),
+      krylov_(solvers.krylov, solvers.belos),
+      tolerance_(solvers.tolerance),
+      unknowns_(Eigen::VectorXd::Zero(body.surface().size() + 6)) {}
+
+/// Everything in the body's axes. Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
+const FreeBodyInTube::Solution& FreeBodyInTube::at(const Net& place) const {
+  if (place_.size() > 0 && place == place_) return solution_;
+  const Mat3 turn = rotation_of(place);
+  body_.place(surface(place), turn);
+  const Eigen::Index n = surface_.rows();
+  const double unit = viscosity_ / radius_, force_unit = 6 * std::numbers::pi * viscosity_ * radius_;
+  const auto motion_of = [&](const double* m) { return RigidMotion{Eigen::Map<const Vec3>(m), Eigen::Map<const Vec3>(m + 3) / radius_}; };
+  const auto apply = [&](const double* in, double* out) {
+    const Net f = unit * Eigen::Map<const Net>(in, n, 3);
+    Eigen::Map<Net>(out, n, 3) = body_.velocity(f) - rigid_velocity(surface_, motion_of(in + 3 * n), centre_);
+    Eigen::Map<Vec3>(out + 3 * n) = body_.force(f) / force_unit;
+    Eigen::Map<Vec3>(out + 3 * n + 3) = body_.torque(f, centre_) / (force_unit * radius_);
+  };
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * n + 6);
+  Eigen::Map<Net>(rhs.data(), n, 3) = -body_.ambient(flow_);
+  const SolveReport report = krylov_.solve(apply, rhs, unknowns_, tolerance_);
+  iterations_ += last_iterations_ = report.iterations;
+  require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
+
+  const Net f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);
+  const RigidMotion own = motion_of(unknowns_.data() + 3 * n);
+  place_ = place;
+  solution_.motion = {turn * own.velocity, turn * own.angular_velocity};
+  solution_.density = f * turn.transpose();
+  solution_.stresslet = -turn * body_.stresslet(f, centre_) * turn.transpose();
+  solution_.pressure_drop = body_.pressure_drop(f);
+  return solution_;
+}
+
+}  // namespace tanktread::coupling
