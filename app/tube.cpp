@@ -106,7 +106,7 @@ const std::vector<Column>& tube_columns() {
 
 std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state) {
   coupling::Tube& tube = *capsule.tube();
-  const Net& v = state.history.front();
+  const Net v = capsule.velocity(state.x);  // the scheme's own slope carries what is left of its iteration, over the step
   const Vec3 c = capsule.geometry().measures(state.x).centroid, u = surface::centroid_velocity(capsule.geometry(), state.x, v);
   const Eigen::Vector2d across = c.tail<2>(), moves = u.tail<2>();
   const Net f = capsule.load(state.x);

@@ -19,7 +19,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
 /// The tube as the particle meets it; nothing without one.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases);
 
-/// Further series of a deformable particle in a tube, and their values, with v the velocity at state.x. Collective.
+/// Further series of a deformable particle in a tube, and their values. Collective.
 const std::vector<Column>& tube_columns();
 std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state);
 

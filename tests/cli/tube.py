@@ -1,0 +1,134 @@
+#!/usr/bin/python3
+# ranks: 2
+# A particle in a tube: mistakes are told with their numbers; ranks, interruptions and the way the block system is solved do not change a run; contact ends it.
+import math
+import pathlib
+
+import numpy
+
+from harness import SOURCE, check, deck, main, run, series, summary
+
+DECK = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle, azimuthal elements: 10, axial elements: 10}
+  Particle: {radius: 0.6, center: [0.0, 0.05, -0.15]}
+  Membrane: {law: Skalak, capillary number: 0.1, pre-inflation: 0.02}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.3}
+  Output: {interval: 0.1}
+"""
+CLOCK = ["wall_seconds"]  # the only series that may differ
+
+
+def _words(settings):
+    return [word for setting in settings for word in ("--set", setting)]
+
+
+def _names(results):
+    import h5py
+
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return [name for name in file["series"] if name not in CLOCK]
+
+
+def _outline(points, name="outline.csv"):
+    pathlib.Path(name).write_text("x2,x3\n" + "".join(f"{x},{y}\n" for x, y in points))
+
+
+def _ellipse(n=24, way=1):
+    turns = [2 * math.pi * way * k / n for k in range(n)]
+    return [(1.2 * math.cos(t), 0.9 * math.sin(t)) for t in turns]
+
+
+def _refused(words, *settings):
+    """One sentence with the numbers, exit code 2, nothing written."""
+    result = run(deck(DECK), *_words(settings), "--output", "results", code=2)
+    check(len(result.stderr.splitlines()) == 1, result.stderr)
+    for word in words:
+        check(word in result.stderr, f"no '{word}' in: {result.stderr}")
+    check(not pathlib.Path("results").exists(), "results were written")
+
+
+def what_contradicts_the_tube_is_refused():
+    _refused(["Tube", "simple shear", "duct"], "Flow/type=simple shear")
+    _refused(["Flow/mean velocity", "simple shear"], "Flow/type=simple shear", "Flow/mean velocity=2")
+    _refused(["Membrane/capillary number", "gradient"], "Flow/type=quiescent")
+    _refused(["Tube/radius", "circle", "ellipse"], "Tube/section=ellipse", "Tube/semi-axes=[1.0, 2.0]", "Tube/radius=1")
+    _refused(["Tube/section", "rectangle", "Tube/sides"], "Tube/section=rectangle")
+    _refused(["desingularised", "Tube"], "Quadrature/rule=desingularised")
+    without = deck(DECK.replace("  Tube: {section: circle, azimuthal elements: 10, axial elements: 10}\n", ""), "without.yaml")
+    check("needs a list Tube" in run(without, "--check", code=2).stderr, "a duct without a tube")
+
+
+def a_particle_that_does_not_fit_is_refused_with_its_numbers():
+    _refused(["does not fit", "beyond the wall", "0.357", "R_C = 1.2", "R_T = 1"], "Particle/radius=1.2")
+    _refused(["Particle/center", "outside of the tube", "0.5"], "Particle/center=[0.0, 0.0, 1.5]")
+    _refused(["too close", "gap is 0.00995", "0.02"], "Particle/center=[0.0, 0.0, 0.39]")
+    _refused(["Tube/length", "4.6", "3"], "Tube/length=3.0")
+
+
+def a_wrong_outline_is_refused_with_its_numbers():
+    as_file = ["Tube/section=file", "Tube/outline=outline.csv", "Flow/mean velocity=1"]
+    _refused(["outline.csv"], *as_file)  # there is none
+    _outline(_ellipse(way=-1))
+    _refused(["outline.csv", "clockwise"], *as_file)
+    eight = [(1.2 * math.cos(t), 0.9 * math.sin(2 * t)) for t in [2 * math.pi * k / 24 for k in range(24)]]
+    _outline(eight)
+    _refused(["outline.csv", "crosses itself"], *as_file)
+    _outline(_ellipse()[:2])
+    _refused(["outline.csv", "2"], *as_file)
+
+
+def _compare(one, other, tolerance):
+    for name in _names(one):
+        if name.startswith(("solver", "velocity_iter")):
+            continue
+        a, b = series(one, name), series(other, name)
+        check(a.shape == b.shape, f"{name}: {len(a)} rows and {len(b)}")
+        off = numpy.max(abs(a - b))
+        check(off <= tolerance * max(1, numpy.max(abs(a))), f"{name} differs by {off:.2e}")
+
+
+def two_ranks_give_the_answer_of_one():
+    for settings in ["Particle/viscosity ratio=1"], ["Particle/viscosity ratio=5", "Time/final time=0.1"]:
+        for ranks in 1, 2:
+            run(deck(DECK), *_words(settings), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
+        _compare("on_1", "on_2", 1e-10)
+
+
+def every_form_of_the_block_system_gives_the_same_run():
+    for ratio in 1, 5:
+        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10"]
+        run(deck(DECK), *_words(fixed), "--output", "schur", "--quiet")
+        for form in "block triangular", "block diagonal", "block":
+            more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
+            run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--quiet")
+            check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
+            _compare("schur", "blocks", 1e-6)  # the tolerance of the iteration of the implicit step
+
+
+def a_run_goes_on_in_the_tube_to_the_same_last_bit():
+    _outline(_ellipse())
+    path = deck(DECK.replace("section: circle", "section: file, outline: outline.csv, flow elements: 24"))
+    run(path, "--output", "whole", "--quiet")
+    run(path, "--output", "parts", "--set", "Time/final time=0.1", "--quiet")
+    pathlib.Path("outline.csv").unlink()  # the results hold a copy
+    run("--resume", "parts", "--set", "Time/final time=0.3", "--quiet")
+    for name in _names("whole"):
+        a, b = series("whole", name), series("parts", name)
+        check(a.tobytes() == b.tobytes(), f"{name} differs")
+
+
+def contact_stops_the_run_with_a_checkpoint_to_go_on_from():
+    capillary = ["Tube/section=file", f"Tube/outline={SOURCE}/inputs/capillary_outline.csv", "Tube/flow elements=48", "Particle/center=[0.0, 0.0, -0.2]"]
+    said = run(deck(DECK), *_words(capillary + ["Tube/contact gap=0.19"]), "--output", "out", "--quiet", code=3).stderr
+    for word in "touches the wall", "gap is 0.1", "0.19 R_C = 0.114", "at time", "checkpoint", "out":
+        check(word in said, f"no '{word}' in: {said}")
+    check(series("out", "time")[-1] < 0.3, "it stopped too late")
+    check((series("out", "gap")[:-1] >= 0.19 * 0.6).all() and series("out", "gap")[-1] < 0.19 * 0.6, "it stopped at another gap")
+    run("--resume", "out", "--set", "Tube/contact gap=0.1", "--quiet")
+    check(series("out", "time")[-1] == 0.3, "the run did not go on")
+
+
+main()
