@@ -20,7 +20,7 @@ class Evolution {
     deck.declare(scene);
     scene.check();
     body = tanktread::body(scene);
-    capsule = tanktread::capsule(scene, body, ranks_, phases_);
+    capsule = tanktread::capsule(scene, body, ranks_, phases_, nullptr);
     scheme_ = motion::integrator(scene.time);
     state.x = body.rest;
     state.history = {capsule->velocity(state.x)};
