@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "app/duct_picture.hpp"
 #include "app/provenance.hpp"
 #include "base/errors.hpp"
 #include "deck/expectation.hpp"
@@ -97,6 +98,7 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
     if (scene.tube.outline)  // a run goes on without its deck
       std::filesystem::copy_file(*scene.tube.outline, directory_ / std::filesystem::path(*scene.tube.outline).filename(),
                                  std::filesystem::copy_options::overwrite_existing);
+    if (body.duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body.duct));
     record_.emplace(directory_ / "run.h5", request.deck_text, origin());
     series_.emplace(directory_);
     declare_columns();
