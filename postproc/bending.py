@@ -44,7 +44,7 @@ def main():
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.6), width_ratios=[1.6, 1])
     for k, curve in enumerate(curves(parsed.curves)):
-        left.plot(curve.t, curve.d, linestyle="none", marker=style.MARKS[k % len(style.MARKS)], ms=3, color=style.FAINT, alpha=0.35 + 0.6 * (k % 2),
+        left.plot(curve.t, curve.d, linestyle="none", marker=style.MARKS[k % len(style.MARKS)], ms=3, color=style.FAINT, mew=0.8,
                   mfc="none", label=curve.label)
     rows = []
     cases = [("curved when relaxed", {}, style.RUNS[0]), ("flat when relaxed", {"Membrane/bending reference": "flat"}, style.RUNS[2]),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The section of the tube with the velocity of the empty tube over its mean, the place of the largest one, and the path of the particle's centroid across it."""
+"""The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across it."""
 
 import argparse
 import sys
@@ -38,7 +38,8 @@ def main():
         axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
     axes[0][0].set_ylabel("x₃")
     axes[0][0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
-    figure.colorbar(filled, ax=list(axes[0]), label="velocity of the empty tube over its mean", shrink=0.8, ticks=levels[:-1:2], spacing="proportional")
+    figure.colorbar(filled, ax=list(axes[0]), label="velocity of the empty tube over its mean", shrink=0.8, ticks=levels[:-1:2],
+                    spacing="proportional")
     style.save(figure, arguments.output)
 
 

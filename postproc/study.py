@@ -58,7 +58,7 @@ class Outcome:
 
 
 class Study:
-    """Runs `program`; results in `directory`. `limit`: seconds that one run may take. `jobs`: runs at a time, for what is not timed."""
+    """Runs `program`; results in `directory`. `limit`: processor seconds that one run may take. `jobs`: runs at a time, for what is not timed."""
 
     def __init__(self, program=PROGRAM, directory="results/study", limit=300, jobs=1, fresh=False):
         self.program, self.directory, self.limit, self.jobs, self.fresh = pathlib.Path(program), pathlib.Path(directory), limit, jobs, fresh
@@ -87,11 +87,10 @@ class Study:
 
     def _make(self, words):
         start, before = time.monotonic(), _processor()
-        try:
-            done = subprocess.run(words, capture_output=True, text=True, timeout=self.limit, env=os.environ | ENVIRONMENT, check=False)
-            code, said = done.returncode, done.stderr.strip().splitlines()
-        except subprocess.TimeoutExpired:
-            code, said = None, [f"stopped after {self.limit:g} s"]
+        done = subprocess.run(["prlimit", f"--cpu={math.ceil(self.limit)}"] + words, capture_output=True, text=True, env=os.environ | ENVIRONMENT, check=False)
+        code, said = done.returncode, done.stderr.strip().splitlines()
+        if code < 0 or code > 3:  # killed, by the limit
+            code, said = None, [f"stopped after {self.limit:g} s of processor time"]
         return {"code": code, "message": said[-1] if said else "", "seconds": time.monotonic() - start,
                 "processor_seconds": _processor() - before, "command": " ".join(map(_quoted, words))}
 
@@ -146,7 +145,7 @@ def arguments(parser, results):
     parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
                         help="of pictures, tables and, under runs/, results (default: %(default)s)")
     parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
-    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS", help="that one run may take (default: %(default)s)")
+    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS", help="of processor time that one run may take (default: %(default)s)")
 
 
 def study(parsed, jobs=1):
