@@ -5,6 +5,7 @@
 #include "app/prescribed.hpp"
 #include "app/tube.hpp"
 #include "spline/extraction.hpp"
+#include "stokes/layer_surface.hpp"
 #include "surface/shapes.hpp"
 
 namespace tanktread {
@@ -78,6 +79,7 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (scene.particle.rigid()) return rigid_plan(scene, body, ranks);
   const double points = body.space.n_points;
+  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
   const bool implicit = scene.time.scheme == "tr-bdf2";
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
   if (body.wall) fluid = tube_plan(scene, body);
@@ -94,6 +96,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                         : scene.membrane.law == "surface tension"    ? " per current area (3.6)"
                         : scene.membrane.load_measure == "reference" ? " per unstressed area (3.7), mass matrix factored once"
                                                                      : " per current area (3.6), mass matrix factored every evaluation")},
+      {"far sum", tree ? "single layer by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
       {"time", scene.time.scheme +
                    (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks, ranks > 1 ? "s" : "")

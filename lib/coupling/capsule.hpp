@@ -94,6 +94,7 @@ class Capsule : public Dynamics {
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const surface::Geometry& geometry() const { return geometry_; }
+  const Phases& layer_phases() const { return layer_.phases(); }  ///< where the time of the single layer goes
   stokes::Measure measure() const { return parameters_.strong_load ? stokes::Measure::current : parameters_.measure; }  ///< of the load
   const Work& work() const { return work_; }
   Work& work() { return work_; }

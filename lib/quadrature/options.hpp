@@ -14,6 +14,7 @@ struct Options {
   std::string rule = "adaptive";  ///< `adaptive`: by tolerance; `fixed`: `points` x `points` Gauss with Lachat-Watson, the paper's;
                                   ///< `desingularised`: the same Gauss points alone, with the singularity subtracted by identities
   int points = 8;                 ///< Gauss points a direction of the last two
+  std::string far_sum = "auto";   ///< `dense`: every target meets every far node; `tree`: clusters of them; `auto`: whichever is faster
 
   void declare(deck::Section& section);
 };

@@ -42,7 +42,19 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
   return orders;
 }
 
+/// Far nodes from which clusters are faster: about twice as many nodes as a target of a large surface meets by clusters, which grows with
+/// the square of the digits. Measured (tests/benchmark/growth.cpp).
+double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
+
 }  // namespace
+
+bool sums_by_tree(const spline::Space& space, const quadrature::Options& options) {
+  if (options.far_sum != "auto") return options.far_sum == "tree";
+  if (options.rule == "desingularised") return false;  // its identities meet every node anyway
+  double nodes = 0;
+  for (const int order : far_orders(space, options)) nodes += order * order;
+  return nodes > nodes_worth_a_tree(options.tolerance);
+}
 
 LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how, bool steep)
     : options(how),

@@ -12,6 +12,9 @@
 
 namespace tanktread::stokes {
 
+/// Whether `far sum` of the options means clusters for this space (TreeSum) or every target against every node.
+bool sums_by_tree(const spline::Space& space, const quadrature::Options& options);
+
 /// The present surface as a layer operator integrates over it: panels, far nodes, and which rule each target needs on which panel.
 class LayerSurface {
  public:

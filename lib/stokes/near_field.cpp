@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include <Eigen/Geometry>
 
 #include "quadrature/gauss.hpp"
-#include "stokes/panel_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -43,8 +41,7 @@ NearField::NearField(const Panels& panels, double tolerance, int smooth_order, b
       steep_(steep),
       largest_order_(1 + quadrature::order_for(tolerance, quadrature::ellipse(0, 1))),
       views_(panels.size()),
-      reach_(panels.size()),
-      suspect_((panels.size() + 7) / 8 * 8) {
+      reach_(panels.size()) {
   for (auto& c : centre_) c.resize(panels.size());
 }
 
@@ -74,6 +71,7 @@ void NearField::update(const std::vector<double>& bezier) {
     reach_[e] = reach * reach;
     for (int c = 0; c < 3; ++c) centre_[c][e] = centre[c];
   }
+  vicinity_.place(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
 }
 
 bool NearField::far_enough(const View& view, int order, const Vec3& target) const {
@@ -86,15 +84,13 @@ bool NearField::far_enough(const View& view, int order, const Vec3& target) cons
 
 void NearField::list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near) {
   near.clear();
-  mark_within(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data(), target.data(), suspect_.data());
-  for (const SelfPair& pair : own) suspect_[pair.panel] = 0;
-  for (int first = 0; first < panels_.size(); first += 8) {
-    std::uint64_t any;
-    std::memcpy(&any, &suspect_[first], 8);
-    if (!any) continue;
-    for (int e = first; e < first + 8; ++e)
-      if (suspect_[e] && !far_enough(views_[e], panels_[e].table->order, target)) near.push_back(e);
+  suspects_.clear();
+  vicinity_.list(target.data(), suspects_);
+  for (const int e : suspects_) {
+    const bool on_it = std::any_of(own.begin(), own.end(), [&](const SelfPair& pair) { return pair.panel == e; });
+    if (!on_it && !far_enough(views_[e], panels_[e].table->order, target)) near.push_back(e);
   }
+  std::sort(near.begin(), near.end());
 }
 
 const PointTable& NearField::rule(int panel, const Vec3& target) {

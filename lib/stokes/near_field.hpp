@@ -11,6 +11,7 @@
 #include "stokes/panels.hpp"
 #include "stokes/point_table.hpp"
 #include "stokes/self_field.hpp"
+#include "stokes/vicinity.hpp"
 
 namespace tanktread::stokes {
 
@@ -43,7 +44,8 @@ class NearField {
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
   std::vector<double> centre_[3], reach_;  ///< squared distance from the centre beyond which the far rule is enough
-  std::vector<char> suspect_;
+  Vicinity vicinity_;
+  std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< (degree, order) -> tensor Gauss on the whole panel
   PointTable parts_;
   quadrature::Rule points_;

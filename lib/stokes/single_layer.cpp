@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -19,7 +20,9 @@ constexpr int nodes_in_cache = 4096;
 
 }  // namespace
 
-SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, options) {}
+SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, options) {
+  if (sums_by_tree(space, options)) tree_.emplace(options.tolerance);
+}
 
 void SingleLayer::set_reference(const Net& unstressed) {
   surface_.panels.bezier(unstressed, bezier_unstressed_);
@@ -41,8 +44,22 @@ PointForces SingleLayer::forces() const {
   return {n_nodes(), node[0].data(), node[1].data(), node[2].data(), force_[0].data(), force_[1].data(), force_[2].data()};
 }
 
+void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
+  std::vector<int> everybody(surface_.n_points), first_nodes;
+  std::iota(everybody.begin(), everybody.end(), 0);
+  std::vector<Vec3> at;
+  surface_.collocation_points(everybody, at);  // those of others too: clusters must not depend on who asks
+  for (int e = 0; e < surface_.panels.size(); ++e) first_nodes.push_back(surface_.panels[e].first_node);
+  first_nodes.push_back(n_nodes());
+  const auto& node = surface_.node;
+  tree_->place(node[0].data(), node[1].data(), node[2].data(), first_nodes, at);
+  tree_->sum(force_[0].data(), force_[1].data(), force_[2].data(), targets, u);
+  evaluations_.far += tree_->interactions();
+}
+
 void SingleLayer::add_far(std::span<const int> targets, Net& u) {
   const auto clock = phases_.time("far");
+  if (tree_) return add_by_tree(targets, u);
   const PointForces all = forces();
   const int n = static_cast<int>(targets.size());
   double block[3 * far_block], sums[3 * far_block];

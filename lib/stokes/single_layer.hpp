@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "stokes/far_kernel.hpp"
 #include "stokes/kernels.hpp"
 #include "stokes/layer_surface.hpp"
+#include "stokes/tree_sum.hpp"
 
 namespace tanktread::stokes {
 
@@ -47,13 +49,14 @@ class SingleLayer {
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }
 
-  /// Far nodes of the whole surface: bare interactions of an apply are targets times this.
+  /// Far nodes of the whole surface: bare interactions of a dense apply are targets times this.
   int n_nodes() const { return surface_.panels.n_nodes(); }
 
  private:
   struct Moments;
   void place(const Net& x, Measure measure, std::span<const int> targets);
   void add_far(std::span<const int> targets, Net& u);
+  void add_by_tree(std::span<const int> targets, Net& u);
   template <class Sum>
   void add_near(std::span<const int> targets, const Sum& own_sum, Net& u);
   template <class Sum>
@@ -64,6 +67,7 @@ class SingleLayer {
   PointForces forces() const;
 
   LayerSurface surface_;
+  std::optional<TreeSum> tree_;                             // where clusters are faster
   Measure measure_ = Measure::current;
   std::vector<double> bezier_unstressed_, bezier_f_;        // Bezier points: unstressed surface, density
   std::vector<double> weight_unstressed_, weight_present_;  // of the far nodes, areas included

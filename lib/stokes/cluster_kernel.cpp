@@ -1,0 +1,135 @@
+#include "stokes/cluster_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace tanktread::stokes {
+namespace {
+
+/// Nodes of one direction, and 1 / prod_{b != a} (x_a - x_b).
+struct Nodes {
+  double x[most_chebyshev], scale[most_chebyshev];
+};
+
+std::array<Nodes, most_chebyshev + 1> table() {
+  std::array<Nodes, most_chebyshev + 1> all{};
+  for (int n = 1; n <= most_chebyshev; ++n) {
+    Nodes& nodes = all[n];
+    for (int a = 0; a < n; ++a) nodes.x[a] = std::cos(std::numbers::pi * (2 * a + 1) / (2 * n));
+    for (int a = 0; a < n; ++a) {
+      double product = 1;
+      for (int b = 0; b < n; ++b) product *= a == b ? 1 : nodes.x[a] - nodes.x[b];
+      nodes.scale[a] = 1 / product;
+    }
+  }
+  return all;
+}
+
+const Nodes& nodes(int n) {
+  static const auto all = table();
+  return all[n];
+}
+
+/// Lagrange polynomials at x, without a division.
+void lagrange(int n, const Pack& x, Pack* value) {
+  const Nodes& at = nodes(n);
+  Pack product = Pack{} + 1;
+  for (int a = 0; a < n; ++a) {
+    value[a] = product * at.scale[a];
+    product *= x - at.x[a];
+  }
+  product = Pack{} + 1;
+  for (int a = n - 1; a >= 0; --a) {
+    value[a] *= product;
+    product *= x - at.x[a];
+  }
+}
+
+/// Lagrange polynomials of the three directions at eight points.
+struct Basis {
+  Pack along[3][most_chebyshev];
+
+  void place(const ChebyshevBox& box, const Pack& x, const Pack& y, const Pack& z) {
+    const Pack rx = x - box.centre[0], ry = y - box.centre[1], rz = z - box.centre[2];
+    for (int d = 0; d < 3; ++d) {
+      const double scale = box.half[d] > 0 ? 1 / box.half[d] : 0;
+      lagrange(box.order[d], (rx * box.axes[d][0] + ry * box.axes[d][1] + rz * box.axes[d][2]) * scale, along[d]);
+    }
+  }
+};
+
+Pack load(const double* a, int n) {
+  Pack p{};
+  std::memcpy(&p, a, sizeof(double) * std::min(n, lanes));
+  return p;
+}
+
+}  // namespace
+
+void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z) {
+  for (int c = 0; c < box.order[2]; ++c)
+    for (int b = 0; b < box.order[1]; ++b)
+      for (int a = 0; a < box.order[0]; ++a) {
+        const double r[3] = {box.half[0] * nodes(box.order[0]).x[a], box.half[1] * nodes(box.order[1]).x[b],
+                             box.half[2] * nodes(box.order[2]).x[c]};
+        double at[3];
+        for (int i = 0; i < 3; ++i) at[i] = box.centre[i] + r[0] * box.axes[0][i] + r[1] * box.axes[1][i] + r[2] * box.axes[2][i];
+        *x++ = at[0], *y++ = at[1], *z++ = at[2];
+      }
+}
+
+void spread(const ChebyshevBox& box, const PointForces& points, Pack* scratch, double* node_fx, double* node_fy, double* node_fz) {
+  const auto [n0, n1, n2] = box.order;
+  std::fill_n(scratch, 3 * box.n_nodes(), Pack{});
+  Basis basis;
+  for (int k = 0; k < points.n; k += lanes) {
+    const int n = points.n - k;  // lanes beyond the last point have no force
+    basis.place(box, load(points.x + k, n), load(points.y + k, n), load(points.z + k, n));
+    const Pack fx = load(points.fx + k, n), fy = load(points.fy + k, n), fz = load(points.fz + k, n);
+    Pack* sum = scratch;
+    for (int c = 0; c < n2; ++c)
+      for (int b = 0; b < n1; ++b) {
+        const Pack both = basis.along[1][b] * basis.along[2][c];
+        const Pack gx = both * fx, gy = both * fy, gz = both * fz;
+        for (int a = 0; a < n0; ++a, sum += 3) {
+          sum[0] += basis.along[0][a] * gx;
+          sum[1] += basis.along[0][a] * gy;
+          sum[2] += basis.along[0][a] * gz;
+        }
+      }
+  }
+  for (int i = 0; i < box.n_nodes(); ++i) {
+    node_fx[i] += sum(scratch[3 * i]);
+    node_fy[i] += sum(scratch[3 * i + 1]);
+    node_fz[i] += sum(scratch[3 * i + 2]);
+  }
+}
+
+void interpolate(const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u) {
+  const auto [n0, n1, n2] = box.order;
+  Basis basis;
+  for (int k = 0; k < blocks; ++k, target += 3 * far_block, u += 3 * far_block)
+    for (int l = 0; l < far_block; l += lanes) {
+      basis.place(box, load(target + l, lanes), load(target + far_block + l, lanes), load(target + 2 * far_block + l, lanes));
+      Pack sum[3]{};
+      int i = 0;
+      for (int c = 0; c < n2; ++c)
+        for (int b = 0; b < n1; ++b) {
+          Pack row[3]{};
+          for (int a = 0; a < n0; ++a, ++i) {
+            const double* node = node_u + 3 * far_block * (i / far_block) + i % far_block;
+            for (int d = 0; d < 3; ++d) row[d] += basis.along[0][a] * node[far_block * d];
+          }
+          const Pack both = basis.along[1][b] * basis.along[2][c];
+          for (int d = 0; d < 3; ++d) sum[d] += both * row[d];
+        }
+      for (int d = 0; d < 3; ++d) {
+        const Pack value = load(u + far_block * d + l, lanes) + sum[d];
+        std::memcpy(u + far_block * d + l, &value, sizeof value);
+      }
+    }
+}
+
+}  // namespace tanktread::stokes

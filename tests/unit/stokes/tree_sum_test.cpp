@@ -1,0 +1,148 @@
+#include "stokes/tree_sum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <string>
+
+#include "spline/extraction.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// Nodes with forces, in small groups, and targets.
+struct Cloud {
+  std::vector<double> x[3], f[3];
+  std::vector<int> starts{0};
+  std::vector<Vec3> targets;
+
+  /// `flatness` shrinks the cube of side 2 along its diagonal; a few targets are nodes.
+  Cloud(int nodes, int n_targets, double flatness) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> side(-1, 1);
+    const auto place = [&] {
+      const Vec3 p(side(random), side(random), side(random)), diagonal = Vec3::Ones() / std::sqrt(3.);
+      return Vec3(p - (1 - flatness) * p.dot(diagonal) * diagonal);
+    };
+    Vec3 group = place();
+    for (int k = 0; k < nodes; ++k) {
+      const Vec3 at = group + 0.02 * flatness * place();
+      for (int c = 0; c < 3; ++c) x[c].push_back(at[c]), f[c].push_back(side(random));
+      if (k % 4 == 3 || k % 7 == 0 || k + 1 == nodes) starts.push_back(k + 1), group = place();
+    }
+    for (int i = 0; i < n_targets; ++i) targets.push_back(i % 100 ? place() : Vec3(x[0][i], x[1][i], x[2][i]));
+  }
+
+  PointForces forces() const {
+    return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
+  }
+
+  Net sum(TreeSum& tree, const std::vector<int>& wanted) const {
+    Net u = Net::Zero(static_cast<Eigen::Index>(targets.size()), 3);
+    tree.place(x[0].data(), x[1].data(), x[2].data(), starts, targets);
+    tree.sum(f[0].data(), f[1].data(), f[2].data(), wanted, u);
+    return u;
+  }
+
+  /// Largest error at the wanted rows, relative to sum |f| / r there.
+  double error(const Net& u, const std::vector<int>& wanted) const {
+    double largest = 0;
+    for (const int i : wanted) {
+      Vec3 exact;
+      node_sum(forces(), targets[i].data(), exact.data());
+      double size = 0;
+      for (std::size_t k = 0; k < x[0].size(); ++k) {
+        const double r = (Vec3(x[0][k], x[1][k], x[2][k]) - targets[i]).norm();
+        if (r > 0) size += Vec3(f[0][k], f[1][k], f[2][k]).norm() / r;
+      }
+      largest = std::max(largest, (u.row(i).transpose() - exact).norm() / size);
+    }
+    return largest;
+  }
+};
+
+std::vector<int> every(int step, std::size_t n) {
+  std::vector<int> rows;
+  for (int i = 0; i < static_cast<int>(n); i += step) rows.push_back(i);
+  return rows;
+}
+
+TEST(TreeSum, KeepsItsToleranceInACubeAndInATiltedSlab) {
+  struct Case {
+    double flatness, tolerance;
+  };
+  for (const auto& [flatness, tolerance] : {Case{1, 1e-3}, {1, 1e-5}, {0.01, 1e-3}, {0.01, 1e-5}, {0.01, 1e-8}}) {
+    const Cloud cloud(20000, 3001, flatness);
+    TreeSum tree(tolerance);
+    const double error = cloud.error(cloud.sum(tree, every(1, cloud.targets.size())), every(50, cloud.targets.size()));
+    EXPECT_LT(error, tolerance) << flatness;
+    EXPECT_GT(error, 1e-14) << flatness;                          // clusters were used
+    EXPECT_LT(tree.interactions(), 20000ll * 3001) << tolerance;  // and saved work
+  }
+}
+
+TEST(TreeSum, RowsDoNotDependOnWhichOthersAreWanted) {
+  const Cloud cloud(5000, 1000, 0.05);
+  TreeSum tree(1e-5), other(1e-5);
+  const Net whole = cloud.sum(tree, every(1, 1000));
+  const std::vector<int> few = every(37, 1000);
+  const Net part = cloud.sum(other, few), again = cloud.sum(tree, few);
+  for (const int i : few) {
+    EXPECT_EQ(part.row(i), whole.row(i));  // to the last bit: ranks ask for different rows
+    EXPECT_EQ(again.row(i), whole.row(i));
+  }
+}
+
+TEST(TreeSum, ServesOnePointAndPointsThatCoincide) {
+  Cloud one(1, 1, 1);
+  one.targets[0] = Vec3(3, 0, 0);
+  TreeSum tree(1e-5);
+  EXPECT_LT(one.error(one.sum(tree, {0}), {0}), 1e-14);  // round-off
+  Cloud many(600, 40, 1);
+  for (auto& component : many.x) std::fill(component.begin(), component.end(), 0.5);
+  for (Vec3& target : many.targets) target = Vec3(2, 1, 0);
+  EXPECT_LT(many.error(many.sum(tree, every(1, 40)), every(1, 40)), 1e-13);
+}
+
+TEST(TreeSum, MakesTheSingleLayerOfALoadToTheTolerance) {
+  const spline::TMesh mesh = spline::cube(12);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  const surface::LeastSquaresFit fit(space);
+  const Net unstressed = surface::unit_sphere(mesh, fit);
+  const Net x = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1], 0.75 * p[2]); });
+  const Net f = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(p[1] - 0.3, p[2] * p[0], p[0] * p[0]); });
+  std::vector<int> all(space.n_points);
+  std::iota(all.begin(), all.end(), 0);
+  for (const double tolerance : {1e-3, 1e-5, 1e-8}) {
+    Net u[2];
+    long long work[2];
+    for (const bool tree : {false, true}) {
+      SingleLayer layer(space, {.tolerance = tolerance, .far_sum = tree ? "tree" : "dense"});
+      u[tree] = Net::Zero(space.n_points, 3);
+      layer.apply(x, f, Measure::current, all, u[tree]);
+      work[tree] = layer.evaluations().far;
+    }
+    const double error = (u[1] - u[0]).rowwise().norm().maxCoeff() / u[0].rowwise().norm().maxCoeff();
+    EXPECT_LT(error, tolerance);
+    EXPECT_GT(error, 1e-15);  // another sum it is
+    EXPECT_LT(work[1], work[0]);
+  }
+}
+
+TEST(TreeSum, IsChosenForLargeSurfacesOnly) {
+  const auto chosen = [](int n, const quadrature::Options& options) {
+    return sums_by_tree(spline::space(spline::cube(n), spline::ExtraordinaryRule::g1), options);
+  };
+  EXPECT_FALSE(chosen(6, {}));
+  EXPECT_TRUE(chosen(24, {}));
+  EXPECT_TRUE(chosen(6, {.far_sum = "tree"}));
+  EXPECT_FALSE(chosen(24, {.far_sum = "dense"}));
+  EXPECT_FALSE(chosen(24, {.rule = "desingularised"}));  // its identities meet every node
+}
+
+}  // namespace
+}  // namespace tanktread::stokes
