@@ -1,0 +1,105 @@
+#pragma once
+// A sphere in a tube, for tests that hold it against exact solutions.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "base/timing.hpp"
+#include "coupling/ranks.hpp"
+#include "coupling/rigid_body.hpp"
+#include "coupling/tube.hpp"
+#include "spline/extraction.hpp"
+#include "spline/polar.hpp"
+#include "spline/t_mesh.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread {
+
+/// Spline space and control net of a sphere of radius a about `centre`.
+struct Sphere {
+  spline::Space space;
+  Net net;
+  double radius;
+  Vec3 centre;
+};
+
+/// n elements a side of a cube.
+inline Sphere sphere(double a, const Vec3& centre, int n) {
+  const spline::TMesh mesh = spline::cube(n);
+  Sphere s{spline::space(mesh, spline::ExtraordinaryRule::g1), {}, a, centre};
+  surface::ParticleShape shape;
+  shape.radius = a, shape.center = centre;
+  s.net = surface::initial_shape(s.space, mesh, shape);
+  return s;
+}
+
+/// m elements around x1, r from pole to pole.
+inline Sphere polar_sphere(double a, const Vec3& centre, int m, int r) {
+  spline::PolarMesh mesh;
+  mesh.azimuthal = m, mesh.meridional = r, mesh.poles = spline::PoleRule::c1;
+  Sphere s{spline::space(mesh), {}, a, centre};
+  surface::ParticleShape shape;
+  shape.radius = a, shape.center = centre;
+  s.net = surface::initial_shape(s.space, mesh, 0, shape);
+  return s;
+}
+
+/// A duct of mean velocity 1 and viscosity 1, and its wall.
+struct Duct {
+  std::shared_ptr<const stokes::DuctFlow> flow;
+  surface::TubeWall wall;
+
+  Duct(std::shared_ptr<const stokes::DuctFlow> own_flow, const surface::TubeOptions& options, double length)
+      : flow(std::move(own_flow)), wall(surface::tube_wall(flow->outline(), options, length)) {}
+
+  stokes::AmbientFlow ambient() const {
+    stokes::FlowOptions options;
+    options.type = "duct";
+    options.mean_velocity = 1;
+    return stokes::AmbientFlow(options, flow);
+  }
+};
+
+/// Of the unit circle; the default wall unless said otherwise.
+inline Duct circular_duct(int around = 24, int along = 25, double length = 2 * std::numbers::pi) {
+  surface::TubeOptions options;
+  options.present = true;
+  options.radius = 1;
+  options.azimuthal_elements = around, options.axial_elements = along;
+  return {std::make_shared<stokes::DuctFlow>(options, 1.0, 1.0), options, length};
+}
+
+/// The rigid sphere in the duct.
+struct RigidSphere {
+  coupling::Ranks ranks;
+  Phases phases;
+  coupling::SolverOptions solvers;
+  stokes::AmbientFlow flow;
+  std::unique_ptr<coupling::Tube> tube;
+  std::unique_ptr<coupling::Resistance> resistance;
+  std::unique_ptr<coupling::FreeBodyInTube> body;
+  double radius;
+
+  RigidSphere(const Sphere& sphere, const Duct& duct, double tolerance = 1e-7) : flow(duct.ambient()), radius(sphere.radius) {
+    coupling::TubeParameters parameters;
+    parameters.quadrature.tolerance = tolerance;
+    solvers.tolerance = 1e-9;
+    tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, ranks, phases);
+    resistance =
+        std::make_unique<coupling::Resistance>(sphere.space, sphere.net, 1.0, parameters.quadrature, solvers, ranks, phases, tube.get());
+    body = std::make_unique<coupling::FreeBodyInTube>(*resistance, sphere.centre, radius, flow, 1.0, solvers);
+  }
+
+  /// Force density on the fluid of the sphere that is towed along the axis with unit speed in quiescent fluid, and of the one that is held in the flow.
+  Net towed() {
+    return resistance->force_density(coupling::rigid_velocity(resistance->surface(), {Vec3::UnitX(), Vec3::Zero()}, Vec3::Zero()));
+  }
+  Net held() { return resistance->force_density(-resistance->ambient(flow)); }
+
+  /// Axial force on the fluid over 6 pi mu a.
+  double drag(const Net& f) const { return resistance->force(f)[0] / (6 * std::numbers::pi * radius); }
+};
+
+}  // namespace tanktread
