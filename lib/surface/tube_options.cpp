@@ -15,8 +15,9 @@ void TubeOptions::declare(deck::Section& list) {
   list.key("semi-axes", semi_axes, deck::positive(), "length", "two, along x2 and x3, of the `ellipse`");
   list.key("sides", sides, deck::positive(), "length", "two, along x2 and x3, of the `rectangle`");
   list.key("outline", outline, deck::Choice{},
-           "file of the section `file`, looked for where the program is started and beside the deck: one point a row, x2,x3, counter-clockwise, the first not repeated; a third column holds the word "
-           "`corner` where two smooth sides meet. A cubic spline goes through the points");
+           "file of the section `file`, looked for where the program is started and beside the deck: one point a row, x2,x3, "
+           "counter-clockwise, the first not repeated; a third column holds the word `corner` where two smooth sides meet. A cubic spline "
+           "goes through the points");
   list.key("length", length, deck::positive(), "length",
            "of the tube's piece that is modelled; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length "
            "and 4.6 R_T where that is more");

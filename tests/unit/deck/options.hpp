@@ -26,6 +26,7 @@ struct Kinds {
   std::string note = "none";
   Vec3 center = Vec3::Zero();
   std::optional<Vec3> axes;
+  std::optional<Eigen::Vector2d> sides;
   Mat3 gradient = Mat3::Identity();
   std::optional<Mat3> stress;
   Inner inner;
@@ -41,6 +42,7 @@ struct Kinds {
     s.key("note", note, Choice{}, "any words");
     s.key("center", center, any(), "length", "where");
     s.key("axes", axes, positive(), "length", "three lengths");
+    s.key("sides", sides, positive(), "length", "two lengths");
     s.key("gradient", gradient, any(), "1/time", "nine numbers");
     s.key("stress", stress, any(), "stress", "nine numbers");
     s.section("Inner", inner, "a list in a list");

@@ -19,7 +19,8 @@ TEST(Keys, ThatAreNotGivenKeepTheirDefaults) {
 TEST(Keys, OfEveryTypeAreRead) {
   const Kinds k = kinds(
       "    shear rate: 2.5\n    modulus: 1e-3\n    count: 7\n    limit: 0\n    enabled: true\n    law: very hard\n    note: \"a: b # c\"\n"
-      "    center: [1, 2, 3]\n    axes: [1., 2, 3.5]\n    gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9]\n    stress: [[1., 2., 3.], [4., 5., 6.], "
+      "    center: [1, 2, 3]\n    axes: [1., 2, 3.5]\n    sides: [2, 0.5]\n    gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9]\n    stress: [[1., "
+      "2., 3.], [4., 5., 6.], "
       "[7., 8., 9.]]\n"
       "    Inner: {depth: 0.25}\n");
   EXPECT_EQ(k.rate, 2.5);
@@ -31,6 +32,7 @@ TEST(Keys, OfEveryTypeAreRead) {
   EXPECT_EQ(k.note, "a: b # c");
   EXPECT_EQ(k.center, Vec3(1, 2, 3));
   EXPECT_EQ(k.axes.value(), Vec3(1, 2, 3.5));
+  EXPECT_EQ(k.sides.value(), Eigen::Vector2d(2, 0.5));
   EXPECT_EQ(k.gradient(0, 2), 3.0) << "row by row";
   EXPECT_EQ(k.stress.value(), k.gradient) << "a table is a row of rows";
   EXPECT_EQ(k.inner.depth, 0.25);
@@ -49,6 +51,8 @@ TEST(Keys, RefuseAValueOutsideTheirRuleWithPathRuleUnitAndValue) {
   EXPECT_EQ(refusal("    Inner:\n      depth: 2.5\n"), "Kinds/Inner/depth must be a number, between 0 and 1 (unit: length), but is 2.5.");
   EXPECT_EQ(refusal("    axes: [1, 0, 1]\n"),
             "Kinds/axes must be three numbers in brackets, each positive (unit: length), but is [1, 0, 1].");
+  EXPECT_EQ(refusal("    sides: [1, 2, 3]\n"),
+            "Kinds/sides must be two numbers in brackets, each positive (unit: length), but is [1, 2, 3].");
 }
 
 TEST(Keys, RefuseWrongTypes) {
