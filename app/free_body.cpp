@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/moving.hpp"
+#include "app/tube.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
@@ -46,37 +47,56 @@ const std::vector<Column>& rigid_columns() {
   return all;
 }
 
+/// Further ones in a tube.
+const std::vector<Column>& rigid_tube_columns() {
+  static const std::vector<Column> all = {
+      {"migration_velocity", "length/time", "speed of the centre in the x2 x3 plane, positive towards the axis"},
+      {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
+      {"gap", "length", "smallest distance between particle and wall"},
+      {"solver_iterations", "1", "iterations of the linear solver so far"},
+  };
+  return all;
+}
+
 class Free : public Moving {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : body_(tanktread::body(scene)), geometry_(body_.space),
-        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases),
-        free_(resistance_, scene.particle.shape.center, body_.radius, body_.flow) {}
+      : body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, ranks, phases)),
+        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()),
+        columns_(rigid_columns()) {
+    const Vec3& centre = scene.particle.shape.center;
+    if (tube_)
+      free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers);
+    else
+      free_ = std::make_unique<coupling::FreeBody>(resistance_, centre, body_.radius, body_.flow);
+    if (tube_) columns_.insert(columns_.end(), rigid_tube_columns().begin(), rigid_tube_columns().end());
+  }
 
-  coupling::Dynamics& dynamics() override { return free_; }
+  coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
-  Net start() const override { return coupling::placed(free_.centre()); }
+  Net start() const override { return coupling::placed(free_->centre()); }
   void resume(Resumed& resumed) override { before_ = resumed.standing.work.evaluations; }
   bool adapt(motion::State&, Standing&) override { return false; }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
-  const std::vector<Column>& columns() const override { return rigid_columns(); }
+  const std::vector<Column>& columns() const override { return columns_; }
 
   coupling::Work work() const override {
     coupling::Work work;
-    work.evaluations = before_ + free_.evaluations();
+    work.evaluations = before_ + free_->evaluations();
     work.assemblies = 1;
-    work.solves = 11;
-    work.solver_iterations = resistance_.solver_iterations();
+    work.solves = tube_ ? work.evaluations : 11;
+    work.solver_iterations = iterations();
     return work;
   }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    const surface::Deformation shape = geometry_.deformation(free_.surface(state.x));
-    const coupling::RigidMotion motion = free_.motion(state.x);
-    const Mat3 s = free_.stresslet(state.x);
+    const surface::Deformation shape = geometry_.deformation(free_->surface(state.x));
+    const coupling::RigidMotion motion = free_->motion(state.x);
+    const Mat3 s = free_->stresslet(state.x);
     const Net& x = state.x;
     const Vec3 &v = motion.velocity, &w = motion.angular_velocity;
-    return {state.time,
+    std::vector<double> row = {
+            state.time,
             report.step,
             shape.inclination,
             x(0, 0), x(0, 1), x(0, 2),
@@ -90,22 +110,34 @@ class Free : public Moving {
             static_cast<double>(report.rejected),
             static_cast<double>(work().evaluations),
             wall_seconds};
+    if (!tube_) return row;
+    const Eigen::Vector2d across(x(0, 1), x(0, 2)), moves = v.tail<2>();
+    const double sense = across.dot(moves) > 0 ? -1 : 1;
+    row.insert(row.end(), {sense * moves.norm(), free_->pressure_drop(x), tube_->gap(), static_cast<double>(iterations())});
+    return row;
   }
 
   Portrait portrait(const motion::State& state) override {
-    return {free_.surface(state.x), [this, place = state.x](const output::LagrangeMesh& mesh) {
-              const coupling::RigidMotion motion = free_.motion(place);
-              const Net x = free_.surface(place), v = coupling::rigid_velocity(x, motion, coupling::centre_of(place));
-              return std::vector<output::Field>{{"traction", output::nodal_values(body_.space, mesh, -free_.force_density(place))},
+    const Net x = free_->surface(state.x), f = free_->force_density(state.x),
+              v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
+    return {x, [this, f, v](const output::LagrangeMesh& mesh) {
+              return std::vector<output::Field>{{"traction", output::nodal_values(body_.space, mesh, -f)},
                                                 {"velocity", output::nodal_values(body_.space, mesh, v)}};
             }};
   }
 
  private:
+  long iterations() const {
+    const auto* in_tube = dynamic_cast<const coupling::FreeBodyInTube*>(free_.get());
+    return resistance_.solver_iterations() + (in_tube ? in_tube->solver_iterations() : 0);
+  }
+
   Body body_;
   surface::Geometry geometry_;
+  std::unique_ptr<coupling::Tube> tube_;
   coupling::Resistance resistance_;
-  coupling::FreeBody free_;
+  std::unique_ptr<coupling::RigidParticle> free_;
+  std::vector<Column> columns_;
   long before_ = 0;  // evaluations of earlier parts of a resumed run
 };
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/results.hpp"
+#include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
@@ -28,11 +29,14 @@ double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 
 
 }  // namespace
 
-RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases) {
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
   const Vec3& centre = scene.particle.shape.center;
   const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
   Net u = coupling::rigid_velocity(body.rest, motion, centre);
-  for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) -= body.flow.velocity(body.rest.row(a).transpose()).transpose();
+  if (body.flow.affine())
+    for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) -= body.flow.velocity(body.rest.row(a).transpose()).transpose();
+  else
+    u -= resistance.ambient(body.flow);
 
   RigidSolution s;
   s.density = resistance.force_density(u);
@@ -43,6 +47,11 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
     const Eigen::VectorXd lacking = reciprocal_correction(resistance, u, s.density, centre);
     s.force -= lacking.head<3>();
     s.torque -= lacking.tail<3>();
+  }
+  if (tube) {
+    s.pressure_drop = resistance.pressure_drop(s.density);
+    s.gap = tube->gap();
+    return s;
   }
   if (const auto exact = exact_body(scene, motion)) {
     const auto clock = phases.time("diagnostics");
@@ -77,6 +86,8 @@ Row row(const Scene& scene, const Body& body, const coupling::Resistance& resist
   for (int i = 0; i < 3; ++i)
     row.add("torque_x" + std::to_string(i + 1), "force length", "torque on the particle about its centre, component " + std::to_string(i + 1),
             s.torque[i]);
+  row.add("disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)", s.pressure_drop);
+  row.add("gap", "length", "smallest distance between particle and wall", s.gap);
   row.add("drag_error", "1", "|F - F_exact|/|F_exact|", s.error);
   row.add("drag_error_of_traction", "1", "the same, of the integral of the traction alone", s.integral_error);
   row.add("torque_error", "1", "|T - T_exact|/|T_exact|", s.torque_error);
@@ -98,7 +109,7 @@ Row row(const Scene& scene, const Body& body, const coupling::Resistance& resist
 
 Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) {
   const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
-  return {body.rest, [&body, &s, exact = exact_body(scene, motion)](const output::LagrangeMesh& mesh) {
+  return {body.rest, [&body, &s, exact = body.wall ? std::nullopt : exact_body(scene, motion)](const output::LagrangeMesh& mesh) {
             const Eigen::MatrixXd f = output::nodal_values(body.space, mesh, s.density);
             const Net n = output::nodal_normals(body.space, mesh, body.rest), x = output::nodal_values(body.space, mesh, body.rest);
             const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
@@ -120,10 +131,13 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
   std::snprintf(unknowns, sizeof unknowns, "%d of the traction: single layer of the first kind, its null space made regular",
                 3 * body.space.n_points);
   std::snprintf(memory, sizeof memory, "%.1f MB on %d rank%s", 72e-6 * body.space.n_points * body.space.n_points, ranks, ranks > 1 ? "s" : "");
-  return {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
+  output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
+  if (body.wall) fluid = tube_plan(scene, body);
+  output::Entries<std::string> lines =
+         {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
           {"unknowns", unknowns},
-          {"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"},
-          {"particle", free ? "rigid and free, no membrane: six rigid motions and five strains, solved once, are all that it can meet"
+          {"particle", free && body.wall ? "rigid and free, no membrane: its motion is solved for with the traction, at each place"
+                       : free ? "rigid and free, no membrane: six rigid motions and five strains, solved once, are all that it can meet"
                             : "rigid, its motion prescribed: no membrane, nothing moves in time"},
           {"forces", free                                   ? "none"
                      : scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves"
@@ -131,6 +145,8 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
           {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},
           {"assembled", memory},
           {"symmetry", "none used"}};
+  lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
+  return lines;
 }
 
 int resist(const Scene& scene, const RunRequest& request) {
@@ -142,8 +158,9 @@ int resist(const Scene& scene, const RunRequest& request) {
   const Body body = tanktread::body(scene);
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(scene, ranks.size()).c_str(), stdout);
-  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases);
-  const RigidSolution solution = rigid_solution(scene, body, resistance, phases);
+  const std::unique_ptr<coupling::Tube> around = tube(scene, body, ranks, phases);
+  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
+  const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const Row only = row(scene, body, resistance, solution, seconds);
 

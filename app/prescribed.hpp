@@ -17,14 +17,16 @@ struct RigidSolution {
   Vec3 force, torque;  ///< on the body, about its centre
   Vec3 integral;       ///< force as the integral of the traction alone
   int iterations = 0;  ///< of the solver, for this traction
+  double pressure_drop = unknown, gap = unknown;  ///< that the body adds in a tube (2.7), and its distance from the wall
   double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative
   SurfaceErrors surface{unknown, unknown, 0};
 
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The body of `Particle/motion: prescribed` in the flow of the deck. Collective.
-RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases);
+/// The body of `Particle/motion: prescribed` in the flow of the deck; `tube`: the one around it, or nothing. Collective.
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
+                             const coupling::Tube* tube = nullptr);
 
 /// Solves for the traction on the body, records one row and one picture. Exit code as of `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);

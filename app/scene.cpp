@@ -94,8 +94,6 @@ void check_tube(const Scene& scene) {
   scene.tube.check();
   if (scene.flow.type != "duct" && scene.flow.type != "quiescent")
     throw UserError("Tube and " + flow + " contradict each other: that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`.");
-  if (scene.particle.rigid())
-    throw UserError("Tube and Particle/motion `" + scene.particle.motion + "` contradict each other: rigid particles are in unbounded fluid.");
   if (scene.quadrature.rule == "desingularised")
     throw UserError("Quadrature/rule `desingularised` and Tube contradict each other: the wall is not closed.");
 }
