@@ -39,7 +39,7 @@ def load_form(study):
     axes[0].set_yticks(range(len(meshes)), meshes)
     axes[0].invert_yaxis()
     axes[0].set_xlim(0, end)
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside upper right", ncols=3)
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=3)
     return figure, ["capillary_number", "mesh", "load", "time_reached", "message"], rows
 
 

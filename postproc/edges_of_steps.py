@@ -96,7 +96,7 @@ def fixed_step_mesh(study):
 def viscosity_ratio(study):
     """Viscosity ratio towards 0 and 100
 
-    Neo-Hookean capsule in shear, Ca = 0.3, 98 control points, to γ̇t = 1. The equation (2.4) for the velocity, (1 − (1 − λ)𝓗) v = …, loses its
+    Neo-Hookean capsule in shear, Ca = 0.3, 98 control points, to γ̇t = 1. The equation (2.4) for the velocity, (1 − (1 − λ)H) v = …, loses its
     breathing mode as λ → 0 and eleven more modes, rigid motions and strains, grow slow as λ → ∞. Left: iterations that its solver needs, with the flux taken out
     of its unknowns (`exact`, `flux`) and without (`none`). Right: steps of the run and its volume error.
 

@@ -105,12 +105,13 @@ def draw_triad(axis, view, grid):
     axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # room for the letters
 
 
-def section(shot, x2):
-    """Line pieces in which the plane x2 cuts the surface: shape (pieces, 2, 2), coordinates x1 and x3. Cut on the triangles of a fine grid."""
+def section(shot, place, across=1):
+    """Line pieces in which the plane x_{across+1} = place (x2 by default) cuts the surface: shape (pieces, 2, 2), the other two coordinates.
+    Cut on the triangles of a fine grid."""
     grid = shot.sampled(shot.points, SECTION_GRID)
     a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
     triangles = numpy.concatenate([numpy.stack([a, b, c], 3).reshape(-1, 3, 3), numpy.stack([a, c, d], 3).reshape(-1, 3, 3)])
-    height = triangles[:, :, 1] - x2
+    height = triangles[:, :, across] - place
     height[height == 0] = 1e-300  # a corner in the plane belongs to its upper side
     cut = (height > 0).any(1) & (height < 0).any(1)
     triangles, height = triangles[cut], height[cut]
@@ -120,7 +121,7 @@ def section(shot, x2):
     for other in (lone + 1) % 3, (lone + 2) % 3:
         share = (height[rows, lone] / (height[rows, lone] - height[rows, other]))[:, None]
         ends.append(triangles[rows, lone] + share * (triangles[rows, other] - triangles[rows, lone]))
-    return numpy.stack(ends, axis=1)[:, :, [0, 2]]
+    return numpy.delete(numpy.stack(ends, axis=1), across, axis=2)
 
 
 def draw_sections(axis, runs, shots):

@@ -167,7 +167,7 @@ def main():
     draw(axes[1], points, "kernels", "kernel evaluations", colors, shape)
     for option, color in colors.items():
         axes[1].plot([], [], "o", color=color, label=option)
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside upper right", ncols=8, fontsize=7.5)
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=8, fontsize=7.5)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
     words = [parsed.study] + (["--differences", str(parsed.differences)] if parsed.differences != 2 else []) + (["--only", *parsed.only] if parsed.only else [])
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words) + f"\nerror: {scene.error.get('text', '')}", x=0.01, ha="left", fontsize=7.5)

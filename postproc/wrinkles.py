@@ -19,6 +19,7 @@ import waves
 from style import plt
 
 DECK = "inputs/shear_neo_hookean.yaml"
+QUIET = 1e-3  # share of the load's power in waves below which there are none
 
 
 def outcome(study, n, modulus, parsed):
@@ -37,7 +38,8 @@ def spectra(one, start):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--meshes", nargs="+", type=int, default=[6, 9, 12], metavar="N", help="elements along a side of the cube (default: 6 9 12)")
-    parser.add_argument("--modulus", nargs="+", type=float, default=[0.0, 0.005], help="bending moduli over R^2 G_s (default: 0 and 0.005)")
+    parser.add_argument("--modulus", nargs="+", type=float, default=[0.0, 0.0005, 0.005],
+                        help="bending moduli over R^2 G_s (default: 0, 0.0005, 0.005)")
     parser.add_argument("--ca", type=float, default=0.1, help="default: %(default)s")
     parser.add_argument("--time", type=float, default=5.0, help="end of the runs (default: %(default)s); spectra are means over their last two time units")
     studies.arguments(parser, "results/wrinkles")
@@ -60,13 +62,16 @@ def main():
             t, d = one.series["time"], one.series["taylor_inertia"]
             late = t >= parsed.time - 2
             mean = numpy.trapz(d[late], t[late]) / (t[late][-1] - t[late][0])
-            lengths.append((size, spectrum.wavelength(wave)))
-            rows.append((modulus, n, size, wave, lengths[-1][1], spectrum.mean_degree, spectrum.short, mean, numpy.ptp(d[late]), one.seconds))
-            print(f"E_b = {modulus:g} R^2 G_s, n = {n}: wave of degree {wave}, {lengths[-1][1]:.3f} R = {lengths[-1][1] / size:.2f} elements; share beyond degree "
-                  f"{waves.SMOOTH} {spectrum.short:.1e}; D = {mean:.5f}, range {numpy.ptp(d[late]):.1e}; {one.seconds:.0f} s", flush=True)
+            waved = spectrum.short > QUIET
+            if waved:
+                lengths.append((size, spectrum.wavelength(wave)))
+            rows.append((modulus, n, size, wave if waved else "", spectrum.wavelength(wave) if waved else "", spectrum.mean_degree, spectrum.short, mean, numpy.ptp(d[late]), one.seconds))
+            words = f"wave of degree {wave}, {spectrum.wavelength(wave):.3f} R = {spectrum.wavelength(wave) / size:.2f} elements" if waved else "no waves"
+            print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; D = {mean:.5f}, range {numpy.ptp(d[late]):.1e}; {one.seconds:.0f} s", flush=True)
             odd = spectrum.degrees % 2 == 1
             left.semilogy(spectrum.degrees[odd], spectrum.power[odd], "-", color=color, label=f"n = {n}")
-            left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
+            if waved:
+                left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
             middle.plot(t, d, color=color, label=f"n = {n}")
         left.set_title("no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s")
         left.set_xlabel("degree")
@@ -76,8 +81,12 @@ def main():
         middle.set_xlabel("time")
         middle.set_ylabel("Taylor parameter D")
         middle.set_ylim(0.9 * rows[-1][7], 1.1 * rows[-1][7])
-        right.plot([1 / s for s, _ in lengths], [length for _, length in lengths], "o-", color=style.RUNS[0])
-        right.plot([1 / s for s, _ in lengths], [2.1 * s for s, _ in lengths], color=style.FAINT, linestyle=(0, (4, 3)), label="2.1 elements")
+        if lengths:
+            right.plot([1 / s for s, _ in lengths], [length for _, length in lengths], "o-", color=style.RUNS[0])
+        else:
+            right.annotate("no waves", (0.5, 0.5), xycoords="axes fraction", ha="center")
+        sizes = [element_size(n) for n in parsed.meshes]
+        right.plot([1 / s for s in sizes], [2.25 * s for s in sizes], color=style.FAINT, linestyle=(0, (4, 3)), label="2.25 elements")
         right.set_xlabel("elements a radius")
         right.set_ylabel("wavelength over R")
         right.set_ylim(0, 0.9)
