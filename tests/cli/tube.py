@@ -121,7 +121,7 @@ def a_run_goes_on_in_the_tube_to_the_same_last_bit():
 
 
 def contact_stops_the_run_with_a_checkpoint_to_go_on_from():
-    capillary = ["Tube/section=file", f"Tube/outline={SOURCE}/inputs/capillary_outline.csv", "Tube/flow elements=48", "Particle/center=[0.0, 0.0, -0.2]"]
+    capillary = ["Tube/section=file", f"Tube/outline={SOURCE}/inputs/capillary_outline.csv", "Tube/flow elements=48", "Particle/center=[0.0, 0.2, 0.0]"]
     said = run(deck(DECK), *_words(capillary + ["Tube/contact gap=0.195"]), "--output", "out", "--quiet", code=3).stderr
     for word in "touches the wall", "gap is 0.11", "0.195 R_C = 0.117", "at time", "checkpoint", "out":
         check(word in said, f"no '{word}' in: {said}")
