@@ -1,0 +1,123 @@
+// How a whole velocity evaluation grows with the mesh: seconds by phase and bytes at n = 12, 24, 48, 96, and the error of its far sum against
+// the dense one on a sample of targets. postproc/growth.py runs this, fits exponents and draws.
+
+#include <benchmark/benchmark.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "base/timing.hpp"
+#include "coupling/capsule.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/laws.hpp"
+#include "spline/extraction.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "stokes/single_layer.hpp"
+#include "surface/shapes.hpp"
+
+namespace {
+
+using namespace tanktread;
+
+/// Seconds of processor time: a busy machine does not count.
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Bytes in use: of the heap, and mapped for large arrays.
+double bytes() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+/// Largest resident set of the process so far, in bytes; `restart` makes it count anew.
+double peak(bool restart) {
+  if (restart) {
+    malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << 5;
+  }
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  double kilobytes = 0;
+  while (status >> word)
+    if (word == "VmHWM:") status >> kilobytes;
+  return 1024 * kilobytes;
+}
+
+/// Error of the far sum by clusters in the single layer of this load, relative to the largest velocity, at a thousand targets.
+double far_error(const spline::Space& space, const Net& unstressed, const Net& x, const Net& load) {
+  std::vector<int> sample;
+  const int step = std::max(1, space.n_points / 1000);
+  for (int i = 0; i < space.n_points; i += step) sample.push_back(i);
+  Net u[2];
+  for (const bool tree : {false, true}) {
+    quadrature::Options options;
+    options.far_sum = tree ? "tree" : "dense";
+    stokes::SingleLayer layer(space, options);
+    layer.set_reference(unstressed);
+    u[tree] = Net::Zero(space.n_points, 3);
+    layer.apply(x, load, stokes::Measure::reference, sample, u[tree]);
+  }
+  return (u[1] - u[0]).rowwise().norm().maxCoeff() / u[0].rowwise().norm().maxCoeff();
+}
+
+/// A capsule half-way to its steady shape in shear, near enough.
+void growth(benchmark::State& state) {
+  const spline::TMesh mesh = spline::cube(static_cast<int>(state.range(0)));
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  Net unstressed, x;
+  {
+    const surface::LeastSquaresFit fit(space);
+    unstressed = surface::unit_sphere(mesh, fit);
+    x = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1], 0.75 * p[2]); });
+  }
+  const double before = bytes();
+  peak(true);
+  coupling::Ranks ranks;
+  Phases phases;
+  coupling::CapsuleParameters parameters;
+  parameters.law = membrane::NeoHookean{1 / 0.3};
+  if (state.range(1) != 0) parameters.quadrature.far_sum = "dense";
+  const double start = now();
+  coupling::Capsule capsule(space, unstressed, unstressed, stokes::AmbientFlow(stokes::FlowOptions()), parameters, ranks, phases);
+  const double setup = now() - start;
+  benchmark::DoNotOptimize(capsule.velocity(x));  // rules of the panels that targets lie on are made and kept
+  const long long far = capsule.kernel_evaluations().far;
+  const Phases first = phases;
+  const Phases layer_first = capsule.layer_phases();
+  double best = 1e9;
+  for (auto _ : state) {
+    const double begin = now();
+    benchmark::DoNotOptimize(capsule.velocity(x));
+    best = std::min(best, now() - begin);
+  }
+  const double wall = phases.total() - first.total();
+  const auto counter = [&](const std::string& name, double value) { state.counters[name] = value; };
+  counter("points", space.n_points);
+  counter("setup s", setup);
+  counter("evaluation s", best);
+  counter("far interactions", static_cast<double>(far));
+  counter("bytes kept", bytes() - before);
+  counter("bytes peak", peak(false));
+  const auto split = [&](const Phases& all, const Phases& earlier, const char* prefix) {  // processor time in the proportions of wall clock
+    for (const Phases::Phase& p : all.all()) counter(prefix + p.name + " s", best * (p.seconds - earlier.seconds(p.name)) / wall);
+  };
+  split(phases, first, "");
+  split(capsule.layer_phases(), layer_first, "layer ");
+  if (state.range(1) == 0) counter("far error", far_error(space, unstressed, x, capsule.load(x)));
+}
+BENCHMARK(growth)
+    ->ArgNames({"n", "dense"})
+    ->Args({12, 0})
+    ->Args({24, 0})
+    ->Args({48, 0})
+    ->Args({96, 0})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(5);
+BENCHMARK(growth)->ArgNames({"n", "dense"})->Args({12, 1})->Args({24, 1})->Args({48, 1})->Unit(benchmark::kMillisecond)->Iterations(2);
+
+}  // namespace
