@@ -80,7 +80,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   if (scene.particle.rigid()) return rigid_plan(scene, body, ranks);
   const double points = body.space.n_points;
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
-  const bool implicit = scene.time.scheme == "tr-bdf2";
+  const bool implicit = scene.time.assembles() || scene.time.scheme == "auto";
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
   if (body.wall) fluid = tube_plan(scene, body);
   output::Entries<std::string> lines = {
@@ -98,7 +98,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                                                                      : " per current area (3.6), mass matrix factored every evaluation")},
       {"far sum", tree ? "single layer by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
-      {"time", scene.time.scheme +
+      {"time", scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
                    (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks, ranks > 1 ? "s" : "")
                              : std::string(", explicit in the fluid: nothing is assembled"))},
       {"mesh", scene.adaptation.enabled ? "refined as the particle deforms (P-37)" : "fixed"},

@@ -48,16 +48,16 @@ double assembled_bytes(double n_points) { return 9.0 * sizeof(float) * n_points 
 void check_size(const Scene& scene) {
   constexpr double limit = 64e9;
   const double n_points = scene.surface.n_points(), most = std::sqrt(limit / assembled_bytes(1));
-  if (scene.time.scheme != "tr-bdf2" || n_points <= most) return;
+  if (!scene.time.assembles() || n_points <= most) return;
   const auto number = [](double x) { return std::to_string(std::lround(x)); };
   const std::string size =
       number(n_points) + " control points takes " + number(assembled_bytes(n_points) / 1e9) + " GB assembled, more than 64.";
   if (scene.surface.polar())
     throw UserError("Surface/azimuthal elements and Surface/meridional elements must give at most " + number(std::floor(most)) +
-                    " control points with Time/scheme `tr-bdf2`: the single layer of " + size);
+                    " control points with Time/scheme `" + scene.time.scheme + "`: the single layer of " + size);
   throw UserError("Surface/elements per side must be at most " + number(std::floor(std::sqrt((most - 2) / 6))) +
-                  " with Time/scheme `tr-bdf2`, but is " + std::to_string(*scene.surface.elements_per_side) + ": the single layer of its " +
-                  size);
+                  " with Time/scheme `" + scene.time.scheme + "`, but is " + std::to_string(*scene.surface.elements_per_side) +
+                  ": the single layer of its " + size);
 }
 
 }  // namespace

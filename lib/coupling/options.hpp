@@ -30,6 +30,7 @@ struct InterfaceOptions {
 struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of the implicit step
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
+  std::shared_ptr<Teuchos::ParameterList> nox;    ///< list of the nonlinear solver of crank-nicolson, as it is
   double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
   std::string double_layer = "assembled";         ///< once a velocity, for all iterations; or matrix-free: summed in each of them
   std::string tube = "schur";                     ///< what is solved for in a tube: v with the wall eliminated; all blocks (BlockForm)

@@ -5,16 +5,22 @@
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "motion/automatic.hpp"
+#include "motion/bdf3.hpp"
 #include "motion/bs3.hpp"
 #include "motion/crank_nicolson.hpp"
+#include "motion/rkc2.hpp"
 #include "motion/tr_bdf2.hpp"
 
 namespace tanktread::motion {
 
-std::unique_ptr<Integrator> integrator(const TimeOptions& options) {
+std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
   if (options.scheme == "tr-bdf2") return std::make_unique<TrBdf2>(options);
   if (options.scheme == "bs3") return std::make_unique<Bs3>(options);
-  if (options.scheme == "crank-nicolson") return std::make_unique<CrankNicolson>(options);
+  if (options.scheme == "crank-nicolson") return std::make_unique<CrankNicolson>(options, nox);
+  if (options.scheme == "auto") return std::make_unique<Automatic>(options);
+  if (options.scheme == "bdf3") return std::make_unique<Bdf3>(options);
+  if (options.scheme == "rkc2") return std::make_unique<Rkc2>(options);
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
 }
 
@@ -27,6 +33,11 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / std::max(speed, change));
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
+}
+
+double step_factor(double error, double previous, int power) {
+  const double e = std::max(error, 1e-3), old = previous > 0 ? std::max(previous, 1e-3) : e;
+  return std::clamp(0.9 * std::pow(1 / e, 0.7 / power) * std::pow(old / e, 0.4 / power), 0.3, 2.0);
 }
 
 void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options) {

@@ -8,6 +8,10 @@
 #include "coupling/dynamics.hpp"
 #include "motion/options.hpp"
 
+namespace Teuchos {
+class ParameterList;
+}
+
 namespace tanktread::motion {
 
 /// Everything that a run needs to go on from here to the last bit: it belongs to a checkpoint.
@@ -38,12 +42,16 @@ class Integrator {
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 
-/// The scheme named by `Time/scheme`.
-std::unique_ptr<Integrator> integrator(const TimeOptions& options);
+/// The scheme named by `Time/scheme`. `nox`: the deck's list `Solvers/NOX`.
+std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox = nullptr);
 
 /// A first step for a state whose slope is known, at the cost of one velocity evaluation: the error of a second-order scheme, judged by the
 /// change of slope along a short Euler step (Hairer, Norsett & Wanner, Solving ODEs I, II.4), is about a tenth of the tolerance.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
+
+/// Factor for the next step of a PI controller: the error over the tolerance, that of the accepted step before (0: none), and the power of the
+/// step that the error goes with. Between 0.3 and 2. Gustafsson 1991.
+double step_factor(double error, double previous, int power);
 
 /// Throws RunFailure when the controller asks for a step below `Time/minimum step`, unless only a sliver before `limit` is left.
 void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options);

@@ -6,11 +6,12 @@
 namespace tanktread::motion {
 
 void TimeOptions::declare(deck::Section& section) {
-  section.key("scheme", scheme, deck::Choice{"tr-bdf2", "bs3", "crank-nicolson"},
-              "`tr-bdf2`: implicit, L-stable, order 2; `bs3`: explicit, order 3; `crank-nicolson`: with sub-iteration, the paper's (4.1)");
+  section.key("scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
+              "`auto`: `bs3`, `tr-bdf2` or `rkc2` by the measured stiffness; `tr-bdf2`: implicit, L-stable, order 2; `bdf3`: implicit, multistep, "
+              "order 3; `bs3`: explicit, order 3; `rkc2`: explicit, stabilised, order 2, nothing assembled; `crank-nicolson`: the paper's (4.1)");
   section.key("final time", final_time, deck::positive(), "time", "the run ends here");
   section.key("tolerance", tolerance, deck::between(1e-13, 1.0), "1",
-              "error allowed in a step: root mean square displacement of the control points over R_C (`tr-bdf2`, `bs3`)");
+              "error allowed in a step: root mean square displacement of the control points over R_C");
   section.key("initial step", initial_step, deck::positive(), "time", "the first step; if not given, the scheme finds one");
   section.key("fixed step", fixed_step, deck::positive(), "time", "every step, without control of the error");
   section.key("maximum step", maximum_step, deck::positive(), "time", "no step is longer");
@@ -18,6 +19,10 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
               "the run ends when the largest normal velocity over rate x R_C falls below it; if not given, only at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1", "end of the sub-iteration of `crank-nicolson` (4.1)");
+  section.key("nonlinear solver", nonlinear_solver, deck::Choice{"plain", "anderson", "newton-krylov"},
+              "`crank-nicolson`: sub-iteration as it is, accelerated by NOX, or Newton's method by NOX with nothing assembled");
+  section.key("step control", step_control, deck::Choice{"iterations", "error"},
+              "`crank-nicolson`: steps by the number of sub-iterations, the paper's rule (4.1) and the default for `plain`, or by the error (4.10)");
   section.key("count euler step", count_euler_step,
               "`crank-nicolson`: the Euler step, which is free, counts as the first sub-iteration of the rule for the step");
   section.key("newton tolerance", newton_tolerance, deck::between(1e-12, 1.0), "1",
@@ -28,6 +33,8 @@ void TimeOptions::declare(deck::Section& section) {
               "relative residual of the linear solves of the implicit step");
   section.key("contraction limit", contraction_limit, deck::between(0.01, 1.0), "1",
               "contraction rate of the iteration above which the frozen layer operator is assembled anew");
+  section.key("largest operator", largest_operator, deck::positive(), "GB",
+              "`auto`: no frozen operator larger than this, on all ranks together, is assembled; `rkc2` is taken instead");
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
               "order of the extrapolation of slopes that a stage starts from");
 }

@@ -11,7 +11,7 @@ namespace tanktread::motion {
 
 /// The integration in time: `Time/*` of the deck.
 struct TimeOptions {
-  std::string scheme = "tr-bdf2";          ///< tr-bdf2 (Hosea & Shampine 1996), bs3, crank-nicolson (4.1)
+  std::string scheme = "tr-bdf2";          ///< see motion/integrator.cpp
   double final_time = 1.0;                 ///< the run ends here
   double tolerance = 1e-4;                 ///< error of a step: root mean square displacement of the control points over R_C
   std::optional<double> initial_step;      ///< empty: the scheme finds one
@@ -20,12 +20,18 @@ struct TimeOptions {
   double minimum_step = 1e-9;              ///< a controlled step below this ends the run with a failure
   std::optional<double> steady_tolerance;  ///< stop when max |v.n| over (rate R_C) falls below it; empty: never
   double iteration_tolerance = 1e-7;       ///< end of the sub-iteration of crank-nicolson (4.1)
+  std::string nonlinear_solver = "plain";   ///< of crank-nicolson: plain, anderson, newton-krylov
+  std::optional<std::string> step_control;  ///< of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations where plain
   bool count_euler_step = true;             ///< whether the Euler step is the first sub-iteration of crank-nicolson
   double newton_tolerance = 0.05;          ///< end of the quasi-Newton iteration, in parts of `tolerance`
   int newton_iterations = 6;               ///< most iterations of a stage before the step is halved
   double linear_tolerance = 0.1;           ///< relative residual of its linear solves
   double contraction_limit = 0.3;          ///< contraction rate above which the frozen layer operator is assembled anew
+  double largest_operator = 32;             ///< GB of the frozen operator on all ranks together beyond which `auto` does without
   int predictor_order = 2;                 ///< order of the polynomial through known slopes that a stage starts from
+
+  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< a frozen operator of any size (4.3)
+  bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }  ///< of crank-nicolson
 
   void declare(deck::Section& section);
 

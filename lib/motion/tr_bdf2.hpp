@@ -17,7 +17,6 @@ class TrBdf2 : public Integrator {
   StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
 
  private:
-  bool solve_stage(coupling::Dynamics& dynamics, const Net& rhs, double shift, Net& y, Net& slope, double& contraction, int& iterations) const;
   TimeOptions options_;
 };
 

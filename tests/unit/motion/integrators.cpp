@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
+#include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
+#include "motion/rkc2.hpp"
+#include "motion/stiffness.hpp"
 
 namespace tanktread::motion {
 namespace {
@@ -27,6 +31,7 @@ class Model : public coupling::Dynamics {
   void freeze(const Net&) override { ++assemblies; }
   void linearise(const Net& x) override { at_ = x; }
   Net solve(double shift, const Net& r, double) override {
+    ++solves;
     Mat3 j = Mat3::Zero();
     j(0, 0) = -rate_;
     j(0, 2) = -rate_ * std::sin(at_(0, 2)) - std::cos(at_(0, 2));
@@ -37,7 +42,7 @@ class Model : public coupling::Dynamics {
   void restore_volume(Net&) override {}
   double norm(const Net& d) const override { return d.norm() / std::sqrt(3.0); }
 
-  int evaluations = 0, assemblies = 0;
+  int evaluations = 0, assemblies = 0, solves = 0;
 
  private:
   double rate_;
@@ -70,28 +75,118 @@ double error_at_one(TimeOptions options, double step, double rate) {
   return std::hypot(state.x(0, 0) - std::cos(1.0), state.x(0, 1) - 0.5);
 }
 
-double observed_order(const std::string& scheme, double rate) {
-  return std::log2(error_at_one(with(scheme), 0.04, rate) / error_at_one(with(scheme), 0.02, rate));
+double observed_order(const std::string& scheme, double rate, double step = 0.04) {
+  return std::log2(error_at_one(with(scheme), step, rate) / error_at_one(with(scheme), step / 2, rate));
 }
 
 // Orders within 0.15: the next term of the error is of relative size dt.
 TEST(Integrators, TrBdf2IsOfSecondOrder) { EXPECT_NEAR(observed_order("tr-bdf2", 2), 2, 0.15); }
 TEST(Integrators, Bs3IsOfThirdOrder) { EXPECT_NEAR(observed_order("bs3", 2), 3, 0.15); }
+TEST(Integrators, Bdf3IsOfThirdOrder) { EXPECT_NEAR(observed_order("bdf3", 2, 0.02), 3, 0.15); }
+TEST(Integrators, Rkc2IsOfSecondOrder) { EXPECT_NEAR(observed_order("rkc2", 2), 2, 0.15); }
 TEST(Integrators, CrankNicolsonIsOfSecondOrder) { EXPECT_NEAR(observed_order("crank-nicolson", 2), 2, 0.15); }
 
-TEST(Integrators, TrBdf2ForgetsAStiffTransientAtOnce) {
-  TimeOptions options = with("tr-bdf2");
+TEST(Integrators, EverySolverOfCrankNicolsonFindsTheSameSteps) {
+  TimeOptions options = with("crank-nicolson");
+  const double plain = error_at_one(options, 0.02, 2);
+  for (const char* solver : {"anderson", "newton-krylov"}) {
+    options.nonlinear_solver = solver;
+    options.newton_tolerance = 1e-5;                          // of the tolerance 1e-4
+    EXPECT_NEAR(error_at_one(options, 0.02, 2), plain, 1e-7) << solver;  // fifty steps of 1e-9
+  }
+}
+
+/// Distance to the slow solution after steps of 0.1, begun far off it.
+double transient(const std::string& scheme, double rate, int steps) {
+  TimeOptions options = with(scheme);
   options.fixed_step = 0.1;
-  Model model(1e8);
+  options.predictor_order = 0;  // slopes of the transient are no guide
+  Model model(rate);
   State state = start(0.1);
-  state.x(0, 0) = 3;  // far off the slow solution
+  state.x(0, 0) = 3;
+  const auto integrate = integrator(options);
+  for (int k = 0; k < steps; ++k) integrate->advance(model, state, 10);
+  return std::abs(state.x(0, 0) - std::cos(state.x(0, 2)));
+}
+
+TEST(Integrators, ImplicitSchemesForgetAStiffTransient) {
+  EXPECT_LT(transient("tr-bdf2", 1e8, 2), 1e-6);  // L-stable: divided by about dt rate each step
+  EXPECT_LT(transient("bdf3", 1e8, 6), 1e-6);     // three steps of TR-BDF2, then three places that have forgotten it
+}
+
+TEST(Integrators, Rkc2TakesTheStagesThatStabilityNeeds) {
+  EXPECT_EQ(rkc2_stages(0.1, 0), 2);
+  for (const double rho : {10.0, 1e2, 1e3, 1e4}) {
+    const double s = rkc2_stages(0.1, rho);
+    EXPECT_LE(0.1 * rho, 0.653 * (s * s - 1) + 0.01);  // (4.8); 1/1.54 = 0.649
+    EXPECT_LT(s, 2 + std::sqrt(1 + 1.54 * 0.1 * rho));
+    EXPECT_LT(transient("rkc2", rho, 150), 0.02);  // damped by a twentieth a step: 2e-3 of the transient is left, and dt^2 of the slow part
+  }
+}
+
+TEST(Integrators, Bs3IsUnstableJustBeyondItsBound) {
+  EXPECT_LT(transient("bs3", 2.4 / 0.1, 100), 0.1);
+  EXPECT_GT(transient("bs3", 2.6 / 0.1, 100), 10);
+}
+
+TEST(Integrators, TheStiffnessIsFoundFromARandomDirection) {
+  Model model(40);
+  Net direction;
+  const Net x = start(0).x;
+  EXPECT_NEAR(stiffness(model, x, model.velocity(x), direction, 8), 40, 0.5);  // the other eigenvalues are 0 and -2
+  EXPECT_NEAR(stiffness(model, x, model.velocity(x), direction, 1), 40, 0.1);  // from where it stopped
+}
+
+TEST(Integrators, AutoIsExplicitWhereThatIsStableAndImplicitWhereItIsNot) {
+  for (const double rate : {1.0, 1e4}) {
+    TimeOptions options = with("auto");
+    Model model(rate);
+    State state = start(1e-3);
+    const auto scheme = integrator(options);
+    int steps = 0;
+    for (; state.time < 1; ++steps) scheme->advance(model, state, 1);
+    EXPECT_LT(std::abs(state.x(0, 1) - 0.5), steps * options.tolerance);
+    EXPECT_EQ(state.frozen.size() > 0, true);
+    EXPECT_LT(steps, 60) << rate;  // BS3 alone would take 4000 at the second rate
+    EXPECT_EQ(model.solves > 0, rate > 1e3);
+  }
+}
+
+TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
+  TimeOptions options = with("auto");
+  options.largest_operator = 1e-9;  // one point takes 12 bytes
+  Model model(1e3);
+  State state = start(1e-3);
   const auto scheme = integrator(options);
-  for (int k = 0; k < 2; ++k) scheme->advance(model, state, 10);
-  EXPECT_NEAR(state.x(0, 0), std::cos(state.x(0, 2)), 1e-6);  // L-stable: the transient is divided by about dt rate each step
+  while (state.time < 0.2) scheme->advance(model, state, 0.2);
+  EXPECT_EQ(model.assemblies, 0);
+  EXPECT_EQ(model.solves, 0);
+}
+
+// Steps of a smooth motion x = sin t: the interpolation error of the cubic is dt^4/384, of its slope of third order.
+TEST(DenseOutput, IsOfFourthOrderAndItsSlopeOfThird) {
+  const auto errors = [](double step) {
+    const auto at = [](double time) {
+      State state;
+      state.time = time;
+      state.x = Net::Constant(1, 3, std::sin(time));
+      state.history = {Net::Constant(1, 3, std::cos(time))};
+      return state;
+    };
+    const DenseOutput dense(at(1), at(1 + step));
+    EXPECT_EQ(dense.place(1)(0, 0), std::sin(1.0));
+    EXPECT_NEAR(dense.slope(1 + step)(0, 0), std::cos(1 + step), 1e-14);
+    const double time = 1 + 0.3 * step;  // not where the error of the slope vanishes
+    return std::pair(std::abs(dense.place(time)(0, 0) - std::sin(time)), std::abs(dense.slope(time)(0, 0) - std::cos(time)));
+  };
+  const auto [place, slope] = errors(0.1);
+  const auto [finer_place, finer_slope] = errors(0.05);
+  EXPECT_NEAR(std::log2(place / finer_place), 4, 0.1);
+  EXPECT_NEAR(std::log2(slope / finer_slope), 3, 0.1);
 }
 
 TEST(Integrators, ControlledStepsMeetTheToleranceAndGrow) {
-  for (const char* scheme : {"tr-bdf2", "bs3"}) {
+  for (const char* scheme : {"tr-bdf2", "bdf3", "bs3", "rkc2", "auto"}) {
     double previous = 0;
     for (const double tolerance : {1e-4, 1e-6}) {
       TimeOptions options = with(scheme);
@@ -136,7 +231,7 @@ TEST(Integrators, AStepBelowTheMinimumStopsTheRunAndKeepsTheState) {
     Broken() : Model(1) {}
     Net velocity(const Net&) override { return Net::Constant(1, 3, std::numeric_limits<double>::quiet_NaN()); }
   };
-  for (const char* scheme : {"tr-bdf2", "bs3", "crank-nicolson"}) {
+  for (const char* scheme : {"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"}) {
     TimeOptions options = with(scheme);
     options.minimum_step = 1e-5;
     Broken model;
@@ -156,7 +251,7 @@ TEST(Integrators, StepsTowardsALimitLeaveNoSliver) {
 }
 
 TEST(Integrators, ACopiedStateGoesOnToTheLastBit) {
-  for (const char* scheme : {"tr-bdf2", "bs3", "crank-nicolson"}) {
+  for (const char* scheme : {"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"}) {
     Model model(3);
     State state = start(0.01);
     const auto one = integrator(with(scheme));

@@ -1,0 +1,43 @@
+#pragma once
+// Nonlinear systems by NOX, on short replicated vectors.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "base/types.hpp"
+
+namespace Teuchos {
+class ParameterList;
+}
+
+namespace tanktread::coupling {
+
+/// What a nonlinear solve did.
+struct NonlinearReport {
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// A fixed point x = g(x) by NOX. Every rank does the same arithmetic on the whole short vector, so iteration counts cannot differ between
+/// ranks; g may be distributed inside and must return the same net on every rank.
+class FixedPoint {
+ public:
+  using Map = std::function<Net(const Net&)>;
+  using Norm = std::function<double(const Net&)>;
+
+  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or `newton-krylov` without a matrix: products with dg/dx by differences of g, Belos'
+  /// GMRES without preconditioner. `list` goes to NOX as it is, after our defaults.
+  FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list);
+  ~FixedPoint();
+
+  /// From x on, until norm(g(x) - x) <= tolerance or `most` iterations are over. Collective. A value of g that is not finite ends the iteration.
+  /// Throws UserError where NOX refuses the list.
+  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tanktread::coupling

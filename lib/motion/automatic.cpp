@@ -1,0 +1,111 @@
+#include "motion/automatic.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/stiffness.hpp"
+
+namespace tanktread::motion {
+
+namespace {
+
+constexpr double stable = 2.3;       // dt rho of BS3, below its 2.51 because rho is measured from below
+constexpr double solve_share = 0.5;  // work of a linear solve over that of an evaluation: 0.4 to 1.5 on 218 and 866 control points
+constexpr double memory_of_work = 0.8;
+constexpr int measured_every = 10, tried_again_after = 50;  // steps
+
+constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // numbers, as State::memory keeps them
+
+}  // namespace
+
+/// State::memory begins with it; what follows is the chosen scheme's own. State::history ends with the direction of (4.7), except under RKC2.
+struct Automatic::Choice {
+  double scheme = bs3;
+  double stiffness = 0;
+  double age = 0;         ///< steps since it was measured
+  double points = 0;      ///< control points then; 0: never
+  double work = 0;        ///< of TR-BDF2 per unit of time, in evaluations; 0: not tried yet
+  double since = 0;       ///< steps since the last change of scheme
+  double then = 0;        ///< stiffness at the last change
+
+  static constexpr size_t size = 7;
+  static Choice from(const std::vector<double>& m) {
+    return m.size() >= size ? Choice{m[0], m[1], m[2], m[3], m[4], m[5], m[6]} : Choice{};
+  }
+  std::vector<double> values() const { return {scheme, stiffness, age, points, work, since, then}; }
+};
+
+Integrator& Automatic::chosen(const Choice& choice) {
+  if (choice.scheme == rkc2) return stabilised_;
+  return choice.scheme == tr_bdf2 ? static_cast<Integrator&>(implicit_) : explicit_;
+}
+
+/// The direction is the last net of the history.
+void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const {
+  const auto points = static_cast<double>(state.x.rows());
+  if (choice.points == points && choice.age < measured_every) return;
+  if (choice.points == 0) state.history.emplace_back();
+  if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
+  choice.stiffness = stiffness(dynamics, state.x, state.history.front(), state.history.back(), choice.points == points ? 3 : 8);
+  choice.points = points;
+  choice.age = 0;
+}
+
+/// After an accepted step.
+void Automatic::reconsider(const State& state, const StepReport& report, Choice& choice) const {
+  choice.age += 1;
+  choice.since += 1;
+  const double longest = stable / std::max(choice.stiffness, 1e-300);
+  double next = choice.scheme;
+  if (choice.scheme == bs3) {
+    const bool bound = state.step > longest;
+    const bool another = choice.since >= tried_again_after || std::abs(std::log(choice.stiffness / choice.then)) > 0.3;
+    if (bound && (choice.work == 0 || another)) next = tr_bdf2;
+  } else {
+    const double work = (1 + solve_share) * report.iterations / report.step;
+    choice.work = choice.work == 0 ? work : memory_of_work * choice.work + (1 - memory_of_work) * work;
+    if (choice.since >= 5 && choice.work > 1.5 * 3 / std::min(longest, report.step)) next = bs3;
+  }
+  if (next == choice.scheme) return;
+  if (next == tr_bdf2) choice.work = 0;
+  choice.scheme = next;
+  choice.since = 0;
+  choice.then = choice.stiffness;
+}
+
+StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  Choice choice = Choice::from(state.memory);
+  const double points = static_cast<double>(state.x.rows()), bytes = 12 * points * points;
+  if (bytes > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
+    choice.scheme = rkc2;
+  } else {
+    measure(dynamics, state, choice);
+  }
+
+  // The scheme sees its own part of history and memory only.
+  State inner = state;
+  inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(std::min(Choice::size, inner.memory.size())));
+  Net direction;
+  if (choice.scheme != rkc2) {
+    direction = inner.history.back();
+    inner.history.pop_back();
+  }
+  const double before = choice.scheme;
+  if (before == bs3 && choice.stiffness > 0 && !options_.fixed_step) inner.step = std::min(inner.step, stable / choice.stiffness);
+  const StepReport report = chosen(choice).advance(dynamics, inner, limit);
+  if (choice.scheme != rkc2) {
+    reconsider(inner, report, choice);
+    if (choice.scheme != before) {
+      inner.history.resize(1);
+      inner.memory.clear();
+    }
+    inner.history.push_back(direction);
+  }
+  const std::vector<double> values = choice.values();
+  inner.memory.insert(inner.memory.begin(), values.begin(), values.end());
+  state = std::move(inner);
+  return report;
+}
+
+}  // namespace tanktread::motion

@@ -1,0 +1,40 @@
+#pragma once
+// What the implicit schemes share: the stage equation, its quasi-Newton iteration and the memory of how fast that contracts.
+
+#include <vector>
+
+#include "coupling/dynamics.hpp"
+#include "motion/integrator.hpp"
+
+namespace tanktread::motion {
+
+/// The controller's memory as it stands in front of State::memory.
+struct Memory {
+  double contraction = 0.3;  ///< contraction rate of the quasi-Newton iteration at the step `step`
+  double error = 0;          ///< local error of the last accepted step over the tolerance; 0 before the first
+  double step = 0;           ///< its size
+
+  static Memory from(const std::vector<double>& m) { return m.size() >= 3 ? Memory{m[0], m[1], m[2]} : Memory{}; }
+  std::vector<double> values() const { return {contraction, error, step}; }
+
+  /// The contraction rate to expect of a step dt: the part left out of (4.3) grows with the step.
+  double expected_contraction(double dt) const;
+};
+
+/// A stage y - shift v(y) = rhs and what its solution came to.
+struct Stage {
+  Net y;                   ///< the start of the iteration, then its end
+  Net slope;               ///< (y - rhs)/shift, algebraic
+  double contraction = 0;  ///< expected rate, then the one found
+  int iterations = 0;      ///< velocity evaluations
+  bool solved = false;
+};
+
+/// Quasi-Newton iteration on the frozen-geometry Jacobian (4.3), H fresh in every iteration, to `Time/newton tolerance`.
+void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, Stage& stage);
+
+/// After an attempt at a step: assembles the layer operator anew at state.x where the iteration failed or contracted too slowly and the
+/// shape has moved on since the last time.
+void refreeze(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, bool solved, double contraction);
+
+}  // namespace tanktread::motion

@@ -1,0 +1,117 @@
+#include "motion/rkc2.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "motion/stiffness.hpp"
+
+namespace tanktread::motion {
+
+namespace {
+
+constexpr double margin = 1.1;    // power iteration stays below rho
+constexpr int lasting_steps = 25;  // for which a measured stiffness is used
+constexpr int most_stages = 200;
+
+/// State::memory; State::history is the slope and the direction of (4.7).
+struct Memory {
+  double stiffness = 0;  ///< measured
+  double age = 0;        ///< steps since
+  double error = 0;      ///< of the last accepted step over the tolerance
+  double points = 0;     ///< control points of the mesh on which it was measured
+
+  static Memory from(const std::vector<double>& m) { return m.size() == 4 ? Memory{m[0], m[1], m[2], m[3]} : Memory{}; }
+  std::vector<double> values() const { return {stiffness, age, error, points}; }
+};
+
+void measure(coupling::Dynamics& dynamics, State& state, Memory& memory, StepReport& report) {
+  const auto points = static_cast<double>(state.x.rows());
+  const int iterations = memory.points == points ? 3 : 8;
+  state.history.resize(2);
+  memory.stiffness = stiffness(dynamics, state.x, state.history[0], state.history[1], iterations);
+  memory.age = 0;
+  memory.points = points;
+  report.iterations += iterations;
+}
+
+/// The value and the first two derivatives of the Chebyshev polynomials of degree 0 … s at w.
+struct Chebyshev {
+  std::vector<double> t, d, dd;
+  Chebyshev(int s, double w) : t{1, w}, d{0, 1}, dd{0, 0} {
+    for (int j = 2; j <= s; ++j) {
+      t.push_back(2 * w * t[j - 1] - t[j - 2]);
+      d.push_back(2 * t[j - 1] + 2 * w * d[j - 1] - d[j - 2]);
+      dd.push_back(4 * d[j - 1] + 2 * w * dd[j - 1] - dd[j - 2]);
+    }
+  }
+};
+
+/// The step from x with slope v to x + dt, by s - 1 velocity evaluations.
+Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double dt, int s) {
+  const double w0 = 1 + 2. / 13 / (s * s);  // damping of two parts in thirteen
+  const Chebyshev c(s, w0);
+  const double w1 = c.d[s] / c.dd[s];
+  std::vector<double> b(s + 1);
+  for (int j = 2; j <= s; ++j) b[j] = c.dd[j] / (c.d[j] * c.d[j]);
+  b[0] = b[1] = b[2];
+
+  Net before = x, y = x + b[1] * w1 * dt * v;
+  for (int j = 2; j <= s; ++j) {
+    const double mu = 2 * b[j] * w0 / b[j - 1], nu = -b[j] / b[j - 2], weight = 2 * b[j] * w1 / b[j - 1];
+    const double first = -(1 - b[j - 1] * c.t[j - 1]) * weight;
+    Net next = (1 - mu - nu) * x + mu * y + nu * before + dt * (weight * dynamics.velocity(y) + first * v);
+    before = std::move(y);
+    y = std::move(next);
+  }
+  return y;
+}
+
+}  // namespace
+
+int rkc2_stages(double dt, double rho) { return std::max(2, 1 + static_cast<int>(std::sqrt(1 + 1.54 * dt * rho))); }
+
+StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  Memory memory = Memory::from(state.memory);
+  StepReport report;
+  if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure(dynamics, state, memory, report);
+  double h = options_.fixed_step ? *options_.fixed_step : state.step;
+
+  for (;; ++report.rejected) {
+    const double rho = margin * memory.stiffness;
+    if (rho > 0) h = std::min(h, (most_stages * most_stages - 1) / (1.54 * rho));
+    refuse_tiny_step(h, state.time, limit, options_);
+    const double dt = step_towards(state.time, limit, h);
+    const Net& v = state.history.front();
+    const int stages = rkc2_stages(dt, rho);
+    Net y = step(dynamics, state.x, v, dt, stages);
+    dynamics.restore_volume(y);
+    const Net slope = dynamics.velocity(y);
+    report.iterations += stages;
+
+    const double error = dynamics.norm(0.8 * (state.x - y) + 0.4 * dt * (v + slope)) / options_.tolerance;
+    const bool finite = std::isfinite(error);
+    if (!finite && options_.fixed_step) throw RunFailure("the stabilised step of fixed size ended in numbers that are not finite");
+    const bool accepted = finite && (error <= 1 || options_.fixed_step);
+    const double factor = finite ? step_factor(error, accepted ? memory.error : 0, 3) : 0.3;
+    if (!accepted) {
+      h = dt * std::min(factor, 0.8);
+      if (memory.age > 0) measure(dynamics, state, memory, report);
+      continue;
+    }
+    report.step = dt;
+    report.error = error * options_.tolerance;
+    report.displacement = dynamics.norm(y - state.x);
+    state.x = y;
+    state.history[0] = slope;
+    state.time = dt == limit - state.time ? limit : state.time + dt;
+    state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options_.maximum_step.value_or(1e300));
+    memory.age += 1;
+    memory.error = error;
+    state.memory = memory.values();
+    return report;
+  }
+}
+
+}  // namespace tanktread::motion
