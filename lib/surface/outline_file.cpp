@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -9,6 +10,7 @@ namespace tanktread::surface {
 namespace {
 
 constexpr int fewest_smooth = 8, fewest_with_corners = 3;
+constexpr double same_point = 1e-6;  // times the longest step
 
 struct Row {
   int line;
@@ -40,7 +42,7 @@ class File {
       const bool heading = rows_.empty() && line.rfind("x2", 0) == 0;
       if (!line.empty() && !heading) rows_.push_back(row(number, line));
     }
-    if (rows_.size() > 1 && rows_.front().x == rows_.back().x) rows_.pop_back();
+    if (rows_.size() > 1 && (rows_.front().x - rows_.back().x).norm() <= same_point * longest_step()) rows_.pop_back();
     check();
   }
 
@@ -72,6 +74,13 @@ class File {
     return {line, {number(line, field[0]), number(line, field[1])}, third};
   }
 
+  /// Between points that follow each other in the file.
+  double longest_step() const {
+    double longest = 0;
+    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) longest = std::max(longest, (rows_[i + 1].x - rows_[i].x).norm());
+    return longest;
+  }
+
   void check() const {
     bool corners = false;
     for (const Row& row : rows_) corners = corners || row.corner;
@@ -79,13 +88,10 @@ class File {
     if (n < fewest)
       throw UserError(name_ + " must hold at least " + std::to_string(fewest) + " points" + (corners ? "" : " without corners") +
                       ", but holds " + std::to_string(n) + ".");
-    double longest = 0;
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
-      const double step = (rows_[i + 1].x - rows_[i].x).norm();
-      if (step == 0)
+    const double longest = longest_step();
+    for (std::size_t i = 0; i + 1 < rows_.size(); ++i)
+      if ((rows_[i + 1].x - rows_[i].x).norm() <= same_point * longest)
         throw UserError(at(rows_[i + 1].line) + "the point of line " + std::to_string(rows_[i].line) + " stands here once more.");
-      longest = std::max(longest, step);
-    }
     const double gap = (rows_.front().x - rows_.back().x).norm();
     const bool straight = rows_.front().corner && rows_.back().corner;
     if (gap > 3 * longest && !straight)
