@@ -47,19 +47,23 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
   const std::size_t n = static_cast<std::size_t>(single.n_nodes());
   std::vector<double> flow_at[3], weighted[3];
   single.values(field, flow_at);
-  for (auto& component : weighted) component.assign(n, 0.);
+  for (auto& component : weighted) component.resize(n);
   for (std::size_t k = 0; k < n; ++k) weighted[0][k] = single.weights()[k] * flow_at[0][k];
-  pressure_of_load = single.moments(weighted) / flow.flow_rate();
+  pressure_of_load = Net::Zero(sites.rows(), 3);
+  pressure_of_load.col(0) = single.moments(weighted[0]) / flow.flow_rate();
   if (!dual) return;
-  const double mu = flow.viscosity(), gradient = flow.pressure_gradient();
+  const double mu = flow.viscosity(), gradient = flow.pressure_gradient(), factor = -(1 - parameters.viscosity_ratio) / flow.flow_rate();
   const auto& normal = dual->normals();
-  for (std::size_t k = 0; k < n; ++k) {
+  dual->values(field, flow_at);
+  for (auto& component : weighted) component.resize(static_cast<std::size_t>(dual->n_nodes()));
+  for (std::size_t k = 0; k < weighted[0].size(); ++k) {
     const double pressure = -gradient * dual->nodes()[0][k], n1 = normal[0][k], n2 = normal[1][k], n3 = normal[2][k];
     weighted[0][k] = -pressure * n1 + mu * (flow_at[1][k] * n2 + flow_at[2][k] * n3);
     weighted[1][k] = -pressure * n2 + mu * flow_at[1][k] * n1;
     weighted[2][k] = -pressure * n3 + mu * flow_at[2][k] * n1;
   }
-  pressure_of_velocity = -(1 - parameters.viscosity_ratio) / flow.flow_rate() * dual->moments(weighted);
+  pressure_of_velocity.resize(sites.rows(), 3);
+  for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = factor * dual->moments(weighted[c]);
 }
 
 void Tube::Particle::find_nearest(const Net& wall_sites) {

@@ -7,6 +7,7 @@
 
 #include "quadrature/ellipse.hpp"
 #include "quadrature/gauss.hpp"
+#include "stokes/cap_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -117,12 +118,8 @@ Net Cap::integral(const Net& x) const {
       continue;
     }
     const Nodes& n = nodes_for(std::abs(h));
-    double sum = 0, sum_y = 0, sum_z = 0;
-    for (std::size_t k = 0; k < n.y.size(); ++k) {
-      const double dy = n.y[k] - y, dz = n.z[k] - z, inverse = 1 / std::sqrt(dy * dy + dz * dz + h * h);
-      sum += (dy * n.ny[k] + dz * n.nz[k]) * inverse, sum_y += n.ny[k] * inverse, sum_z += n.nz[k] * inverse;
-    }
-    c.row(i) << factor * sum, -factor * h * sum_y, -factor * h * sum_z;
+    const CapSums sums = cap_sums(static_cast<int>(n.y.size()), n.y.data(), n.z.data(), n.ny.data(), n.nz.data(), h, y, z);
+    c.row(i) << factor * sums.flux, -factor * h * sums.normal_y, -factor * h * sums.normal_z;
   }
   return c;
 }

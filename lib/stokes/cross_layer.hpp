@@ -51,7 +51,7 @@ class CrossLayer {
 
   /// A field at the far nodes, and the transpose: int N_A g dG for every A, from what g times area is at the far nodes.
   void values(const Net& field, std::vector<double> (&value)[3]);
-  Net moments(const std::vector<double> (&g)[3]) const;
+  Eigen::VectorXd moments(const std::vector<double>& g) const;
 
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }  ///< setup, far, near, assembly

@@ -24,8 +24,7 @@ int far_order(const quadrature::Options& options) {
 
 /// The same for each element. Pieces that are tiny beside the others (those at the extraordinary points of Catmull-Clark surfaces) get
 /// by with less: the smooth part of the integrand converges faster on them, and their share of the area is small.
-std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options) {
-  const int order = far_order(options);
+std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;
   std::vector<double> sizes;
@@ -52,15 +51,15 @@ bool sums_by_tree(const spline::Space& space, const quadrature::Options& options
   if (options.far_sum != "auto") return options.far_sum == "tree";
   if (options.rule == "desingularised") return false;  // its identities meet every node anyway
   double nodes = 0;
-  for (const int order : far_orders(space, options)) nodes += order * order;
+  for (const int order : far_orders(space, options, far_order(options))) nodes += order * order;
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 
-LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how, bool steep)
+LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how, bool steep, int order)
     : options(how),
       n_points(space.n_points),
-      panels(space, far_orders(space, how)),
-      near_field(panels, how.tolerance, far_order(how), steep),
+      panels(space, far_orders(space, how, order ? order : far_order(how))),
+      near_field(panels, how.tolerance, order ? order : far_order(how), steep),
       self_field(space, how) {}
 
 void LayerSurface::place(const Net& x) {
