@@ -1,0 +1,12 @@
+#pragma once
+// The line integrals of a cap (2.13) at one point, on plain arrays.
+
+namespace tanktread::stokes {
+
+/// sum rho.nu/r and sum nu/r over n nodes at (y, z) with normals times weights; rho from (y0, z0), r^2 = rho^2 + h^2, h not 0.
+struct CapSums {
+  double flux, normal_y, normal_z;
+};
+CapSums cap_sums(int n, const double* y, const double* z, const double* normal_y, const double* normal_z, double h, double y0, double z0);
+
+}  // namespace tanktread::stokes
