@@ -2,13 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
 
+#include "base/errors.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::motion {
 
 void AdaptationOptions::declare(deck::Section& section) {
   section.key("enabled", enabled, "refine the mesh as the particle deforms (P-37)");
+  section.key("indicator", indicator, deck::Choice{"error", "variation"},
+              "what is looked at: estimated `error`s (1.5) against tolerances, or the `variation` of fields against references (P-37)");
+  section.key("surface tolerance", surface_tolerance, deck::positive(), "length", "`error`: largest estimated error of the surface on an element");
+  section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
+              "`error`: largest estimated error of the load per present area; if not given, the load is not looked at");
   section.key("reference length", reference_length, deck::positive(), "length", "L_ref: longest element where nothing varies");
   section.key("reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
               "chi_ref; if not given, curvature is not looked at");
@@ -25,6 +34,29 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("coarsen", coarsen, "take cuts back where they are no longer needed");
   section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1", "part of every limit below which a doubled element must stay");
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length", "largest change of a surface by one coarsening");
+}
+
+void AdaptationOptions::check(int first_points, double first_length) const {
+  if (!enabled) return;
+  if (indicator == "error") {
+    for (const auto& [name, given] : {std::pair{"curvature", reference_curvature_variation}, {"traction", reference_traction_variation},
+                                      {"velocity", reference_velocity_variation}})
+      if (given)
+        throw UserError(std::string("Adaptation/reference ") + name + " variation belongs to Adaptation/indicator `variation`, but that is `error`.");
+  } else if (load_tolerance) {
+    throw UserError("Adaptation/load tolerance belongs to Adaptation/indicator `error`, but that is `variation`.");
+  }
+  const auto number = [](double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return std::string(text);
+  };
+  if (minimum_length >= first_length)
+    throw UserError("Adaptation/minimum length must be below the length of the elements that the run starts with, " + number(first_length) +
+                    ", or nothing is ever cut, but is " + number(minimum_length) + ".");
+  if (largest_number_of_points <= first_points)
+    throw UserError("Adaptation/largest number of points must be above the " + std::to_string(first_points) +
+                    " that the run starts with, or nothing is ever cut, but is " + std::to_string(largest_number_of_points) + ".");
 }
 
 namespace {
@@ -72,6 +104,36 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
       merge[0] = merge[1] = 2 * m.along[0].length < options.coarsening_margin * allowed_length(m.along[0], options) &&
                             2 * m.along[1].length < options.coarsening_margin * allowed_length(m.along[1], options);
     if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0] ? 1 : 0, merge[1] ? 1 : 0});
+  }
+  return found;
+}
+
+namespace {
+
+/// Largest estimated error over its tolerance.
+double excess(const surface::Resolution& along, const AdaptationOptions& options) {
+  const double surface = along.surface / options.surface_tolerance;
+  return options.load_tolerance ? std::max(surface, along.load / *options.load_tolerance) : surface;
+}
+
+}  // namespace
+
+std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options) {
+  std::vector<spline::Mark> found;
+  for (size_t e = 0; e < resolution.size(); ++e) {
+    bool cut[2];
+    for (int a = 0; a < 2; ++a) cut[a] = resolution[e][a].length > options.minimum_length && excess(resolution[e][a], options) > 1;
+    if (cut[0] || cut[1]) found.push_back({static_cast<int>(e), cut[0], cut[1]});
+  }
+  return found;
+}
+
+std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options) {
+  std::vector<spline::Merge> found;
+  for (size_t e = 0; e < resolution.size(); ++e) {
+    int merge[2];
+    for (int a = 0; a < 2; ++a) merge[a] = 16 * excess(resolution[e][a], options) < options.coarsening_margin;
+    if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0], merge[1]});
   }
   return found;
 }

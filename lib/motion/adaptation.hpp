@@ -2,11 +2,13 @@
 // Where the mesh is to be cut and where cuts may be taken back.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "spline/coarsening.hpp"
 #include "spline/refinement.hpp"
 #include "surface/metrics.hpp"
+#include "surface/resolution.hpp"
 
 namespace tanktread::deck {
 class Section;
@@ -17,6 +19,9 @@ namespace tanktread::motion {
 /// Mesh adaptation: `Adaptation/*` of the deck. Lengths and fields in the deck's units.
 struct AdaptationOptions {
   bool enabled = false;
+  std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
+  double surface_tolerance = 4e-4;                         ///< of e(x), length
+  std::optional<double> load_tolerance;                    ///< of e(phi), force/length^2; empty: not in use
   double reference_length = 0.35;                          ///< L_ref
   std::optional<double> reference_curvature_variation;     ///< chi_ref, 1/length^2; empty: not in use
   std::optional<double> reference_traction_variation;      ///< T_ref, of the traction per current area, per length
@@ -32,6 +37,10 @@ struct AdaptationOptions {
   double coarsening_tolerance = 1e-5;                      ///< largest change of either surface by one coarsening, length
 
   void declare(deck::Section& section);
+
+  /// One sentence (UserError) for keys that contradict each other, or that leave nothing to do on a first mesh of so many points with elements of
+  /// this length.
+  void check(int first_points, double first_length) const;
 };
 
 /// Elements and directions that the rule wants to be cut (P-37), in the order of elements(mesh):
@@ -41,5 +50,10 @@ std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metr
 
 /// Elements that stay below `coarsening margin` of every limit of (P-37) when they are twice as long, in the directions in which they do.
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
+
+/// The same by estimated errors (1.5): cut along a where L_a > L_min and one of them is above its tolerance; merge where 16 times all of them stay
+/// below `coarsening margin` of it.
+std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
+std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 
 }  // namespace tanktread::motion

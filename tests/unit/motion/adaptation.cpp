@@ -25,7 +25,7 @@ AdaptationOptions options() {
 }
 
 bool cut(const surface::ElementMetrics& m, int direction) {
-  const auto found = marks({m}, options());
+  const auto found = marks(std::vector<surface::ElementMetrics>{m}, options());
   return !found.empty() && (direction == 0 ? found[0].s : found[0].t);
 }
 
@@ -50,11 +50,36 @@ TEST(Adaptation, WhatIsMergedIsNotCutAgain) {
   for (const double a : {0.03, 0.06, 0.1, 0.15, 0.3})
     for (const double b : {0.03, 0.06, 0.1, 0.15, 0.3})
       for (const double traction : {0.0, 9.0, 20.0})
-        for (const spline::Merge& merge : merges({element(a, b, traction)}, options())) {
+        for (const spline::Merge& merge : merges(std::vector<surface::ElementMetrics>{element(a, b, traction)}, options())) {
           const auto twice = element(merge.s ? 2 * a : a, merge.t ? 2 * b : b, traction);
-          for (const spline::Mark& mark : marks({twice}, options()))
+          for (const spline::Mark& mark : marks(std::vector<surface::ElementMetrics>{twice}, options()))
             EXPECT_FALSE((merge.s && mark.s) || (merge.t && mark.t)) << a << " " << b << " " << traction;
         }
+}
+
+using Resolved = std::array<surface::Resolution, 2>;
+
+TEST(Adaptation, AnErrorAboveItsToleranceCutsItsOwnDirection) {
+  AdaptationOptions o;
+  o.surface_tolerance = 1e-3;
+  o.minimum_length = 0.05;
+  const std::vector<Resolved> elements = {{{{0.2, 1.1e-3, 0}, {0.2, 0.9e-3, 0}}}, {{{0.04, 1, 0}, {0.04, 1, 0}}}, {{{0.2, 0, 0.5}, {0.2, 0, 0}}}};
+  const auto found = marks(elements, o);
+  ASSERT_EQ(found.size(), 1u);  // the second is at the floor, the third's load is not looked at
+  EXPECT_EQ(found[0].element, 0);
+  EXPECT_TRUE(found[0].s);
+  EXPECT_FALSE(found[0].t);
+  o.load_tolerance = 0.4;
+  EXPECT_EQ(marks(std::vector<Resolved>{{{{0.2, 0, 0.5}, {0.2, 0, 0}}}}, o).size(), 1u);
+}
+
+TEST(Adaptation, WhatIsMergedByItsErrorIsNotCutAgain) {
+  AdaptationOptions o;
+  o.surface_tolerance = 1e-3;
+  for (const double error : {1e-6, 3e-5, 5e-5, 1e-4, 1e-3})
+    for (const spline::Merge& merge : merges(std::vector<Resolved>{{{{0.2, error, 0}, {0.2, 1e-9, 0}}}}, o))
+      for (const spline::Mark& mark : marks(std::vector<Resolved>{{{{0.4, 16 * error, 0}, {0.4, 16e-9, 0}}}}, o))
+        EXPECT_FALSE(merge.s && mark.s) << error;
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+#include "surface/resolution.hpp"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "spline/extraction.hpp"
+#include "spline/locate.hpp"
+#include "surface/geometry.hpp"
+#include "surfaces.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+double largest_surface_error(const std::vector<std::array<Resolution, 2>>& all) {
+  double largest = 0;
+  for (const auto& element : all)
+    for (const Resolution& along : element) largest = std::max(largest, along.surface);
+  return largest;
+}
+
+TEST(Resolution, AParticleThatHasKeptItsShapeHasNoError) {
+  // Turned, moved and blown up: x = c Q X + d, and F = c Q.
+  const CubeMesh cube(6, spline::ExtraordinaryRule::catmull_clark);
+  const Net rest = cube.sphere();
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  const Net net = (1.7 * rest * turn.transpose()).rowwise() + Vec3(0.3, -2, 1).transpose();
+  EXPECT_LT(largest_surface_error(resolution(cube.mesh, cube.space, rest, net, {})), 1e-15);
+}
+
+TEST(Resolution, AFourthPowerHasItsFourthDifferenceAlongOneDirectionOnly) {
+  // phi = (n x)^4 in the coordinate of the face: the fourth difference is 4! = 24 wherever five places lie on one face.
+  const int n = 8;
+  const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
+  const Net rest = cube.sphere();
+  const FieldAt phi = [&](const spline::Site& site) { return Vec3(std::pow(n * spline::place(cube.space, site).x, 4), 0, 0); };
+  const auto found = resolution(cube.mesh, cube.space, rest, rest, phi);
+  const auto tiles = spline::elements(cube.mesh).tiles;
+  int counted = 0;
+  for (std::size_t e = 0; e < tiles.size(); ++e) {
+    const int unit = tiles[e].width;
+    if (tiles[e].x < 3 * unit || tiles[e].x > (n - 4) * unit || tiles[e].y < 3 * unit || tiles[e].y > (n - 4) * unit) continue;
+    ++counted;
+    EXPECT_NEAR(found[e][0].load, 24. / 384, 1e-9);  // of numbers up to 4096
+    EXPECT_NEAR(found[e][1].load, 0, 1e-9);
+  }
+  EXPECT_EQ(counted, 6 * 2 * 2);
+}
+
+TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
+  const auto error = [](int n) {
+    const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
+    const Net rest = cube.sphere();
+    const FieldAt bump = [&](const spline::Site& site) { return Vec3(std::sin(2 * value(cube.space, rest, site)[0]), 0, 0); };
+    double sum = 0;
+    const auto found = resolution(cube.mesh, cube.space, rest, rest, bump);
+    for (const auto& element : found) sum += element[0].load + element[1].load;
+    return sum / static_cast<double>(found.size());
+  };
+  const double order = std::log2(error(12) / error(24));
+  EXPECT_GT(order, 3.5);  // the lines at extraordinary points, a share of 1/n of them, have a lower one
+  EXPECT_LT(order, 4.1);
+}
+
+}  // namespace
+}  // namespace tanktread::surface
