@@ -8,6 +8,7 @@
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
 #include "surface/metrics.hpp"
+#include "surface/resolution.hpp"
 
 namespace tanktread {
 
@@ -16,7 +17,7 @@ namespace {
 /// The body and the state carried over by `move`, which gives a net on the new space.
 template <class Move>
 Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::State& state, const Move& move) {
-  Adapted result{std::move(target), state, true, 0};
+  Adapted result{std::move(target), state};
   result.body->rest = move(body.rest);
   result.body->unstressed = move(body.unstressed);
   result.state.x = move(state.x);
@@ -32,9 +33,9 @@ std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMes
   return target;
 }
 
-std::optional<Adapted> refined(const Scene& scene, const Body& body, const motion::State& state, const std::vector<spline::Mark>& marks) {
+Adapted refined(const Scene& scene, const Body& body, const motion::State& state, const std::vector<spline::Mark>& marks) {
   spline::Refinement refinement = spline::refine(body.mesh, marks);
-  if (refinement.mesh.edges == body.mesh.edges) return {};
+  if (refinement.mesh.edges == body.mesh.edges) return {.refused = refinement.refused};
   auto target = on_mesh(scene, body, std::move(refinement.mesh));
   const spline::Transfer transfer(body.space, target->space);
   double residual = 0;
@@ -44,6 +45,7 @@ std::optional<Adapted> refined(const Scene& scene, const Body& body, const motio
     return moved.net;
   });
   result.change = residual / body.radius;
+  result.refused = refinement.refused;
   return result;
 }
 
@@ -63,7 +65,7 @@ std::vector<bool> elements_over(const Body& body, const std::vector<double>& def
 }
 
 /// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
-std::optional<Adapted> coarsened(const Scene& scene, const Body& body, const motion::State& state, std::vector<spline::Merge> merges) {
+Adapted coarsened(const Scene& scene, const Body& body, const motion::State& state, std::vector<spline::Merge> merges) {
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
     spline::Coarsening coarsening = spline::coarsen(body.mesh, merges);
     auto target = on_mesh(scene, body, std::move(coarsening.mesh));
@@ -89,18 +91,32 @@ std::optional<Adapted> coarsened(const Scene& scene, const Body& body, const mot
 
 }  // namespace
 
-std::optional<Adapted> adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
-  surface::MetricFields fields;
-  if (scene.adaptation.reference_traction_variation)
-    fields.traction = per_unstressed_area ? surface::per_current_area(body.space, body.unstressed, state.x, load)
-                                          : surface::field_of_net(body.space, load);
-  if (scene.adaptation.reference_velocity_variation && !state.history.empty())
-    fields.velocity = surface::field_of_net(body.space, state.history.front());
-  const auto metrics = surface::element_metrics(body.mesh, body.space, state.x, fields);
-  if (body.space.n_points < scene.adaptation.largest_number_of_points)
-    if (auto result = refined(scene, body, state, motion::marks(metrics, scene.adaptation))) return result;
-  if (!scene.adaptation.coarsen) return {};
-  return coarsened(scene, body, state, motion::merges(metrics, scene.adaptation));
+Adapted adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
+  const motion::AdaptationOptions& options = scene.adaptation;
+  const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.space, body.unstressed, state.x, load)
+                                                        : surface::field_of_net(body.space, load);
+  std::vector<spline::Mark> marks;
+  std::vector<spline::Merge> merges;
+  if (options.indicator == "error") {
+    const auto resolution =
+        surface::resolution(body.mesh, body.space, body.unstressed, state.x, options.load_tolerance ? traction : surface::FieldAt());
+    marks = motion::marks(resolution, options);
+    merges = motion::merges(resolution, options);
+  } else {
+    surface::MetricFields fields;
+    if (options.reference_traction_variation) fields.traction = traction;
+    if (options.reference_velocity_variation && !state.history.empty())
+      fields.velocity = surface::field_of_net(body.space, state.history.front());
+    const auto metrics = surface::element_metrics(body.mesh, body.space, state.x, fields);
+    marks = motion::marks(metrics, options);
+    merges = motion::merges(metrics, options);
+  }
+  Adapted finer;
+  if (body.space.n_points < options.largest_number_of_points) finer = refined(scene, body, state, marks);
+  if (finer.body || !options.coarsen) return finer;
+  Adapted coarser = coarsened(scene, body, state, merges);
+  coarser.refused = finer.refused;
+  return coarser;
 }
 
 }  // namespace tanktread

@@ -2,7 +2,6 @@
 // The same particle on another mesh.
 
 #include <memory>
-#include <optional>
 
 #include "app/body.hpp"
 #include "motion/integrator.hpp"
@@ -11,15 +10,16 @@ namespace tanktread {
 
 /// A body and the state of its run after a change of mesh.
 struct Adapted {
-  std::unique_ptr<Body> body;
+  std::unique_ptr<Body> body;  ///< none: the mesh stays as it is
   motion::State state;
   bool finer = true;    ///< refined; otherwise coarsened
   double change = 0;    ///< largest change of the unstressed and the present surface, over R_C: the residual of the transfer
+  int refused = 0;      ///< cuts that `Adaptation/levels` does not leave room for
 };
 
-/// Cuts what the rule (P-37) marks, or takes back what it allows to be longer; empty where the mesh stays as it is. Every field of the state goes
-/// along: both surfaces, the scheme's slopes, the geometry of the frozen operator. `load`: control values of the load at state.x, per area of
-/// the unstressed surface if `per_unstressed_area`. The same on every rank.
-std::optional<Adapted> adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area);
+/// Cuts what the indicator marks, or takes back what it allows to be longer. Every field of the state goes along: both surfaces, the scheme's
+/// slopes, the geometry of the frozen operator. `load`: control values of the load at state.x, per area of the unstressed surface if
+/// `per_unstressed_area`. The same on every rank.
+Adapted adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area);
 
 }  // namespace tanktread

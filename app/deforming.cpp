@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/adaptation.hpp"
+#include "app/drift.hpp"
 #include "app/moving.hpp"
 #include "app/tube.hpp"
 #include "surface/geometry.hpp"
@@ -29,21 +30,27 @@ class Deforming : public Moving {
     capsule_->work() = resumed.standing.work;
   }
 
-  /// Cuts or merges elements where the rule says so (P-37).
+  /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, Standing& standing) override {
+    if (holds_centre_) hold_centre(body_->flow, capsule_->geometry(), scene_.particle.shape.center, state);
     if (!scene_.adaptation.enabled || standing.step % scene_.adaptation.interval != 0) return false;
     const auto clock = phases_.time("adaptation");
-    auto change = adapted(scene_, *body_, state, capsule_->load(state.x), capsule_->measure() == stokes::Measure::reference);
-    if (!change) return false;
-    if (change->finer && change->change > 1e-12) warn_of_change(change->change, state.time);
-    state = std::move(change->state);
-    settle(std::move(change->body));
+    Adapted change = adapted(scene_, *body_, state, capsule_->load(state.x), capsule_->measure() == stokes::Measure::reference);
+    if (change.refused > 0 && !warned_of_levels_)
+      warn(text("elements that should be cut at time %.6g stay whole: they have been halved as often as Adaptation/levels = %d allows", state.time,
+                scene_.adaptation.levels));
+    warned_of_levels_ = warned_of_levels_ || change.refused > 0;
+    if (!change.body) return false;
+    if (change.finer && change.change > 1e-12)
+      warn(text("refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested", state.time, change.change));
+    state = std::move(change.state);
+    settle(std::move(change.body));
     capsule_->restore_volume(state.x);
     if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
-    (change->finer ? standing.refinements : standing.coarsenings) += 1;
-    if (body_->space.n_points >= scene_.adaptation.largest_number_of_points && !warned_of_size_ && ranks_.rank() == 0)
-      std::fprintf(stderr, "tanktread: refinement ends at %d control points, Adaptation/largest number of points\n", body_->space.n_points);
-    warned_of_size_ = warned_of_size_ || body_->space.n_points >= scene_.adaptation.largest_number_of_points;
+    (change.finer ? standing.refinements : standing.coarsenings) += 1;
+    const bool full = body_->space.n_points >= scene_.adaptation.largest_number_of_points;
+    if (full && !warned_of_size_) warn(text("refinement ends at %d control points, Adaptation/largest number of points", body_->space.n_points));
+    warned_of_size_ = warned_of_size_ || full;
     return true;
   }
 
@@ -82,10 +89,14 @@ class Deforming : public Moving {
     capsule_->work() = work;
   }
 
-  void warn_of_change(double change, double time) const {
-    if (ranks_.rank() == 0)
-      std::fprintf(stderr, "tanktread: refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested\n",
-                   time, change);
+  static std::string text(const char* format, auto... values) {
+    char line[200];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
+  }
+
+  void warn(const std::string& sentence) const {
+    if (ranks_.rank() == 0) std::fprintf(stderr, "tanktread: %s\n", sentence.c_str());
   }
 
   std::vector<output::Field> fields(const output::LagrangeMesh& mesh, const motion::State& state, const Net& load) const {
@@ -110,7 +121,8 @@ class Deforming : public Moving {
   std::unique_ptr<coupling::Capsule> capsule_;
   std::vector<Column> columns_;
   stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
-  bool warned_of_size_ = false;
+  bool warned_of_size_ = false, warned_of_levels_ = false;
+  bool holds_centre_ = holds_centre(scene_);
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "app/scene.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "base/errors.hpp"
 #include "deck/words.hpp"
@@ -15,6 +16,9 @@ void ParticleOptions::declare(deck::Section& section) {
               "problem; `free`: rigid, without force or torque");
   section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
+  section.key("drift", drift, deck::Choice{"free", "held"},
+              "`held`: the centroid is put back after every step, which in an affine flow changes no shape; the default at the point of rest of a "
+              "flow that draws away from it, where rounding grows into a drift; otherwise `free`");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
               "force and torque on a `prescribed` body: `integral` of the traction alone, as the paper has it, or with what that lacks by the "
               "`reciprocal` theorem, the default under Quadrature/rule `adaptive`; the other rules are too coarse for it");
@@ -100,6 +104,19 @@ void check_tube(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+void check_adaptation(const Scene& scene) {
+  if (!scene.adaptation.enabled) return;
+  if (scene.surface.polar())
+    throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
+  const double n = scene.surface.elements_per_side.value();
+  // The side of a square that is 1/(6 n^2) of the sphere of equal volume.
+  scene.adaptation.check(static_cast<int>(scene.surface.n_points()), scene.radius() / n * std::sqrt(4 * std::numbers::pi / 6));
+}
+
+}  // namespace
+
 void Scene::check() const {
   flow.check();
   check_tube(*this);
@@ -116,11 +133,13 @@ void Scene::check() const {
   if (quadrature.rule == "desingularised" && surface.polar() && surface.poles == "plain")
     throw UserError("Quadrature/rule `desingularised` and Surface/poles `plain` contradict each other: a degenerate element has no normal "
                     "at its pole.");
-  if (adaptation.enabled && surface.polar())
-    throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
   if (interface_motion() != "material" && membrane.law != "surface tension")
     throw UserError("Interface/motion `" + interface_motion() + "` and Membrane/law `" + membrane.law +
                     "` contradict each other: an elastic membrane moves with the fluid, `material`.");
+  if (particle.drift == "held" && (tube.present || particle.rigid()))
+    throw UserError("Particle/drift `held` and " + std::string(tube.present ? "Tube" : "Particle/motion `" + particle.motion + "`") +
+                    " contradict each other: it is for particles that deform in a flow whose gradient is the same everywhere.");
+  check_adaptation(*this);
   check_size(*this);
 }
 

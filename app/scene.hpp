@@ -25,6 +25,7 @@ struct ParticleOptions {
   std::string motion = "deforming";
   std::optional<Vec3> velocity;          ///< of the centre, of a `prescribed` motion; zero if not given
   std::optional<Vec3> angular_velocity;  ///< about the centre; zero if not given
+  std::optional<std::string> drift;      ///< `free`, `held`; see holds_centre
   std::optional<std::string> forces;     ///< on a `prescribed` body: `reciprocal`, `integral`
 
   bool rigid() const { return motion != "deforming"; }

@@ -1,0 +1,22 @@
+#include "app/drift.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace tanktread {
+
+bool holds_centre(const Scene& scene) {
+  if (scene.particle.drift) return *scene.particle.drift == "held";
+  if (scene.tube.present) return false;
+  const stokes::AmbientFlow flow(scene.flow);
+  const Vec3& center = scene.particle.shape.center;
+  if (!flow.velocity(center).isZero(0)) return false;
+  return flow.gradient(center).eigenvalues().real().maxCoeff() > 1e-9 * flow.rate();
+}
+
+void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
+  const Vec3 off = geometry.measures(state.x).centroid - place, carried = flow.gradient(place) * off;
+  state.x.rowwise() -= off.transpose();
+  for (Net& slope : state.history) slope.rowwise() -= carried.transpose();
+}
+
+}  // namespace tanktread
