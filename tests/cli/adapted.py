@@ -13,7 +13,7 @@ Tanktread:
   Flow: { type: planar hyperbolic }
   Membrane: { law: Skalak, capillary number: 0.6 }
   Surface: { elements per side: 4, extraordinary points: catmull-clark }
-  Adaptation: { enabled: true, reference length: 0.45, reference traction variation: 12, levels: 2, coarsen: true }
+  Adaptation: { enabled: true, surface tolerance: 3.0e-4, levels: 2, coarsen: true }
   Time: { final time: 0.9 }
   Output: { interval: 0.1 }
 """
