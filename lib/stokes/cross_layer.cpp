@@ -19,7 +19,7 @@ void sum_of(const PointForces& part, const double* x0, const double*, double* u)
 void sum_of(const Stresslets& part, const double* x0, const double* v0, double* u) { node_sum(part, x0, v0, u); }
 
 /// Gauss points a direction of the far rule; 0: those of targets on the surface. Off it, where near rules take over in time, the kernel is
-/// smoother: with three the far part errs by 1e-8 to 2e-7 (tests/verify/gap.cpp).
+/// smoother: with three the far part errs by 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
 int far_order(const quadrature::Options& options) { return options.rule == "adaptive" && options.tolerance >= 1e-5 ? 3 : 0; }
 
 /// The double layer errs up to five times as much under the same rules.

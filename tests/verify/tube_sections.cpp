@@ -1,0 +1,84 @@
+// Tubes that are not round, where no exact solution is known: values on which finer and finer meshes around spherical harmonics settled; and the empty tube.
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "coupling/wall.hpp"
+#include "stokes/duct_boundary.hpp"
+#include "tests/verify/tube_scene.hpp"
+
+namespace tanktread {
+namespace {
+
+using std::numbers::pi;
+
+struct Motion {
+  double speed, drop;
+};
+
+Motion free_sphere(const Duct& duct, double a, const Vec3& centre, int n) {
+  RigidSphere s(sphere(a, centre, n), duct);
+  return {s.body->motion(coupling::placed(centre)).velocity[0], s.body->pressure_drop(coupling::placed(centre))};
+}
+
+surface::TubeOptions options(int around, int along) {
+  surface::TubeOptions o;
+  o.present = true;
+  o.azimuthal_elements = around, o.axial_elements = along;
+  return o;
+}
+
+TEST(TubeSections, EllipseCarriesASphereOffItsAxis) {
+  surface::TubeOptions o = options(24, 25);
+  o.section = "ellipse";
+  o.semi_axes = Eigen::Vector2d(1.2, 0.9);
+  const Duct duct(std::make_shared<stokes::DuctFlow>(o, 1.0, 1.0), o, 2 * pi);
+  const Motion is = free_sphere(duct, 0.6, Vec3(0, 0.1, -0.1), 8);
+  EXPECT_NEAR(is.speed / 1.521222, 1, 2e-5);
+  EXPECT_NEAR(is.drop / 1.865526, 1, 2e-4);
+}
+
+TEST(TubeSections, TrilobeCarriesASphereOffItsAxis) {
+  surface::TubeOptions o = options(24, 25);
+  std::vector<double> knots;
+  std::vector<surface::Vec2> points;
+  for (int k = 0; k <= 96; ++k) {
+    const double t = 2 * pi * k / 96, r = 1 + 0.2 * std::cos(3 * t);
+    knots.push_back(t);
+    if (k < 96) points.emplace_back(r * std::cos(t), r * std::sin(t));
+  }
+  const surface::Outline outline({surface::interpolate_closed(knots, points)});
+  const auto profile = std::make_shared<stokes::BoundaryProfile>(outline, 96);
+  const Duct duct(std::make_shared<stokes::DuctFlow>(outline, profile, 1.0, 1.0), o, 2 * pi);
+  const Motion is = free_sphere(duct, 0.5, Vec3(0, 0.05, -0.05), 8);
+  EXPECT_NEAR(is.speed / 1.693137, 1, 1e-4);  // that was a spline of fewer points: the outlines differ a little
+  EXPECT_NEAR(is.drop / 0.826648, 1, 5e-4);
+}
+
+TEST(TubeSections, SquareWithItsFourCornersCarriesASphere) {
+  surface::TubeOptions o = options(24, 25);
+  o.section = "rectangle";
+  o.sides = Eigen::Vector2d(2, 2);
+  const Duct duct(std::make_shared<stokes::DuctFlow>(o, 1.0, 1.0), o, 2 * pi);
+  const Motion half = free_sphere(duct, 0.5, Vec3::Zero(), 8), wide = free_sphere(duct, 0.8, Vec3::Zero(), 8);
+  EXPECT_NEAR(half.speed / 1.808701, 1, 5e-5);
+  EXPECT_NEAR(half.drop / 0.320876, 1, 2e-4);
+  EXPECT_NEAR(wide.speed / 1.42892, 1, 3e-4);  // six elements a side resolve the gap of 0.2 R_T so far
+  EXPECT_NEAR(wide.drop / 4.3359, 1, 1e-3);
+}
+
+TEST(TubeSections, EmptyTubeIsPoiseuilleAndSampson) {
+  // With a unit of pressure drop and no row (2.7): Q/dp = pi/(8 (L + 3 pi/8)) to 2 %, end losses of an orifice at either end; and what other meshes gave.
+  const double lengths[] = {4, 2 * pi}, known[] = {0.077170, 0.053449};
+  for (const int k : {0, 1}) {
+    const coupling::Wall wall(circular_duct(21, 17, lengths[k]).wall, {});
+    const double rate = wall.inlet().own_flow() - wall.flow_weights().cwiseProduct(wall.pumped()).sum();
+    EXPECT_NEAR(rate / known[k], 1, 1e-3);
+    EXPECT_NEAR(rate * 8 * (lengths[k] + 3 * pi / 8) / pi, 1, 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace tanktread
