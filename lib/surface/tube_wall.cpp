@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -177,10 +178,12 @@ double tube_length(const TubeOptions& options, double radius, double particle_le
 void check_length(const TubeWall& wall, double first, double last) {
   const double margin = 1.7 * wall.radius(), needed = 2 * (std::max(-first, last) + margin);
   if (wall.length() >= needed) return;
-  std::ostringstream text;
-  text << "Tube/length must be at least " << needed << " for this particle, which reaches from x1 = " << first << " to " << last
-       << " of its centroid, but is " << wall.length() << ": 1.7 R_T = " << margin << " must be left at either end.";
-  throw UserError(text.str());
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "Tube/length must be at least %.4g for this particle, which reaches from x1 = %.4g to %.4g seen from its centroid, but is "
+                "%.4g: 1.7 R_T = %.4g must be left at either end.",
+                needed, first, last, wall.length(), margin);
+  throw UserError(text);
 }
 
 }  // namespace tanktread::surface

@@ -1,0 +1,110 @@
+// Layers of one surface at points off it: identities, and the same answer from every route.
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "stokes/cross_layer.hpp"
+#include "stokes/potentials.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+struct Fixture {
+  spline::TMesh mesh = spline::cube(3);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  Net x, f, at;
+  std::vector<int> all;
+  quadrature::Options options;
+
+  Fixture() {
+    surface::ParticleShape shape;
+    shape.shape = "ellipsoid";
+    shape.semi_axes = Vec3(1, 0.8, 0.7);
+    x = surface::initial_shape(space, mesh, shape);
+    f = Net(x.rows(), 3);
+    for (Eigen::Index i = 0; i < f.rows(); ++i) f.row(i) << 1 + x(i, 1), x(i, 0) * x(i, 2), std::sin(x(i, 2));
+    at.resize(4, 3);
+    at << 1.02, 0.1, 0, 2, 1, -1, 0.1, -0.85, 0.1, 0.4, 0.3, 1.5;
+    all.resize(4);
+    std::iota(all.begin(), all.end(), 0);
+    options.tolerance = 1e-8;
+  }
+
+  std::vector<Vec3> points() const {
+    std::vector<Vec3> p;
+    for (Eigen::Index i = 0; i < at.rows(); ++i) p.push_back(at.row(i).transpose());
+    return p;
+  }
+};
+
+TEST(CrossLayer, IsThePotential) {
+  const Fixture s;
+  Potentials potentials(s.space, s.options);
+  potentials.place(s.x);
+  for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
+    CrossLayer layer(s.space, s.options, kernel);
+    layer.place(s.x);
+    Net u(4, 3);
+    layer.apply(s.f, s.at, s.all, u);
+    const std::vector<Vec3> exact =
+        kernel == CrossLayer::Kernel::single_layer ? potentials.single_layer(s.f, s.points()) : potentials.double_layer(s.f, s.points());
+    for (int i = 0; i < 4; ++i) EXPECT_LT((u.row(i).transpose() - exact[static_cast<std::size_t>(i)]).norm(), 2e-8) << i;
+  }
+}
+
+TEST(CrossLayer, IsItsAssembledRows) {
+  const Fixture s;
+  for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
+    CrossLayer layer(s.space, s.options, kernel);
+    layer.place(s.x);
+    Net u(4, 3);
+    layer.apply(s.f, s.at, s.all, u);
+    Rows<double> rows;
+    layer.assemble(s.at, s.all, rows);
+    const Eigen::VectorXd product = rows * Eigen::Map<const Eigen::VectorXd>(s.f.data(), s.f.size());
+    EXPECT_LT((Eigen::Map<const Net>(product.data(), 4, 3) - u).norm(), 1e-13);
+  }
+}
+
+TEST(CrossLayer, FeelsNoConstantVelocityOutside) {
+  const Fixture s;
+  CrossLayer layer(s.space, s.options, CrossLayer::Kernel::double_layer);
+  layer.place(s.x);
+  Net u(4, 3), shifted(4, 3);
+  const Net v0 = Vec3(1, -2, 3).transpose().replicate(4, 1);
+  layer.apply(s.f, s.at, s.all, u);
+  layer.apply(s.f, v0, s.at, s.all, shifted);
+  EXPECT_LT((u - shifted).norm(), 1e-7);
+}
+
+TEST(CrossLayer, MeasuresALoadOnTheUnstressedArea) {
+  const Fixture s;
+  CrossLayer layer(s.space, s.options, CrossLayer::Kernel::single_layer);
+  layer.set_reference(2 * s.x);
+  Net present(4, 3), reference(4, 3);
+  layer.place(s.x);
+  layer.apply(s.f, s.at, s.all, present);
+  layer.place(s.x, Measure::reference);
+  layer.apply(s.f, s.at, s.all, reference);
+  EXPECT_LT((reference - 4 * present).norm() / present.norm(), 1e-7);
+}
+
+TEST(CrossLayer, MomentsAreDualToValues) {
+  const Fixture s;
+  CrossLayer layer(s.space, s.options, CrossLayer::Kernel::single_layer);
+  layer.place(s.x);
+  std::vector<double> value[3];
+  layer.values(s.f, value);
+  const double sum = std::inner_product(value[0].begin(), value[0].end(), layer.weights().begin(), 0.);
+  EXPECT_NEAR(layer.moments(layer.weights()).dot(s.f.col(0)) / sum, 1, 1e-13);
+  EXPECT_NEAR(layer.moments(layer.weights()).sum() / surface::measures(s.space, s.x).area, 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace tanktread::stokes
