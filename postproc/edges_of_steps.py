@@ -54,6 +54,8 @@ def draw_steps(study, variable, label, values, of):
             if what != "edge":
                 axis.annotate("↑" if what == "holds to here" else "↓", (value, step), (0, 4), textcoords="offset points", ha="center", color=color)
     axis.loglog(values, [2.51 / of(value)[1] for value in values], color=style.FAINT, linestyle=(0, (4, 3)), label="2.51/ρ, ρ by (4.5)")
+    axis.set_xticks(values, [f"{value:g}" for value in values])
+    axis.xaxis.set_minor_locator(plt.NullLocator())
     axis.set_xlabel(label)
     axis.set_ylabel("largest step that works, times rate")
     axis.legend(loc="best")
