@@ -98,12 +98,27 @@ def draw(axis, points, cost, label, colors, shape):
     for point in points:
         color = colors[point.picked[shape]]
         axis.plot(getattr(point, cost), point.error, "o", color=color, ms=5 if point in kept else 3.5, mfc=color if point in kept else "none", mew=0.9)
-        axis.annotate(point.label, (getattr(point, cost), point.error), (3, 2), textcoords="offset points", fontsize=5.5 if point in kept else 4.5,
-                      color=style.INK if point in kept else style.FAINT)
+    label_points(axis, points, cost, kept)
     axis.plot(getattr(points[0], cost), points[0].error, "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
     axis.set_xlabel(label)
     axis.set_ylabel("error")
     return kept
+
+
+def label_points(axis, points, cost, kept):
+    """Labels beside the points, each on the first of a few heights at which it meets no other."""
+    span = math.log(max(getattr(one, cost) for one in points) / min(getattr(one, cost) for one in points)) or 1
+    rise = math.log(max(one.error for one in points) / min(one.error for one in points)) or 1
+    taken = []
+    for point in sorted(points, key=lambda one: (one not in kept, getattr(one, cost))):
+        x, y, width = math.log(getattr(point, cost)) / span, math.log(point.error) / rise, 0.009 * len(point.label)
+        for height in (2, -7, 10, -15, 18, -23, 26, -31, 34, -39):
+            place = y + height / 330
+            if all(abs(place - other) > 0.02 or x + width < left or x > right for left, right, other in taken):
+                break
+        taken.append((x, x + width, place))
+        axis.annotate(point.label, (getattr(point, cost), point.error), (4, height), textcoords="offset points", fontsize=6 if point in kept else 5,
+                      color=style.INK if point in kept else style.FAINT)
 
 
 def report(scene, points):
@@ -166,8 +181,9 @@ def main():
     draw(axes[0], points, "seconds", "processor seconds", colors, shape)
     draw(axes[1], points, "kernels", "kernel evaluations", colors, shape)
     for option, color in colors.items():
-        axes[1].plot([], [], "o", color=color, label=option)
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=8, fontsize=7.5)
+        if any(point.picked[shape] == option for point in points):
+            axes[1].plot([], [], "o", color=color, label=option)
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=7, fontsize=7.5)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
     words = [parsed.study] + (["--differences", str(parsed.differences)] if parsed.differences != 2 else []) + (["--only", *parsed.only] if parsed.only else [])
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words) + f"\nerror: {scene.error.get('text', '')}", x=0.01, ha="left", fontsize=7.5)
