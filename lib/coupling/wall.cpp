@@ -25,6 +25,29 @@ Net collocation_points(const spline::Space& space, const Net& net) {
 
 Eigen::Map<const Eigen::VectorXd> flat(const Net& net) { return {net.data(), net.size()}; }
 
+/// The whole matrix on every rank, from the rows of each: a few columns of blocks at a time, as a net with a row for each row of a block.
+Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<int>& own, int n) {
+  constexpr int at_a_time = 16;
+  Ranks ranks;
+  std::vector<int> places;
+  for (const int i : own)
+    for (int r = 0; r < 3 * at_a_time; ++r) places.push_back(3 * at_a_time * i + r);
+  ranks.own(places, 3 * at_a_time * n);
+  Eigen::MatrixXd all(3 * n, 3 * n);
+  Net part(3 * at_a_time * n, 3);
+  for (int first = 0; first < n; first += at_a_time) {
+    const int count = std::min(at_a_time, n - first);
+    for (std::size_t k = 0; k < own.size(); ++k)
+      for (int c = 0; c < 3; ++c)
+        for (int j = 0; j < count; ++j)
+          part.row(at_a_time * (3 * own[k] + c) + j) = rows.block<1, 3>(3 * static_cast<Eigen::Index>(k) + c, 3 * (first + j));
+    ranks.replicate(part);
+    for (int i = 0; i < 3 * n; ++i)
+      for (int j = 0; j < count; ++j) all.block<1, 3>(i, 3 * (first + j)) = part.row(at_a_time * i + j);
+  }
+  return all;
+}
+
 }  // namespace
 
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature)
@@ -40,14 +63,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature)
   stokes::SingleLayer own_layer(surface_.space, sharper(quadrature));
   own_layer.assemble(wall.net, stokes::Measure::current, own_, rows_);
   assembly_ = own_layer.evaluations();
-  Eigen::MatrixXd all(3 * n, 3 * n);
-  Net column(n, 3);
-  for (int j = 0; j < 3 * n; ++j) {
-    for (std::size_t k = 0; k < own_.size(); ++k)
-      column.row(own_[k]) = rows_.col(j).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    ranks_.replicate(column);
-    all.col(j) = flat(column);
-  }
+  const Eigen::MatrixXd all = everybodys(rows_, own_, n);
   factors_.compute(all);
 
   inlet_column_ = inlet_.integral(sites_);
