@@ -33,7 +33,10 @@ spline::Space space(const Scene& scene, const spline::TMesh& mesh) {
 
 Body body(const Scene& scene) {
   Body b;
-  if (scene.surface.polar()) {
+  if (const auto& imported = scene.particle.shape.imported) {
+    b.space = imported->space;
+    b.rest = surface::imported_shape(scene.particle.shape);
+  } else if (scene.surface.polar()) {
     const spline::PolarMesh mesh = scene.surface.polar_mesh();
     b.space = spline::space(mesh);
     b.rest = surface::initial_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
@@ -101,7 +104,9 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
       {"time", scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
                    (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks, ranks > 1 ? "s" : "")
                              : std::string(", explicit in the fluid: nothing is assembled"))},
-      {"mesh", scene.adaptation.enabled ? "refined as the particle deforms (P-37)" : "fixed"},
+      {"mesh", !scene.adaptation.enabled                ? "fixed"
+               : scene.adaptation.indicator == "error" ? "refined as the particle deforms, by estimated errors (1.5)"
+                                                        : "refined as the particle deforms (P-37)"},
       {"symmetry", "none used"},
   };
   lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());

@@ -18,7 +18,7 @@ namespace tanktread {
 
 /// What the deck describes, before anything moves.
 struct Body {
-  spline::TMesh mesh;  ///< empty for the polar mesh
+  spline::TMesh mesh;  ///< empty for the polar mesh and for one from a file
   spline::Space space;
   Net rest;        ///< control net of the resting shape, where the run starts
   Net unstressed;  ///< smaller by the pre-inflation

@@ -7,6 +7,7 @@
 #include "app/moving.hpp"
 #include "app/tube.hpp"
 #include "surface/geometry.hpp"
+#include "surface/metrics.hpp"
 
 namespace tanktread {
 
@@ -99,9 +100,18 @@ class Deforming : public Moving {
     if (ranks_.rank() == 0) std::fprintf(stderr, "tanktread: %s\n", sentence.c_str());
   }
 
+  /// The load per present area.
+  Net traction(const output::LagrangeMesh& mesh, const motion::State& state, const Net& load) const {
+    const auto at = surface::per_current_area(body_->space, body_->unstressed, state.x, load);
+    Net values(static_cast<Eigen::Index>(mesh.sites.size()), 3);
+    for (size_t i = 0; i < mesh.sites.size(); ++i) values.row(static_cast<Eigen::Index>(i)) = at(mesh.sites[i]).transpose();
+    return values;
+  }
+
   std::vector<output::Field> fields(const output::LagrangeMesh& mesh, const motion::State& state, const Net& load) const {
     std::vector<output::Field> fields;
     fields.push_back({"load", output::nodal_values(body_->space, mesh, load)});
+    if (capsule_->measure() == stokes::Measure::reference) fields.push_back({"traction", traction(mesh, state, load)});
     fields.push_back({"displacement", output::nodal_values(body_->space, mesh, state.x - body_->unstressed)});
     if (!state.history.empty()) fields.push_back({"velocity", output::nodal_values(body_->space, mesh, state.history.front())});
     const Eigen::MatrixX2d tensions = capsule_->membrane().tensions(state.x, mesh.sites);

@@ -31,7 +31,10 @@ void Scene::declare(deck::Section& root) {
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
   if (deforming || membrane_given) root.section("Membrane", membrane, "what its surface is made of");
-  root.section("Surface", surface, "the spline space of its surface");
+  if (particle.shape.shape != "file")
+    root.section("Surface", surface, "the spline space of its surface");
+  else if (root.given("Surface"))
+    throw UserError("Surface and Particle/shape `file` contradict each other: the spline space is the file's.");
   tube.present = root.given("Tube");
   if (tube.present || root.documenting()) root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
@@ -51,11 +54,15 @@ double assembled_bytes(double n_points) { return 9.0 * sizeof(float) * n_points 
 
 void check_size(const Scene& scene) {
   constexpr double limit = 64e9;
-  const double n_points = scene.surface.n_points(), most = std::sqrt(limit / assembled_bytes(1));
+  const auto& imported = scene.particle.shape.imported;
+  const double n_points = imported ? imported->space.n_points : scene.surface.n_points(), most = std::sqrt(limit / assembled_bytes(1));
   if (!scene.time.assembles() || n_points <= most) return;
   const auto number = [](double x) { return std::to_string(std::lround(x)); };
   const std::string size =
       number(n_points) + " control points takes " + number(assembled_bytes(n_points) / 1e9) + " GB assembled, more than 64.";
+  if (imported)
+    throw UserError("Particle/file must hold at most " + number(std::floor(most)) + " control points with Time/scheme `" + scene.time.scheme +
+                    "`: the single layer of " + size);
   if (scene.surface.polar())
     throw UserError("Surface/azimuthal elements and Surface/meridional elements must give at most " + number(std::floor(most)) +
                     " control points with Time/scheme `" + scene.time.scheme + "`: the single layer of " + size);
@@ -108,6 +115,8 @@ namespace {
 
 void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;
+  if (scene.particle.shape.imported)
+    throw UserError("Adaptation/enabled and Particle/shape `file` contradict each other: only the mesh `cube` can be refined.");
   if (scene.surface.polar())
     throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
   const double n = scene.surface.elements_per_side.value();

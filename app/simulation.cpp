@@ -16,6 +16,7 @@
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
 #include "output/progress.hpp"
+#include "spline/iga.hpp"
 
 namespace tanktread {
 
@@ -153,6 +154,10 @@ class Run {
   }
 
   int end(const std::string& reason) {
+    if (scene_.output.surface_text) {
+      const Portrait portrait = particle_->portrait(state_);
+      if (ranks_.rank() == 0) spline::write_iga(results_.directory() / "surface.iga", particle_->body().space, portrait.surface);
+    }
     const output::Entries<long> work = counts(standing_, particle_->work(), particle_->kernel_evaluations());
     std::ostringstream remark;
     if (!reason.empty()) remark << reason << " at time " << state_.time;

@@ -9,6 +9,7 @@ void Options::declare(deck::Section& section) {
               "simulated time between snapshots; if not given, a twentieth of the final time");
   section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
               "the run stops with a checkpoint after this time; if not given, never");
+  section.key("surface text", surface_text, "write the last surface as Bezier-extraction text, `surface.iga`, which Particle/file reads");
 }
 
 }  // namespace tanktread::output

@@ -13,6 +13,8 @@ struct Options {
   std::optional<double> interval;          ///< simulated time between snapshots; empty: a twentieth of the final time
   std::optional<double> wall_clock_limit;  ///< seconds after which the run stops with a checkpoint; empty: none
 
+  bool surface_text = false;               ///< the last surface as Bezier-extraction text, `surface.iga`
+
   void declare(deck::Section& section);
 };
 

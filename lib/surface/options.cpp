@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread::surface {
 
@@ -63,8 +64,10 @@ double MeshOptions::n_points() const {
 }
 
 void ParticleShape::declare(deck::Section& section) {
-  section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell"},
-              "resting shape; `red cell`: the biconcave disc of Evans and Fung");
+  section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
+              "resting shape; `red cell`: the biconcave disc of Evans and Fung; `file`: the closed surface in Particle/file");
+  section.key("file", file, deck::Choice{},
+              "name of a Bezier-extraction text (.iga) whose surface and spline space are taken; the length unit is the deck's");
   const bool round = shape == "sphere" || shape == "red cell";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length", "of the sphere (1 if not given), or of the red cell's disc");
@@ -73,10 +76,20 @@ void ParticleShape::declare(deck::Section& section) {
   section.key("center", center, deck::any(), "length", "centroid of the resting shape");
   section.key("orientation", orientation, deck::any(), "degrees",
               "rotation vector (axis times angle) that turns the particle's own axes into place");
+  if (shape == "file" && file) imported = std::make_shared<const spline::SplineSurface>(spline::read_iga(*file));
 }
 
 void ParticleShape::check() const {
   const bool round = shape == "sphere" || shape == "red cell";
+  if (shape != "file" && file)
+    throw UserError("Particle/file and Particle/shape `" + shape + "` contradict each other: it belongs to `file`.");
+  if (shape == "file") {
+    if (!file) throw UserError("Particle/shape `file` needs Particle/file, the name of a Bezier-extraction text.");
+    if (radius || semi_axes)
+      throw UserError(std::string("Particle/") + (radius ? "radius" : "semi-axes") +
+                      " and Particle/shape `file` contradict each other: the size is the file's.");
+    return;
+  }
   if (round && semi_axes)
     throw UserError("Particle/semi-axes and Particle/shape `" + shape + "` contradict each other: give Particle/radius.");
   if (!round && radius)
@@ -103,6 +116,7 @@ double ParticleShape::equivalent_radius() const {
     const double volume = 2.0 * std::numbers::pi * (0.21 / 3.0 + 2.0 * 2.0 / 15.0 - 1.12 * 8.0 / 105.0);
     return radius.value() * std::cbrt(volume * 3.0 / (4.0 * std::numbers::pi));
   }
+  if (imported) return std::cbrt(volume(imported->space, imported->net) * 3.0 / (4.0 * std::numbers::pi));
   return std::cbrt(semi_axes.value().prod());
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "base/types.hpp"
+#include "spline/iga.hpp"
 #include "spline/polar.hpp"
 
 namespace tanktread::deck {
@@ -39,16 +41,21 @@ struct MeshOptions {
 
 /// The resting shape of the particle: keys of `Particle/*`.
 struct ParticleShape {
-  std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell
+  std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell, file
   std::optional<double> radius;     ///< of the sphere, or of the disc of a red cell; set for these two, empty otherwise
   std::optional<Vec3> semi_axes;    ///< along the particle's own x1, x2, x3; set for spheroid and ellipsoid, empty otherwise
+  std::optional<std::string> file;  ///< of the shape `file`: Bezier-extraction text; the spline space is the file's
   Vec3 center = Vec3::Zero();       ///< of the resting shape
   Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees, from the particle's own axes to those of space
 
+  /// Reads the file, if there is one.
   void declare(deck::Section& section);
 
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
+
+  /// What is in the file, as it stands there; none for the other shapes.
+  std::shared_ptr<const spline::SplineSurface> imported;
 
   /// Columns: the particle's own axes in space.
   Mat3 rotation() const;

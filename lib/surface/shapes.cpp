@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "surface/cube_sphere.hpp"
+#include "surface/geometry.hpp"
 #include "surface/polar_sphere.hpp"
 
 namespace tanktread::surface {
@@ -58,6 +59,12 @@ Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const P
 
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape) {
   return resting_shape(LeastSquaresFit(space), unit_sphere(mesh, space, axis), shape);
+}
+
+Net imported_shape(const ParticleShape& shape) {
+  const auto& [space, net] = *shape.imported;
+  const Vec3 centroid = measures(space, net).centroid;
+  return ((net.rowwise() - centroid.transpose()) * shape.rotation().transpose()).rowwise() + shape.center.transpose();
 }
 
 }  // namespace tanktread::surface

@@ -26,4 +26,7 @@ Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const Part
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
+/// The surface of a file, its centroid moved to the deck's centre and turned about it.
+Net imported_shape(const ParticleShape& shape);
+
 }  // namespace tanktread::surface

@@ -51,7 +51,13 @@ SETTINGS = [
     (["Surface/elements per side=1000000000"], ["Surface/elements per side", "between 3 and 200", "1000000000"]),
     (["Surface/elements per side=150"], ["Surface/elements per side", "150", "GB"]),
     (["Output/wall-clock limit=-5"], ["Output/wall-clock limit", "positive", "seconds", "-5"]),
+    (["Adaptation/enabled=true", "Adaptation/minimum length=0.6"], ["Adaptation/minimum length", "below", "0.482", "0.6"]),
+    (["Adaptation/enabled=true", "Adaptation/largest number of points=56"], ["Adaptation/largest number of points", "above", "56"]),
     # contradictory keys
+    (["Adaptation/enabled=true", "Adaptation/reference traction variation=8"], ["reference traction variation", "`variation`", "`error`"]),
+    (["Adaptation/enabled=true", "Adaptation/indicator=variation", "Adaptation/load tolerance=8"], ["Adaptation/load tolerance", "`error`"]),
+    (["Particle/shape=file"], ["Particle/shape", "Particle/file"]),
+    (["Particle/file=a.iga"], ["Particle/file", "contradict", "sphere"]),
     (["Particle/motion=free"], ["Membrane", "Particle/motion", "free", "contradict", "rigid"]),
     (["Particle/motion=prescribed"], ["Membrane", "Particle/motion", "prescribed", "contradict", "rigid"]),
     (["Particle/velocity=[1, 0, 0]"], ["Particle/velocity", "prescribed", "deforming"]),

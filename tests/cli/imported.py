@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+# A surface from a file: what was written is taken up again, and a file that is no closed surface is one sentence.
+import pathlib
+
+from harness import check, close, deck, main, run, series
+
+START = """
+Tanktread:
+  Flow: { type: simple shear }
+  Membrane: { law: Skalak, capillary number: 0.3 }
+  Surface: { elements per side: 4 }
+  Time: { scheme: bs3, final time: 0.05 }
+  Output: { surface text: true }
+"""
+IMPORT = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particle: { shape: file, file: %s }
+  Membrane: { law: Skalak, capillary number: 0.3 }
+  Time: { scheme: bs3, final time: 0.05 }
+"""
+
+
+def _written():
+    """not a test"""
+    run(deck(START), "--output", "first", "--quiet")
+    return pathlib.Path("first/surface.iga")
+
+
+def a_written_surface_is_the_next_run_s_start():
+    file = _written()
+    run(deck(IMPORT % file), "--output", "second", "--quiet")
+    close(series("second", "volume")[0], series("first", "volume")[-1], 1e-13, "volume")
+    close(series("second", "taylor_inertia")[0], series("first", "taylor_inertia")[-1], 1e-13, "D")
+    check(series("second", "n_control_points")[0] == 98, "control points")
+
+
+def _refused(name, lines, *words):
+    """not a test"""
+    pathlib.Path(name).write_text("\n".join(lines) + "\n")
+    result = run(deck(IMPORT % name), "--check", code=2)
+    said = result.stderr.strip()
+    check(said.count("\n") == 0 and all(word in said for word in (name, *words)), said)
+
+
+def files_that_hold_no_closed_surface_are_refused_in_one_sentence():
+    lines = _written().read_text().splitlines()
+    starts = [i for i, line in enumerate(lines) if line.startswith("belem")] + [len(lines)]
+    count = next(i for i, line in enumerate(lines) if line.startswith("elemN"))
+    elements = len(starts) - 1
+    without = lines[:starts[7]] + lines[starts[8]:]
+    _refused("missing.iga", without, "elemN", str(elements), str(elements - 1))
+    _refused("hole.iga", [f"elemN {elements - 1}" if i == count else line for i, line in enumerate(without)], "closed")
+    mirrored = [" ".join([w[0], w[1], w[2], str(-float(w[3])), w[4]]) if (w := line.split())[0] == "node" else line for line in lines]
+    _refused("inverted.iga", mirrored, "inside out")
+    words = lines[starts[0] + 2].split()
+    spoilt = [str(float(words[0]) + 0.1), *words[1:]]
+    _refused("sum.iga", [" ".join(spoilt) if i == starts[0] + 2 else line for i, line in enumerate(lines)], "sum to 1")
+
+
+def keys_of_other_shapes_and_meshes_are_refused():
+    file = _written()
+    for setting, word in ("Surface/elements per side=6", "Surface"), ("Particle/radius=1", "Particle/radius"), ("Adaptation/enabled=true", "Adaptation"):
+        result = run(deck(IMPORT % file), "--set", setting, "--check", code=2)
+        check(word in result.stderr and "file" in result.stderr, result.stderr)
+    result = run(deck(IMPORT % "nowhere.iga"), "--check", code=2)
+    check("nowhere.iga" in result.stderr, result.stderr)
+
+
+main()
