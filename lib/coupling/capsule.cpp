@@ -44,6 +44,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
   if (tube_) {
     sites_ = collocation_matrix(space);
+    inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
   }
   volume0_ = geometry_.volume(initial);
@@ -139,7 +140,11 @@ bool Capsule::enter_tube(const Net& x) {
   if (!x.allFinite()) return false;
   tube_->place(x);
   const Net at_sites = sites_ * x;
-  const bool outside = std::ranges::any_of(own_points_, [&](int i) { return !tube_->wall().outline.inside({at_sites(i, 1), at_sites(i, 2)}); });
+  const surface::Outline& outline = tube_->wall().outline;
+  const bool outside = std::ranges::any_of(own_points_, [&](int i) {
+    const surface::Vec2 place(at_sites(i, 1), at_sites(i, 2));
+    return (place - outline.centroid()).norm() >= inner_radius_ && !outline.inside(place);
+  });
   return !ranks_.any(outside);
 }
 

@@ -136,6 +136,7 @@ class Capsule : public Dynamics {
   stokes::Rows<double> double_rows_;
   std::unique_ptr<Tube> tube_;
   Eigen::SparseMatrix<double> sites_;   // R, in a tube
+  double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
   std::vector<Mat3> gradients_;         // of the flow in a tube at the sites, as linearised
   Net linearised_, linearised_flux_;    // x and b of the interface in a tube, as linearised
   double volume0_ = 0;

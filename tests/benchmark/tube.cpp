@@ -1,0 +1,105 @@
+// One velocity evaluation of a capsule in a tube (602 + 21 x 20 control points) over one of the same capsule without it, in the same run.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <ctime>
+#include <memory>
+
+#include "base/timing.hpp"
+#include "coupling/capsule.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/laws.hpp"
+#include "spline/extraction.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "surface/shapes.hpp"
+#include "surface/tube_wall.hpp"
+
+namespace {
+
+using namespace tanktread;
+
+/// Seconds of processor time: a busy machine does not count.
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// A capsule of a = 0.6 R_T, somewhat deformed, 0.2 R_T below the axis.
+struct Capsule {
+  spline::Space space;
+  Net unstressed, x;
+  coupling::CapsuleParameters parameters;
+
+  explicit Capsule(double viscosity_ratio) {
+    const spline::TMesh mesh = spline::cube(10);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    const Net sphere = surface::unit_sphere(mesh, fit);
+    const Vec3 centre(0, 0, -0.2);
+    unstressed = (0.6 / 1.02 * sphere).rowwise() + centre.transpose();
+    x = fit.fit_image(sphere, [&](const Vec3& p) { return Vec3(centre + 0.6 * Vec3(p[0] + 0.2 * p[2] * p[2] - 0.1, 1.02 * p[1], 0.98 * p[2])); });
+    parameters.law = membrane::Skalak{10, 1};
+    parameters.viscosity_ratio = viscosity_ratio;
+    parameters.radius = 0.6;
+  }
+
+  double seconds(const stokes::AmbientFlow& flow, coupling::Ranks& ranks, Phases& phases, std::unique_ptr<coupling::Tube> tube, long& iterations) const {
+    coupling::Capsule capsule(space, unstressed, x, flow, parameters, ranks, phases, std::move(tube));
+    double best = 1e9;
+    for (int k = 0; k < 12; ++k) {
+      const double start = now();
+      benchmark::DoNotOptimize(capsule.velocity(x));
+      best = std::min(best, now() - start);
+    }
+    iterations = capsule.work().most_velocity_iterations;
+    return best;
+  }
+};
+
+/// Best of twelve.
+template <class Action>
+double milliseconds(const Action& action) {
+  double best = 1e9;
+  for (int k = 0; k < 12; ++k) {
+    const double start = now();
+    action();
+    best = std::min(best, now() - start);
+  }
+  return 1e3 * best;
+}
+
+void velocity_evaluation_in_a_tube(benchmark::State& state) {
+  const Capsule capsule(static_cast<double>(state.range(0)));
+  coupling::Ranks ranks;
+  Phases phases;
+  surface::TubeOptions options;
+  options.radius = 1;
+  options.azimuthal_elements = 21;
+  options.axial_elements = 17;
+  const auto duct = std::make_shared<const stokes::DuctFlow>(options, 1.0, 1.0);
+  const surface::TubeWall wall = surface::tube_wall(duct->outline(), options, 2 * 3.14159265358979);
+  coupling::TubeParameters parameters;
+  parameters.viscosity_ratio = capsule.parameters.viscosity_ratio;
+  stokes::FlowOptions shear, in_duct;
+  in_duct.type = "duct";
+  in_duct.mean_velocity = 1;
+  for (auto _ : state) {
+    long without = 0, with = 0;
+    const double free = capsule.seconds(stokes::AmbientFlow(shear), ranks, phases, nullptr, without);
+    const double confined = capsule.seconds(stokes::AmbientFlow(in_duct, duct), ranks, phases,
+                                            std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, ranks, phases), with);
+    state.counters["tube ms"] = 1e3 * confined;
+    coupling::Tube tube(wall, *duct, capsule.space, parameters, ranks, phases);
+    tube.set_reference(capsule.unstressed);
+    const Net f = capsule.x, on_wall = (tube.place(capsule.x), tube.load_on_wall(f));
+    state.counters["place ms"] = milliseconds([&] { tube.place(capsule.x); });
+    state.counters["load on wall ms"] = milliseconds([&] { tube.load_on_wall(f); });
+    state.counters["velocity on wall ms"] = milliseconds([&] { tube.velocity_on_wall(f); });
+    state.counters["wall solve ms"] = milliseconds([&] { tube.solve_wall(on_wall); });
+    state.counters["wall on particle ms"] = milliseconds([&] { tube.wall_on_particle(on_wall); });
+    state.counters["tube / free"] = confined / free;
+    state.counters["iterations"] = static_cast<double>(with);
+    state.counters["iterations, free"] = static_cast<double>(without);
+  }
+}
+BENCHMARK(velocity_evaluation_in_a_tube)->ArgName("viscosity ratio")->Arg(1)->Arg(5)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+}  // namespace

@@ -1,0 +1,104 @@
+// A capsule in a tube: the forms of the block system, the Jacobian, the moving frame.
+
+#include <numbers>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "base/timing.hpp"
+#include "coupling/capsule.hpp"
+#include "membrane/laws.hpp"
+#include "spline/extraction.hpp"
+#include "surface/shapes.hpp"
+#include "surface/tube_wall.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+/// A capsule of a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube.
+struct Confined {
+  Ranks ranks;
+  Phases phases;
+  spline::Space space;
+  Net unstressed, x;
+  surface::TubeOptions options;
+  std::shared_ptr<const stokes::DuctFlow> duct;
+  std::optional<surface::TubeWall> wall;
+  std::unique_ptr<Capsule> capsule;
+
+  Confined(double viscosity_ratio, const std::string& form) {
+    const spline::TMesh mesh = spline::cube(3);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    const Net sphere = surface::unit_sphere(mesh, fit);
+    const Eigen::RowVector3d centre(0, 0.05, -0.15);
+    unstressed = (0.6 * sphere).rowwise() + centre;
+    x = unstressed;
+    x.col(0) += 0.1 * unstressed.col(2);
+    options.radius = 1;
+    options.azimuthal_elements = 8;
+    options.axial_elements = 6;
+    duct = std::make_shared<const stokes::DuctFlow>(options, 1.3, 1.0);
+    wall.emplace(surface::tube_wall(duct->outline(), options, 2 * std::numbers::pi));
+    stokes::FlowOptions flow;
+    flow.type = "duct";
+    flow.viscosity = 1.3;
+    flow.mean_velocity = 1;
+    CapsuleParameters parameters;
+    parameters.viscosity = 1.3;
+    parameters.viscosity_ratio = viscosity_ratio;
+    parameters.radius = 0.6;
+    parameters.law = membrane::NeoHookean{10};
+    parameters.solvers.tube = form;
+    parameters.solvers.tolerance = 1e-11;
+    TubeParameters in_tube;
+    in_tube.viscosity = 1.3;
+    in_tube.viscosity_ratio = viscosity_ratio;
+    capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
+                                        std::make_unique<Tube>(*wall, *duct, space, in_tube, ranks, phases));
+  }
+};
+
+TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplement) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined schur(ratio, "schur");
+    const Net v = schur.capsule->velocity(schur.x);
+    for (const char* form : {"block triangular", "block diagonal"}) {
+      Confined blocks(ratio, form);
+      EXPECT_LT((blocks.capsule->velocity(blocks.x) - v).norm(), 1e-8 * v.norm()) << form;  // residuals of 1e-11, conditions of 1e3
+      EXPECT_GT(blocks.capsule->work().velocity_iterations, 0);
+    }
+  }
+}
+
+TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
+  Confined scene(1, "schur");
+  Capsule& capsule = *scene.capsule;
+  Net delta = Net::Zero(scene.x.rows(), 3);
+  for (Eigen::Index a = 0; a < delta.rows(); ++a) delta(a, 1) = 0.3 * scene.unstressed(a, 2) * scene.unstressed(a, 0);
+  const double e = 1e-4;
+  // Without a load the derivative of the operators does not count, and (4.3) is the whole one, but for the volume constraint.
+  const Net difference = (capsule.velocity(scene.unstressed + e * delta) - capsule.velocity(scene.unstressed - e * delta)) / (2 * e);
+  capsule.freeze(scene.unstressed);
+  const Net jacobian = capsule.derivative(scene.unstressed, Net::Zero(delta.rows(), 3), delta);
+  EXPECT_LT((jacobian - difference).norm(), 0.01 * difference.norm());  // entries of 16 bits: 4e-3
+}
+
+TEST(CapsuleInTube, NothingDependsOnThePlaceAlongTheTube) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined scene(ratio, "schur");
+    const Net v = scene.capsule->velocity(scene.x), there = scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(17, 0, 0));
+    EXPECT_LT((there - v).norm(), 1e-8 * v.norm());  // rules are chosen anew; round-off of the longer distance
+    Net along = Net::Zero(v.rows(), 3);
+    along.col(0).setConstant(3);
+    EXPECT_NEAR(scene.capsule->norm(along), 0, 1e-12);
+  }
+}
+
+TEST(CapsuleInTube, OutsideOfTheTubeThereIsNoVelocity) {
+  Confined scene(1, "schur");
+  EXPECT_FALSE(scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(0, 0.5, 0)).allFinite());
+}
+
+}  // namespace
+}  // namespace tanktread::coupling
