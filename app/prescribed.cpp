@@ -168,7 +168,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   results.record(only.values);
   motion::State state;
   state.x = body.rest;
-  results.save(state, {}, portrait(scene, body, solution));
+  results.save(state, {}, portrait(scene, body, solution), state.time);
   const stokes::Evaluations kernel = resistance.kernel_evaluations();
   return results.close(chosen,
                        {{"unknowns", 3L * body.space.n_points},

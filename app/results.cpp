@@ -135,15 +135,16 @@ void Results::record(const std::vector<double>& row) {
   write([&] { record_->append(row); });
 }
 
-void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait) {
+void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
   last_saved_ = standing.step;
-  write([&] { write_snapshot(state, standing, portrait); });
+  write([&] { write_snapshot(state, standing, portrait, picture_time); });
 }
 
-void Results::write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait) {
+void Results::write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
   output::Checkpoint checkpoint;
   output::store(state, checkpoint);
   store(standing, checkpoint);
+  checkpoint.numbers["picture time"] = picture_time;
   checkpoint.arrays["unstressed"] = body_->unstressed;
   checkpoint.arrays["initial"] = body_->rest;
   checkpoint.texts["deck"] = request_.deck_text;
@@ -152,7 +153,7 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   output::Picture picture = output::picture(body_->space, picture_mesh_, portrait.surface);
   for (output::Field& field : portrait.fields(picture_mesh_)) picture.point_fields.push_back(std::move(field));
   output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, picture);
-  series_->add(standing.step, state.time);
+  series_->add(standing.step, picture_time);
 }
 
 int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,

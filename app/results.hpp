@@ -32,8 +32,8 @@ class Results {
   /// One finished step: a row of the record, written at once.
   void record(const std::vector<double>& row);
 
-  /// Checkpoint and picture of the present step.
-  void save(const motion::State& state, const Standing& standing, const Portrait& portrait);
+  /// Checkpoint of the present step and a picture, of the same moment or of one within the step.
+  void save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
 
   /// Holds the record against `Expect`, writes the summary and the closing table. `vectors`: for `final`, made of the last row. Returns the exit
   /// code: 0 every expectation was met, 1 one was missed.
@@ -49,7 +49,7 @@ class Results {
   template <class Write>
   void write(const Write& action);
   void declare_columns();
-  void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait);
+  void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
   std::string finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
                      const output::Entries<Vec3>& vectors);
   std::map<std::string, std::string> origin() const;

@@ -134,6 +134,8 @@ void Scene::check() const {
   check_motion(*this);
   if (!particle.rigid()) membrane.check();
   time.check();
+  if (adaptation.enabled && !lands_on_snapshots())
+    throw UserError("Output/between steps `interpolate` and Adaptation/enabled contradict each other: the mesh may change between two steps.");
   modulus();
   if (volume.constraint == "none" && membrane.load == "weak" && membrane.load_measure == "reference")
     throw UserError(
@@ -166,6 +168,10 @@ double Scene::modulus() const {
 }
 
 bool Scene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
+
+bool Scene::lands_on_snapshots() const {
+  return output.between_steps ? *output.between_steps == "land" : !time.fixed_step || adaptation.enabled;
+}
 
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 

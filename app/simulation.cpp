@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <optional>
 #include <sstream>
 
 #include "app/body.hpp"
@@ -13,6 +14,7 @@
 #include "app/results.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
+#include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
 #include "output/progress.hpp"
@@ -60,10 +62,18 @@ output::Entries<long> counts(const Standing& standing, const coupling::Work& wor
 }
 
 /// Next multiple of the snapshot interval after `time`, or the final time.
-double next_stop(const Scene& scene, double time) {
+double next_snapshot(const Scene& scene, double time) {
   const double interval = scene.snapshot_interval();
   const double next = (std::floor(time / interval * (1 + 1e-12)) + 1) * interval;
   return next < scene.time.final_time * (1 - 1e-12) ? next : scene.time.final_time;
+}
+
+/// Steps that do not land on snapshots are no longer than the time between two of them, so that each has its own step.
+motion::TimeOptions time_options(const Scene& scene) {
+  motion::TimeOptions time = scene.time;
+  if (!scene.lands_on_snapshots() && !time.fixed_step)
+    time.maximum_step = std::min(scene.snapshot_interval(), time.maximum_step.value_or(scene.snapshot_interval()));
+  return time;
 }
 
 /// A run between its first and its last step.
@@ -71,7 +81,7 @@ class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->columns(), ranks_), scheme_(motion::integrator(scene.time, scene.solvers.nox)) {}
+        results_(scene, request, particle_->body(), particle_->columns(), ranks_), scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
 
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(scene_, ranks_.size()).c_str(), stdout);
@@ -82,7 +92,7 @@ class Run {
       step();
       progress.show({state_.time, standing_.step, report_.iterations, entry("taylor_inertia")});
       reason = reason_to_stop();
-      if (!reason.empty() || state_.time == stop_) save();
+      if (!reason.empty() || snapshot_due_) save();
     }
     progress.close();
     if (results_.last_saved() != standing_.step) save();
@@ -108,13 +118,18 @@ class Run {
   }
 
   void step() {
-    stop_ = next_stop(scene_, state_.time);
+    const double snapshot = next_snapshot(scene_, state_.time);
+    const bool lands = scene_.lands_on_snapshots();
+    const motion::State before = lands ? motion::State() : state_;
+    pictured_.reset();
     try {
-      report_ = scheme_->advance(particle_->dynamics(), state_, stop_);
+      report_ = scheme_->advance(particle_->dynamics(), state_, lands ? snapshot : scene_.time.final_time);
     } catch (const RunFailure& failure) {
       fail(failure.what());
     }
     ++standing_.step;
+    snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
+    if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body());
     record();
     if (!scene_.tube.present) return;
@@ -130,6 +145,14 @@ class Run {
     throw RunFailure(reason + where);
   }
 
+  /// The last snapshot's time within the step just made, and the state there.
+  void picture_within(const motion::State& before) {
+    double time = next_snapshot(scene_, before.time);
+    for (double next = next_snapshot(scene_, time); next <= state_.time && next > time; next = next_snapshot(scene_, time)) time = next;
+    const motion::DenseOutput dense(before, state_);
+    pictured_ = motion::State{time, 0, dense.place(time), {dense.slope(time)}, {}, {}};
+  }
+
   void record() {
     const auto clock = phases_.time("diagnostics");
     row_ = particle_->row(state_, report_, ranks_.first(watch_.seconds()));
@@ -141,7 +164,8 @@ class Run {
     const auto clock = phases_.time("output");
     standing_.work = particle_->work();
     standing_.wall_seconds = watch_.seconds();
-    results_.save(state_, standing_, particle_->portrait(state_));
+    const motion::State& pictured = pictured_ ? *pictured_ : state_;
+    results_.save(state_, standing_, particle_->portrait(pictured), pictured.time);
   }
 
   std::string reason_to_stop() {
@@ -183,7 +207,8 @@ class Run {
   motion::StepReport report_;
   Standing standing_;
   std::vector<double> row_;
-  double stop_ = 0;
+  bool snapshot_due_ = false;
+  std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
 };
 
 }  // namespace

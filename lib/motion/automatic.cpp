@@ -12,7 +12,7 @@ namespace {
 constexpr double stable = 2.3;       // dt rho of BS3, below its 2.51 because rho is measured from below
 constexpr double solve_share = 0.5;  // work of a linear solve over that of an evaluation: 0.4 to 1.5 on 218 and 866 control points
 constexpr double memory_of_work = 0.8;
-constexpr int measured_every = 10, tried_again_after = 50;  // steps
+constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 
 constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // numbers, as State::memory keeps them
 
@@ -64,7 +64,7 @@ void Automatic::reconsider(const State& state, const StepReport& report, Choice&
   } else {
     const double work = (1 + solve_share) * report.iterations / report.step;
     choice.work = choice.work == 0 ? work : memory_of_work * choice.work + (1 - memory_of_work) * work;
-    if (choice.since >= 5 && choice.work > 1.5 * 3 / std::min(longest, report.step)) next = bs3;
+    if (choice.since >= trial && choice.work > 1.5 * 3 / std::min(longest, report.step)) next = bs3;
   }
   if (next == choice.scheme) return;
   if (next == tr_bdf2) choice.work = 0;

@@ -121,7 +121,10 @@ std::optional<double> snapshot_time(const fs::path& path) {
   try {
     const hdf::Id file = hdf::open(path);
     hdf::Shape shape;
-    return hdf::read_doubles(file, "checkpoint/numbers/time", shape).at(0);
+    const hdf::Id numbers = hdf::group(hdf::group(file, "checkpoint"), "numbers");
+    const auto names = hdf::names(numbers);
+    const bool of_the_picture = std::ranges::find(names, "picture time") != names.end();
+    return hdf::read_doubles(numbers, of_the_picture ? "picture time" : "time", shape).at(0);
   } catch (const std::exception&) {
     return std::nullopt;
   }

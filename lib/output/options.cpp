@@ -7,6 +7,9 @@ namespace tanktread::output {
 void Options::declare(deck::Section& section) {
   section.key("interval", interval, deck::positive(), "time",
               "simulated time between snapshots; if not given, a twentieth of the final time");
+  section.key("between steps", between_steps, deck::Choice{"land", "interpolate"},
+              "`land`: steps are shortened so that one ends at each snapshot; `interpolate`: steps keep their length, and pictures are of the cubic "
+              "through places and velocities at both ends of a step (`checkpoint` is its end); the default with Time/fixed step");
   section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
               "the run stops with a checkpoint after this time; if not given, never");
   section.key("surface text", surface_text, "write the last surface as Bezier-extraction text, `surface.iga`, which Particle/file reads");

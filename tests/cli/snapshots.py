@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+# Snapshots between steps: steps of a fixed size keep it, pictures are of the times that were asked for.
+import pathlib
+
+import h5py
+import json
+import numpy
+
+from harness import check, close, deck, main, run
+
+DECK = """
+Tanktread:
+  Flow: { type: simple shear }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { mesh: cube, elements per side: 3 }
+  Time: { final time: 1.0 }
+  Output: { interval: 0.25 }
+"""
+
+
+def _series(results, name):
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return file["series"][name][()]
+
+
+def _pictures(results):
+    """(time, points of the surface) of each."""
+    found = []
+    for entry in json.loads((pathlib.Path(results) / "run.hdf.series").read_text())["files"]:
+        with h5py.File(pathlib.Path(results) / entry["name"], "r") as file:
+            found.append((entry["time"], file["VTKHDF/Points"][()]))
+    return found
+
+
+def steps_of_a_fixed_size_keep_it_and_pictures_are_of_the_times_asked_for():
+    deck(DECK)
+    run("deck.yaml", "--output", "fixed", "--quiet", "--set", "Time/fixed step=0.1", "--set", "Time/tolerance=1e-6")
+    check(numpy.ptp(_series("fixed", "time_step")[1:]) < 1e-12, _series("fixed", "time_step"))
+    run("deck.yaml", "--output", "exact", "--quiet", "--set", "Time/tolerance=1e-6")
+    for (time, points), (exact_time, exact_points) in zip(_pictures("fixed"), _pictures("exact"), strict=True):
+        close(time, exact_time, 1e-12, "time of a picture")
+        worst = abs(points - exact_points).max()
+        check(worst < 2e-3, f"at {time} the surface is off by {worst}")  # steps of 0.1, not the pictures: 5e-4 of them at their ends
+
+
+def a_run_with_pictures_between_steps_goes_on_to_the_same_end():
+    deck(DECK.replace("interval: 0.25", "interval: 0.15, between steps: interpolate"))
+    run("deck.yaml", "--output", "whole", "--quiet")
+    run("deck.yaml", "--output", "cut", "--quiet")
+    newest = sorted(pathlib.Path("cut").glob("snapshot_*.hdf"))
+    for path in newest[-2:]:
+        path.unlink()
+    run("--resume", "cut", "--quiet")
+    check(_series("whole", "energy").tobytes() == _series("cut", "energy").tobytes(), "the energies differ")
+    for (time, points), (other_time, other_points) in zip(_pictures("whole"), _pictures("cut"), strict=True):
+        check(time == other_time and points.tobytes() == other_points.tobytes(), f"the pictures at {time} differ")
+
+
+def a_mesh_that_changes_between_steps_has_no_pictures_between_them():
+    deck(DECK)
+    result = run("deck.yaml", "--set", "Output/between steps=interpolate", "--set", "Adaptation/enabled=true", code=2)
+    check("Output/between steps" in result.stderr and "Adaptation/enabled" in result.stderr, result.stderr)
+
+
+main()
