@@ -52,7 +52,14 @@ Body body(const Scene& scene) {
   b.modulus = scene.modulus();
   b.law = law(scene.membrane, b.modulus);
   b.wall = wall(scene, b);
+  b.symmetry = symmetry(scene, b, b.rest);
   return b;
+}
+
+surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
+  if (scene.particle.rigid() || body.wall) return surface::Symmetry(body.space.n_points);
+  const Net* nets[] = {&body.unstressed, &body.rest, &x};
+  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow);
 }
 
 stokes::Measure load_measure(const Scene& scene) {
@@ -76,12 +83,14 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
   parameters.volume = scene.volume;
   parameters.solvers = scene.solvers;
   parameters.quadrature = scene.quadrature;
+  parameters.symmetry = body.symmetry;
   return std::make_unique<coupling::Capsule>(body.space, body.unstressed, body.rest, body.flow, parameters, ranks, phases, std::move(tube));
 }
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (scene.particle.rigid()) return rigid_plan(scene, body, ranks);
   const double points = body.space.n_points;
+  const int n_evaluated = static_cast<int>(body.symmetry.fundamental().size());
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
   const bool implicit = scene.time.assembles() || scene.time.scheme == "auto";
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
@@ -102,12 +111,14 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
       {"far sum", tree ? "single layer by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
       {"time", scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
-                   (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * points, ranks, ranks > 1 ? "s" : "")
+                   (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : "")
                              : std::string(", explicit in the fluid: nothing is assembled"))},
       {"mesh", !scene.adaptation.enabled                ? "fixed"
                : scene.adaptation.indicator == "error" ? "refined as the particle deforms, by estimated errors (1.5)"
                                                         : "refined as the particle deforms (P-37)"},
-      {"symmetry", "none used"},
+      {"symmetry", body.symmetry.order() == 1 ? std::string("none") + (scene.symmetry.use == "none" ? " used" : " found")
+                                              : body.symmetry.description() + text(": %d of %d control points evaluated, %.2g times less",
+                                                                                   n_evaluated, body.space.n_points, points / n_evaluated)},
   };
   lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
   return lines;

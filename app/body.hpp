@@ -12,6 +12,7 @@
 #include "output/summary.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
+#include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 
 namespace tanktread {
@@ -26,6 +27,7 @@ struct Body {
   membrane::Law law;
   double radius = 1;   ///< R_C
   double modulus = 1;  ///< G_s, or sigma of an interface
+  surface::Symmetry symmetry;                       ///< of all this, and of the shapes that it takes
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 };
@@ -33,6 +35,9 @@ Body body(const Scene& scene);
 
 /// The spline space that the deck wants on a mesh.
 spline::Space space(const Scene& scene, const spline::TMesh& mesh);
+
+/// The symmetry of the scene, as far as the deck wants it to be used, and of the shape x that the particle has by now.
+surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
 /// What the load is measured on: a drop has no unstressed state, so its load is always per current area.
 stokes::Measure load_measure(const Scene& scene);

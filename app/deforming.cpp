@@ -26,7 +26,8 @@ class Deforming : public Moving {
   Net start() const override { return body_->rest; }
 
   void resume(Resumed& resumed) override {
-    if (resumed.body) settle(std::move(resumed.body));
+    if (resumed.body || symmetry(scene_, *body_, resumed.state.x).order() != body_->symmetry.order())
+      settle(resumed.body ? std::move(resumed.body) : std::move(body_), resumed.state.x);
     if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
     capsule_->work() = resumed.standing.work;
   }
@@ -45,7 +46,7 @@ class Deforming : public Moving {
     if (change.finer && change.change > 1e-12)
       warn(text("refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested", state.time, change.change));
     state = std::move(change.state);
-    settle(std::move(change.body));
+    settle(std::move(change.body), state.x);
     capsule_->restore_volume(state.x);
     if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
     (change.finer ? standing.refinements : standing.coarsenings) += 1;
@@ -78,8 +79,9 @@ class Deforming : public Moving {
   }
 
  private:
-  /// Goes on with the particle on another mesh.
-  void settle(std::unique_ptr<Body> body) {
+  /// Goes on with the particle on another mesh, in the shape x.
+  void settle(std::unique_ptr<Body> body, const Net& x) {
+    body->symmetry = symmetry(scene_, *body, x);
     const coupling::Work work = capsule_->work();
     kernel_evaluations_ = kernel_evaluations();
     std::unique_ptr<coupling::Tube> tube;

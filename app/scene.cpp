@@ -42,6 +42,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Time", time, "integration in time");
   root.section("Interface", interface, "how the mesh of a drop moves along its interface");
   root.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
+  root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");
   root.section("Expect", expect, "expected results");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coupling/options.hpp"
+#include "coupling/symmetry.hpp"
 #include "deck/expectation.hpp"
 #include "membrane/options.hpp"
 #include "motion/adaptation.hpp"
@@ -44,6 +45,7 @@ struct Scene {
   motion::TimeOptions time;
   motion::AdaptationOptions adaptation;
   coupling::InterfaceOptions interface;
+  coupling::SymmetryOptions symmetry;
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;

@@ -34,10 +34,13 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       krylov_(parameters.solvers.krylov, parameters.solvers.belos),
       inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos),
       tube_(std::move(tube)) {
-  const surface::Share share = surface::share(space, surface::partition(space, ranks.size()), ranks.rank());
+  surface::Symmetry& symmetry = parameters_.symmetry;
+  if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
+  const surface::Share share =
+      surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank());
   own_points_ = share.points;
   own_elements_ = share.elements;
-  ranks_.own(own_points_, space.n_points);
+  ranks_.own(own_points_, symmetry);
   collocation_.factor(collocation_matrix(space));
   mass_.factor(mass_matrix_.update(unstressed));
   layer_.set_reference(unstressed);
@@ -91,8 +94,18 @@ Net Capsule::flux_vector(const Net& x) {
   return b;
 }
 
+/// Rid of what round-off adds to a symmetric field, so that it cannot grow.
+Net Capsule::symmetric(Net field) const {
+  parameters_.symmetry.complete(field);
+  return field;
+}
+
 Net Capsule::velocity(const Net& x) {
   ++work_.evaluations;
+  return symmetric(present_velocity(x));
+}
+
+Net Capsule::present_velocity(const Net& x) {
   if (tube_ && !enter_tube(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const Net f = load(x);
   Net v = load_velocity(x, f);
@@ -301,7 +314,7 @@ Net Capsule::solve(double shift, const Net& r, double tolerance) {
   const SolveReport report = krylov_.solve(apply, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
   work_.solver_iterations += report.iterations;
-  return Eigen::Map<const Net>(solution.data(), n, 3);
+  return symmetric(Eigen::Map<const Net>(solution.data(), n, 3));
 }
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
@@ -309,7 +322,7 @@ Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
   const auto clock = phases_.time("stiffness");
   linearise(x);
   const Net dv = fluid_velocity_change(delta);
-  return interface_ ? interface_change(dv, delta) : dv;
+  return symmetric(interface_ ? interface_change(dv, delta) : dv);
 }
 
 /// Change of the velocity of an interface's control points.
@@ -322,7 +335,7 @@ Net Capsule::interface_change(const Net& dv, const Net& delta) {
 void Capsule::restore_volume(Net& x) {
   if (parameters_.volume.constraint != "exact") return;
   for (int k = 0; k < 2; ++k) {
-    const Net b = flux_vector(x), c = mass_.solve(b);
+    const Net b = flux_vector(x), c = symmetric(mass_.solve(b));
     x += (volume0_ - geometry_.volume(x)) / dot(b, c) * c;
   }
 }

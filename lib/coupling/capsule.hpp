@@ -27,6 +27,7 @@
 #include "stokes/double_layer.hpp"
 #include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
 
@@ -56,6 +57,7 @@ struct CapsuleParameters {
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
+  surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
 };
 
 /// dx/dt = v(x) without a wall (2.4), (4.2):
@@ -64,6 +66,8 @@ struct CapsuleParameters {
 ///
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
+///
+/// Of a symmetric scene only the rows of fundamental control points are evaluated; the others are their images.
 ///
 /// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the right-hand side and B,
 /// here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
@@ -101,6 +105,8 @@ class Capsule : public Dynamics {
 
  private:
   Net ambient(const Net& x) const;
+  Net present_velocity(const Net& x);
+  Net symmetric(Net field) const;
   Net load_velocity(const Net& x, const Net& f);
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);

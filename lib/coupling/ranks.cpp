@@ -18,9 +18,14 @@ struct Session::Impl {
   Tpetra::ScopeGuard guard;
   Impl(int* argc, char*** argv) : guard(alone(argc), argv) {}
 
-  /// A process that no launcher started needs no daemon of Open MPI beside it, which would take a tenth of a second to start.
+  /// A process that no launcher started needs no daemon of Open MPI beside it, which would take a tenth of a second to start, and no look
+  /// for fast networks, which takes two more. What the environment says already stays.
   static int* alone(int* argc) {
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    if (!std::getenv("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMIX_RANK")) {
+      setenv("OMPI_MCA_pml", "ob1", 0);
+      setenv("OMPI_MCA_btl", "self", 0);
+    }
     return argc;
   }
 };
@@ -32,6 +37,7 @@ int Session::rank() const { return Tpetra::getDefaultComm()->getRank(); }
 struct Ranks::Impl {
   Teuchos::RCP<const Teuchos::Comm<int>> comm = Tpetra::getDefaultComm();
   std::vector<int> rows;
+  surface::Symmetry symmetry;
   Teuchos::RCP<Tpetra::Import<>> import;
   Teuchos::RCP<MultiVector> own, all;
 };
@@ -41,28 +47,37 @@ Ranks::~Ranks() = default;
 int Ranks::rank() const { return impl_->comm->getRank(); }
 int Ranks::size() const { return impl_->comm->getSize(); }
 
-void Ranks::own(const std::vector<int>& rows, int n) {
+void Ranks::own(const std::vector<int>& rows, int n) { own(rows, surface::Symmetry(n)); }
+
+void Ranks::own(const std::vector<int>& rows, surface::Symmetry symmetry) {
   impl_->rows = rows;
+  impl_->symmetry = std::move(symmetry);
   if (size() == 1) return;
-  const std::vector<Map::global_ordinal_type> ids(rows.begin(), rows.end());
-  const auto source = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(n), ids.data(), static_cast<int>(ids.size()), 0, impl_->comm));
-  const auto target = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(n), 0, impl_->comm, Tpetra::LocallyReplicated));
+  const std::vector<int>& all = impl_->symmetry.fundamental();
+  std::vector<Map::global_ordinal_type> ids;
+  for (const int row : rows) ids.push_back(std::ranges::lower_bound(all, row) - all.begin());
+  const auto n = static_cast<Tpetra::global_size_t>(all.size());
+  const auto source = Teuchos::rcp(new Map(n, ids.data(), static_cast<int>(ids.size()), 0, impl_->comm));
+  const auto target = Teuchos::rcp(new Map(n, 0, impl_->comm, Tpetra::LocallyReplicated));
   impl_->import = Teuchos::rcp(new Tpetra::Import<>(source, target));
   impl_->own = Teuchos::rcp(new MultiVector(source, 3));
   impl_->all = Teuchos::rcp(new MultiVector(target, 3));
 }
 
 void Ranks::replicate(Net& net) const {
-  if (size() == 1) return;
-  for (int c = 0; c < 3; ++c) {
-    const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
-    for (size_t i = 0; i < impl_->rows.size(); ++i) column[static_cast<Teuchos::Ordinal>(i)] = net(impl_->rows[i], c);
+  if (size() > 1) {
+    for (int c = 0; c < 3; ++c) {
+      const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
+      for (size_t i = 0; i < impl_->rows.size(); ++i) column[static_cast<Teuchos::Ordinal>(i)] = net(impl_->rows[i], c);
+    }
+    impl_->all->doImport(*impl_->own, *impl_->import, Tpetra::INSERT);
+    const std::vector<int>& all = impl_->symmetry.fundamental();
+    for (int c = 0; c < 3; ++c) {
+      const auto column = impl_->all->getData(static_cast<size_t>(c));
+      for (size_t i = 0; i < all.size(); ++i) net(all[i], c) = column[static_cast<Teuchos::Ordinal>(i)];
+    }
   }
-  impl_->all->doImport(*impl_->own, *impl_->import, Tpetra::INSERT);
-  for (int c = 0; c < 3; ++c) {
-    const auto column = impl_->all->getData(static_cast<size_t>(c));
-    for (Eigen::Index i = 0; i < net.rows(); ++i) net(i, c) = column[i];
-  }
+  impl_->symmetry.complete(net);
 }
 
 bool Ranks::any(bool mine) const {

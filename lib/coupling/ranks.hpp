@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
 
@@ -32,7 +33,10 @@ class Ranks {
   /// States the rows that this rank fills, of nets with n rows; each row has one owner. Collective.
   void own(const std::vector<int>& rows, int n);
 
-  /// Fills in the rows of other ranks. Collective.
+  /// The same where only the rows of fundamental control points have owners, and the others are their images.
+  void own(const std::vector<int>& rows, surface::Symmetry symmetry);
+
+  /// Fills in the rows of other ranks and those of images. Collective.
   void replicate(Net& net) const;
 
   /// Whether any rank says so (a signal, a limit). Collective.

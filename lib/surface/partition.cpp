@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -69,18 +70,18 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   return {owner.begin(), owner.end()};
 }
 
-/// Each point goes to the part that owns most of the elements around it, the clearest cases first; once a part has its fair share of points,
-/// to the adjacent one that has the fewest.
-std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, const std::vector<int>& element_owner, int parts) {
-  const int n = static_cast<int>(elements_of.size());
-  std::vector<std::map<int, int>> votes(n);
-  std::vector<int> order(n), lead(n), points(parts, 0), owner(n);
-  for (int a = 0; a < n; ++a) {
+/// Each of the points to be shared goes to the part that owns most of the elements around it, the clearest cases first; once a part has its fair
+/// share of points, to the adjacent one that has the fewest.
+std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, const std::vector<int>& element_owner, int parts,
+                              std::span<const int> shared) {
+  const int n = static_cast<int>(shared.size());
+  std::vector<std::map<int, int>> votes(elements_of.size());
+  std::vector<int> order(shared.begin(), shared.end()), lead(elements_of.size()), points(parts, 0), owner(elements_of.size(), -1);
+  for (const int a : shared) {
     for (const int e : elements_of[a]) ++votes[a][element_owner[e]];
     int most = 0;
     for (const auto& [part, count] : votes[a]) most = std::max(most, count);
     lead[a] = 2 * most - static_cast<int>(elements_of[a].size());
-    order[a] = a;
   }
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lead[a] > lead[b]; });
   for (const int a : order) {
@@ -95,20 +96,39 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-}  // namespace
-
-Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
+Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)
     throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) +
                     " ranks; use at most one rank an element.");
-  if (parts == 1) return {1, std::vector<int>(n, 0), std::vector<int>(space.n_points, 0)};
+  Partition result{parts, std::vector<int>(n, 0), std::vector<int>(space.n_points, -1)};
+  if (parts == 1) {
+    for (const int a : points) result.point_owner[a] = 0;
+    return result;
+  }
   const std::vector<std::vector<int>> elements_of = elements_of_points(space);
-  Partition result;
-  result.parts = parts;
   result.element_owner = element_owners(common_points(space, elements_of), parts, cost);
-  result.point_owner = point_owners(elements_of, result.element_owner, parts);
+  result.point_owner = point_owners(elements_of, result.element_owner, parts, points);
   return result;
+}
+
+}  // namespace
+
+Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
+  std::vector<int> all(space.n_points);
+  std::iota(all.begin(), all.end(), 0);
+  return shared(space, parts, cost, all);
+}
+
+Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points) {
+  std::vector<char> wanted(space.n_points, 0);
+  for (const int a : points) wanted[a] = 1;
+  std::vector<double> cost;
+  for (const auto& e : space.elements) {
+    const auto n = std::ranges::count_if(e.points, [&](int a) { return wanted[a] != 0; });
+    cost.push_back(static_cast<double>(n) / static_cast<double>(e.points.size()));
+  }
+  return shared(space, parts, cost, points);
 }
 
 Share share(const spline::Space& space, const Partition& partition, int rank) {

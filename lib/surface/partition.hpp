@@ -19,6 +19,10 @@ struct Partition {
 /// Deterministic; `cost` an element (empty: 1 each). Throws UserError when there are more parts than elements.
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost = {});
 
+/// The same where only some of the points have work, as the fundamental ones of a symmetric surface: those are what is balanced, and the others
+/// belong to nobody (-1).
+Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points);
+
 /// What one rank does: its own points, and all elements that touch them; both ascending.
 struct Share {
   std::vector<int> points, elements;

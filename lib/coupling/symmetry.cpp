@@ -1,0 +1,34 @@
+#include "coupling/symmetry.hpp"
+
+#include <algorithm>
+
+#include "deck/section.hpp"
+
+namespace tanktread::coupling {
+
+void SymmetryOptions::declare(deck::Section& section) {
+  section.key("use", use, deck::Choice{"auto", "none"},
+              "`auto`: mirror planes, half turns and the point symmetry that flow, particle and mesh have in common are found, and only the control "
+              "points that are not images of others are evaluated and solved for");
+}
+
+bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net) {
+  const auto turn = image.signs.asDiagonal();
+  double defect = 0, size = 0;
+  for (Eigen::Index a = 0; a < net.rows(); ++a) {
+    const Vec3 x = net.row(a).transpose(), y = net.row(image.point[static_cast<size_t>(a)]).transpose();
+    const Vec3 v = flow.velocity(x);
+    const Mat3 gradient = flow.gradient(x);
+    defect = std::max({defect, (flow.velocity(y) - turn * v).norm(), (flow.gradient(y) - turn * gradient * turn).norm()});
+    size = std::max({size, v.norm(), gradient.norm()});
+  }
+  return defect <= 1e-10 * size;
+}
+
+surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
+                           const stokes::AmbientFlow& flow) {
+  if (options.use == "none") return surface::Symmetry(space.n_points);
+  return surface::symmetry(space, nets, [&](const surface::Image& image) { return keeps(flow, image, *nets[0]); });
+}
+
+}  // namespace tanktread::coupling

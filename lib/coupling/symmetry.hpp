@@ -1,0 +1,33 @@
+#pragma once
+// Which symmetries a scene has, so that only a part of it needs to be solved.
+
+#include <span>
+#include <string>
+
+#include "base/types.hpp"
+#include "spline/space.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "surface/symmetry.hpp"
+
+namespace tanktread::deck {
+class Section;
+}
+
+namespace tanktread::coupling {
+
+/// `Symmetry/*` of the deck.
+struct SymmetryOptions {
+  std::string use = "auto";  ///< or none
+
+  void declare(deck::Section& section);
+};
+
+/// Whether v(c + S y) = S v(c + y), with S = diag(signs) and c the middle of the net, at its control points, gradients included.
+bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net);
+
+/// The reflections that flow, space and all nets have in common, or the identity alone where the options say so. What else bounds the fluid has to
+/// be looked at here too.
+surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
+                           const stokes::AmbientFlow& flow);
+
+}  // namespace tanktread::coupling

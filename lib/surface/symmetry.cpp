@@ -1,0 +1,253 @@
+#include "surface/symmetry.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "surface/bezier_points.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+constexpr double exact = 1e-12, close = 1e-9;
+
+/// Places in space, to be found again.
+class Places {
+ public:
+  Places(std::vector<Vec3> places, double tolerance) : places_(std::move(places)), tolerance_(tolerance), order_(places_.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    std::ranges::sort(order_, {}, [&](int i) { return along(places_[i]); });
+  }
+
+  /// The one at x, or -1.
+  int at(const Vec3& x) const {
+    const double from = along(x) - 2 * tolerance_;
+    for (auto i = std::ranges::lower_bound(order_, from, {}, [&](int k) { return along(places_[k]); }); i != order_.end(); ++i) {
+      if (along(places_[*i]) > from + 4 * tolerance_) break;
+      if ((places_[*i] - x).norm() <= tolerance_) return *i;
+    }
+    return -1;
+  }
+
+ private:
+  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // no direction of a mesh
+
+  std::vector<Vec3> places_;
+  double tolerance_;
+  std::vector<int> order_;
+};
+
+/// One of the eight maps of the unit square onto itself: coordinates exchanged, then turned around.
+struct Turn {
+  bool exchanged, turned[2];
+
+  std::array<double, 2> operator()(double s, double t) const {
+    if (exchanged) std::swap(s, t);
+    return {turned[0] ? 1 - s : s, turned[1] ? 1 - t : t};
+  }
+
+  int bernstein(int b, int p) const {
+    int i = b % (p + 1), j = b / (p + 1);
+    if (exchanged) std::swap(i, j);
+    return (p + 1) * (turned[1] ? p - j : j) + (turned[0] ? p - i : i);
+  }
+};
+
+constexpr Turn turns[8] = {{false, {false, false}}, {false, {true, false}}, {false, {false, true}}, {false, {true, true}},
+                           {true, {false, false}},  {true, {true, false}},  {true, {false, true}},  {true, {true, true}}};
+
+Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
+
+Vec3 reflected(const Vec3& x, const Vec3& centre, const Vec3& signs) { return centre + signs.cwiseProduct(x - centre); }
+
+/// The space and its first net, with what the search looks at.
+class Search {
+ public:
+  Search(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs)
+      : space_(space), nets_(nets), signs_(signs), centre_(middle(*nets[0])),
+        size_((nets[0]->colwise().maxCoeff() - nets[0]->colwise().minCoeff()).maxCoeff()), map_(space) {}
+
+  std::optional<Image> image() {
+    if (!points() || !elements() || !sites()) return {};
+    return Image{signs_, point_};
+  }
+
+ private:
+  bool points() {
+    const Net& net = *nets_[0];
+    std::vector<Vec3> places;
+    for (Eigen::Index a = 0; a < net.rows(); ++a) places.push_back(net.row(a).transpose());
+    const Places found(places, exact * size_);
+    for (const Vec3& x : places) {
+      point_.push_back(found.at(reflected(x, centre_, signs_)));
+      if (point_.back() < 0) return false;
+    }
+    for (const Net* other : nets_.subspan(1)) {
+      const Vec3 centre = middle(*other);
+      for (Eigen::Index a = 0; a < other->rows(); ++a)
+        if ((reflected(other->row(a).transpose(), centre, signs_) - other->row(point_[a]).transpose()).norm() > exact * size_) return false;
+    }
+    return true;
+  }
+
+  bool elements() {
+    const int n = map_.n_elements();
+    std::vector<std::vector<double>> bezier(n);
+    std::vector<Vec3> centres;
+    for (int e = 0; e < n; ++e) {
+      bezier[e].resize(3 * map_.n_bezier(e));
+      map_.points(e, *nets_[0], bezier[e].data());
+      centres.push_back(Eigen::Map<const Eigen::MatrixX3d>(bezier[e].data(), map_.n_bezier(e), 3).colwise().mean().transpose());
+    }
+    const Places found(centres, close * size_);
+    for (int e = 0; e < n; ++e) {
+      const int other = found.at(reflected(centres[e], centre_, signs_));
+      if (other < 0 || map_.degree(e) != map_.degree(other)) return false;
+      const auto turn = std::ranges::find_if(
+          turns, [&](const Turn& t) { return same_places(t, e, bezier[e], bezier[other]) && same_basis(t, e, other); });
+      if (turn == std::end(turns)) return false;
+      element_.push_back(other);
+      turn_.push_back(*turn);
+    }
+    return true;
+  }
+
+  bool same_places(const Turn& turn, int e, const std::vector<double>& from, const std::vector<double>& to) const {
+    const int n = map_.n_bezier(e);
+    for (int b = 0; b < n; ++b) {
+      const int other = turn.bernstein(b, map_.degree(e));
+      const Vec3 x(from[b], from[n + b], from[2 * n + b]), y(to[other], to[n + other], to[2 * n + other]);
+      if ((reflected(x, centre_, signs_) - y).norm() > close * size_) return false;
+    }
+    return true;
+  }
+
+  bool same_basis(const Turn& turn, int e, int other) const {
+    const spline::Element &from = space_.elements[e], &to = space_.elements[other];
+    if (from.points.size() != to.points.size()) return false;
+    for (std::size_t a = 0; a < from.points.size(); ++a) {
+      const auto at = std::ranges::find(to.points, point_[from.points[a]]);
+      if (at == to.points.end()) return false;
+      const auto row = at - to.points.begin();
+      for (int b = 0; b < map_.n_bezier(e); ++b)
+        if (std::abs(from.extraction(static_cast<Eigen::Index>(a), b) - to.extraction(row, turn.bernstein(b, map_.degree(e)))) > exact) return false;
+    }
+    return true;
+  }
+
+  bool sites() const {
+    for (int a = 0; a < space_.n_points; ++a) {
+      const spline::Site& site = space_.collocation[a].front();
+      const auto place = turn_[site.element](site.s, site.t);
+      const auto same = [&](const spline::Site& other) {
+        return other.element == element_[site.element] && std::abs(other.s - place[0]) < close && std::abs(other.t - place[1]) < close;
+      };
+      if (std::ranges::none_of(space_.collocation[point_[a]], same)) return false;
+    }
+    return true;
+  }
+
+  const spline::Space& space_;
+  std::span<const Net* const> nets_;
+  Vec3 signs_, centre_;
+  double size_;
+  BezierMap map_;
+  std::vector<int> point_, element_;
+  std::vector<Turn> turn_;
+};
+
+Image product(const Image& a, const Image& b) {
+  Image result{a.signs.cwiseProduct(b.signs), b.point};
+  for (int& p : result.point) p = a.point[p];
+  return result;
+}
+
+bool contains(const std::vector<Image>& group, const Vec3& signs) {
+  return std::ranges::any_of(group, [&](const Image& g) { return g.signs == signs; });
+}
+
+/// The group that a group and one more image make.
+std::vector<Image> joined(std::vector<Image> group, const Image& more) {
+  const std::size_t n = group.size();
+  if (!contains(group, more.signs))
+    for (std::size_t k = 0; k < n; ++k) group.push_back(product(more, group[k]));
+  return group;
+}
+
+std::vector<Image> identity(int n_points) {
+  Image one{Vec3::Ones(), std::vector<int>(n_points)};
+  std::iota(one.point.begin(), one.point.end(), 0);
+  return {one};
+}
+
+/// Mirror planes first, for they are what a reader looks for; then the point symmetry, then half turns.
+const std::array<Vec3, 7> candidates = {Vec3(-1, 1, 1),   Vec3(1, -1, 1),  Vec3(1, 1, -1), Vec3(-1, -1, -1),
+                                        Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
+
+std::string name(const Vec3& signs) {
+  const auto minus = (signs.array() < 0).count();
+  if (minus == 3) return "point symmetry";
+  for (int c = 0; c < 3; ++c)
+    if ((signs[c] < 0) == (minus == 1)) return (minus == 1 ? "mirror x" : "half turn about x") + std::to_string(c + 1);
+  return {};
+}
+
+}  // namespace
+
+std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs) {
+  return Search(space, nets, signs).image();
+}
+
+Symmetry::Symmetry(int n_points) : fundamental_(n_points), source_(n_points), signs_(Net::Ones(n_points, 3)) {
+  std::iota(fundamental_.begin(), fundamental_.end(), 0);
+  source_ = fundamental_;
+}
+
+Symmetry::Symmetry(const std::vector<Image>& generators, const Net& net) : Symmetry(static_cast<int>(net.rows())) {
+  std::vector<Image> group = identity(static_cast<int>(net.rows()));
+  std::vector<std::string> names;
+  for (const Image& g : generators) {
+    if (!contains(group, g.signs)) names.push_back(name(g.signs));
+    group = joined(std::move(group), g);
+  }
+  order_ = static_cast<int>(group.size());
+  if (order_ == 1) return;
+  const Vec3 centre = middle(net), size = (net.colwise().maxCoeff() - net.colwise().minCoeff()).transpose();
+  const auto rank = [&](int a) { return (net.row(a).transpose() - centre).dot(Vec3(1, 1e-3, 1e-6)) / size.maxCoeff(); };
+  fundamental_.clear();
+  for (int a = 0; a < net.rows(); ++a) {
+    int first = a;
+    for (const Image& g : group)
+      if (const int b = g.point[a]; rank(b) > rank(first) + exact || (rank(b) > rank(first) - exact && b < first)) first = b;
+    source_[a] = first;
+    if (first == a) fundamental_.push_back(a);
+    Vec3 sum = Vec3::Zero();  // over the images of the source at this point
+    for (const Image& g : group)
+      if (g.point[first] == a) sum += g.signs;
+    signs_.row(a) = sum.cwiseSign().transpose();
+  }
+  description_ = names[0];
+  for (std::size_t k = 1; k < names.size(); ++k) description_ += (k + 1 == names.size() ? " and " : ", ") + names[k];
+}
+
+void Symmetry::complete(Net& field) const {
+  if (order_ == 1) return;
+  for (const int a : fundamental_) field.row(a).array() *= signs_.row(a).array();
+  for (Eigen::Index a = 0; a < field.rows(); ++a)
+    if (source_[a] != a) field.row(a) = signs_.row(a).cwiseProduct(field.row(source_[a]));
+}
+
+Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps) {
+  std::vector<Image> generators, group = identity(space.n_points);
+  for (const Vec3& signs : candidates) {
+    if (contains(group, signs)) continue;
+    const auto found = image(space, nets, signs);
+    if (!found || !keeps(*found)) continue;
+    generators.push_back(*found);
+    group = joined(std::move(group), *found);
+  }
+  return {generators, *nets[0]};
+}
+
+}  // namespace tanktread::surface

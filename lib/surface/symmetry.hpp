@@ -1,0 +1,56 @@
+#pragma once
+// Reflections that leave a surface and its spline space as they are.
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::surface {
+
+/// x -> c + diag(signs) (x - c) about the middle c of a surface: a mirror plane (one sign is -1), a half turn (two), the point symmetry (three);
+/// and which control point the image of each one is.
+struct Image {
+  Vec3 signs = Vec3::Ones();
+  std::vector<int> point;
+};
+
+/// The image of the space and of all these nets on it, if it is the same space and nets: places within 1e-12 of the first net's size, bases within
+/// 1e-12, sites within 1e-9. Elements may turn and change places.
+std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs);
+
+/// A group of such images. Its fundamental control points are one of each set of points that are images of each other, all in one connected part
+/// of the surface where that can be.
+class Symmetry {
+ public:
+  /// Of n points that are images of nothing: the identity alone.
+  explicit Symmetry(int n_points = 0);
+
+  /// The group that `generators` make; the fundamental points are those of `net` that lie farthest along x1, then x2, then x3.
+  Symmetry(const std::vector<Image>& generators, const Net& net);
+
+  int order() const { return order_; }
+  const std::vector<int>& fundamental() const { return fundamental_; }  ///< ascending
+
+  /// Makes a field of vectors, control values or values at the sites, symmetric from its rows of the fundamental points. A component that an image
+  /// of a point onto itself turns around becomes zero.
+  void complete(Net& field) const;
+
+  /// "mirror x2 and point symmetry", or "none".
+  const std::string& description() const { return description_; }
+
+ private:
+  int order_ = 1;
+  std::vector<int> fundamental_, source_;  // source: the fundamental point of each point
+  Net signs_;                              // what its vector is multiplied by
+  std::string description_ = "none";
+};
+
+/// The largest group of images of the space and the nets that `keeps` admits (say because they are symmetries of the flow, or of a wall).
+Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
+
+}  // namespace tanktread::surface

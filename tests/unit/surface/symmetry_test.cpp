@@ -1,0 +1,101 @@
+// Reflections of surfaces onto themselves, and fields that have them.
+
+#include "surface/symmetry.hpp"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "spline/refinement.hpp"
+#include "surface/geometry.hpp"
+#include "surface/polar_sphere.hpp"
+#include "surfaces.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+const auto always = [](const Image&) { return true; };
+
+Symmetry of(const spline::Space& space, const Net& net) {
+  const Net* nets[] = {&net};
+  return symmetry(space, nets, always);
+}
+
+TEST(Symmetry, OfACubeMeshOnAlignedEllipsoidsIsEveryReflectionOfCoordinates) {
+  for (const int n : {3, 4, 6}) {
+    const CubeMesh cube(n);
+    const Symmetry found = of(cube.space, cube.ellipsoid({1.3, 1, 0.8}, Vec3::Zero(), {0.3, -0.2, 0.1}));
+    EXPECT_EQ(found.order(), 8);
+    EXPECT_EQ(found.description(), "mirror x1, mirror x2 and mirror x3");
+  }
+}
+
+TEST(Symmetry, IsThatOfTheMeshWhereTheMeshIsTurned) {
+  const CubeMesh cube(4);
+  EXPECT_EQ(of(cube.space, cube.ellipsoid({1, 1, 1}, {10, 20, 30})).description(), "point symmetry");
+  EXPECT_EQ(of(cube.space, cube.ellipsoid({1, 1, 1}, {0, 20, 0})).description(), "mirror x2 and point symmetry");
+  EXPECT_EQ(of(cube.space, cube.crumpled(0.02)).description(), "none");
+}
+
+TEST(Symmetry, OfCatmullClarkAndPolarMeshes) {
+  const CubeMesh smooth(3, spline::ExtraordinaryRule::catmull_clark);
+  EXPECT_EQ(of(smooth.space, smooth.sphere()).order(), 8);
+  const spline::PolarMesh mesh{8, 6, spline::PoleRule::bezier_transform};
+  const spline::Space even = spline::space(mesh);
+  EXPECT_EQ(of(even, unit_sphere(mesh, even)).order(), 8);
+  const spline::PolarMesh odd{7, 6, spline::PoleRule::plain};
+  const spline::Space space = spline::space(odd);
+  EXPECT_LT(of(space, unit_sphere(odd, space)).order(), 8);
+}
+
+TEST(Symmetry, IsLostWhereOneElementIsCut) {
+  const spline::TMesh cut = spline::refine(spline::cube(8, 1), {{8 * 3 + 3, true, true}}).mesh;
+  const spline::Space space = spline::space(cut, spline::ExtraordinaryRule::g1);
+  ParticleShape shape;
+  shape.radius = 1;
+  EXPECT_LT(of(space, initial_shape(space, cut, shape)).order(), 8);
+}
+
+TEST(Symmetry, FundamentalPointsAreOneOfEachSetOfImages) {
+  const CubeMesh cube(6);
+  const Net net = cube.sphere();
+  const Symmetry found = of(cube.space, net);
+  // 218 points; the planes hold 24 each, 2 of them on each axis: (218 + 3 24 + 3 2) / 8 orbits
+  EXPECT_EQ(found.fundamental().size(), 37u);
+  for (const int a : found.fundamental()) EXPECT_GE(net.row(a).minCoeff(), -1e-12);
+}
+
+TEST(Symmetry, CompletesTheFieldsThatItsSurfacesHave) {
+  const CubeMesh cube(4);
+  const Net net = cube.ellipsoid({1.3, 1, 0.8});
+  const Net* nets[] = {&net};
+  // The symmetry of a shear flow: a field of x2 mirrored and of x1, x3 turned.
+  const Symmetry found = symmetry(cube.space, nets, [](const Image& image) { return image.signs[0] == image.signs[2]; });
+  EXPECT_EQ(found.order(), 4);
+  EXPECT_EQ(found.description(), "mirror x2 and point symmetry");
+  Net exact(net.rows(), 3);
+  for (Eigen::Index a = 0; a < net.rows(); ++a) {
+    const Vec3 x = net.row(a).transpose();
+    exact.row(a) << x[2] * (1 + x[0] * x[2]), x[1] * (x[0] * x[0] + x[2] * x[0]), x[0] * x[0] * x[0] - x[2] * x[1] * x[1];
+  }
+  const Net gradient = Geometry(cube.space).volume_gradient(net);
+  for (const Net& field : {exact, gradient}) {
+    Net known = Net::Constant(net.rows(), 3, 7.0);
+    for (const int a : found.fundamental()) known.row(a) = field.row(a);
+    found.complete(known);
+    EXPECT_NEAR((known - field).cwiseAbs().maxCoeff(), 0, 1e-12);
+  }
+}
+
+TEST(Symmetry, CompletedFieldsStayAsTheyAre) {
+  const CubeMesh cube(5);
+  const Symmetry found = of(cube.space, cube.sphere());
+  Net once = Net::Random(cube.space.n_points, 3);
+  found.complete(once);
+  Net twice = once;
+  found.complete(twice);
+  EXPECT_EQ(once, twice);
+}
+
+}  // namespace
+}  // namespace tanktread::surface
