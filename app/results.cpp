@@ -135,6 +135,11 @@ void Results::record(const std::vector<double>& row) {
   write([&] { record_->append(row); });
 }
 
+void Results::warn(const std::string& sentence) {
+  warnings_.push_back(sentence);
+  if (writes_) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
+}
+
 void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
   last_saved_ = standing.step;
   write([&] { write_snapshot(state, standing, portrait, picture_time); });
@@ -186,6 +191,7 @@ std::string Results::finish(const output::Entries<std::string>& plan, const outp
   summary.counts = counts;
   for (const Phases::Phase& phase : phases.all()) summary.seconds.emplace_back(phase.name, phase.seconds);
   summary.plan = plan;
+  summary.warnings = warnings_;
   output::write_summary(directory_ / "summary.yaml", summary);
   return missed;
 }

@@ -32,6 +32,9 @@ class Results {
   /// One finished step: a row of the record, written at once.
   void record(const std::vector<double>& row);
 
+  /// A sentence about what the run has come near to, on standard error and in the summary.
+  void warn(const std::string& sentence);
+
   /// Checkpoint of the present step and a picture, of the same moment or of one within the step.
   void save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
 
@@ -64,6 +67,7 @@ class Results {
   std::optional<output::RunRecord> record_;
   std::optional<output::SnapshotSeries> series_;
   output::LagrangeMesh picture_mesh_;
+  std::vector<std::string> warnings_;
   int last_saved_ = -1;
 };
 

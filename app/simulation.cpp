@@ -13,6 +13,7 @@
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
 #include "app/tube.hpp"
+#include "app/warnings.hpp"
 #include "base/errors.hpp"
 #include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
@@ -120,11 +121,13 @@ class Run {
   void step() {
     const double snapshot = next_snapshot(scene_, state_.time);
     const bool lands = scene_.lands_on_snapshots();
-    const motion::State before = lands ? motion::State() : state_;
+    const motion::State before = state_;
     pictured_.reset();
     try {
       report_ = scheme_->advance(particle_->dynamics(), state_, lands ? snapshot : scene_.time.final_time);
+      judge();
     } catch (const RunFailure& failure) {
+      state_ = before;
       fail(failure.what());
     }
     ++standing_.step;
@@ -156,8 +159,30 @@ class Run {
   void record() {
     const auto clock = phases_.time("diagnostics");
     row_ = particle_->row(state_, report_, ranks_.first(watch_.seconds()));
+    look();
     const auto output = phases_.time("output");
     results_.record(row_);
+  }
+
+  void judge() {
+    const auto clock = phases_.time("soundness");
+    if (!scene_.particle.rigid()) quality_ = soundness_(particle_->body(), state_.x);
+  }
+
+  /// What the step has come near to.
+  void look() {
+    if (scene_.particle.rigid()) return;
+    Signs signs;
+    signs.time = state_.time;
+    signs.step = report_.step;
+    signs.smallest_tension = entry("smallest_tension");
+    signs.compressed_area = entry("compressed_area");
+    signs.volume_error = entry("volume_error");
+    signs.jacobian_ratio = quality_.jacobian_ratio;
+    signs.aspect_ratio = quality_.aspect_ratio;
+    if (scene_.tube.present) signs.gap = entry("gap");
+    signs.element = std::sqrt(entry("area") / static_cast<double>(particle_->body().space.elements.size()));
+    for (const std::string& sentence : warnings_.look(signs)) results_.warn(sentence);
   }
 
   void save() {
@@ -209,6 +234,9 @@ class Run {
   std::vector<double> row_;
   bool snapshot_due_ = false;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
+  Soundness soundness_;
+  surface::Quality quality_;
+  Warnings warnings_{scene_};
 };
 
 }  // namespace

@@ -53,7 +53,10 @@ std::string yaml(const Summary& summary) {
     text += "    error: " + scalar(one.error) + "\n";
     text += "    passed: " + scalar(one.passed) + "\n";
   }
-  return text + map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan);
+  text += map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan);
+  text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";
+  for (const std::string& one : summary.warnings) text += "  - " + scalar(one) + "\n";
+  return text;
 }
 
 void write_summary(const std::filesystem::path& path, const Summary& summary) { write_whole(path, yaml(summary)); }

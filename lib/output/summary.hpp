@@ -27,6 +27,7 @@ struct Summary {
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
   Entries<double> seconds;    ///< by phase
   Entries<std::string> plan;  ///< what the run chose to compute, one line each
+  std::vector<std::string> warnings;  ///< edges of the method that the run came near to, a sentence each
 };
 
 /// The text of `summary.yaml`: YAML 1.1, every text in quotes, every double readable to its last bit.

@@ -43,11 +43,12 @@ TEST(Summary, IsReadByPythonAsItWasMeant) {
   summary.counts = {{"steps", 42}, {"velocity evaluations", 1234567890123}, {"on", 1}, {"1e3", 2}};
   summary.seconds = {{"far field: near: self", 1.25}};
   summary.plan = {{"flow", "simple shear, γ̇ = 1: \"λ = 1\" # no double layer\n\tC:\\"}, {"yes", ""}};
+  summary.warnings = {"the load: \"strong\" # it fails"};
   write_summary(scratch / "summary.yaml", summary);
   write_whole(scratch / "check.py", R"(
 import math, sys, yaml
 s = yaml.safe_load(open(sys.argv[1], encoding='utf-8'))
-assert list(s) == ['final', 'expect', 'counts', 'seconds', 'plan']
+assert list(s) == ['final', 'expect', 'counts', 'seconds', 'plan', 'warnings']
 f = s['final']
 assert f['time'] == 7.5 and f['volume_error'] == 1e-15 and math.isnan(f['energy']) and f['drag'] == -math.inf
 assert s['expect'] == [dict(name='taylor_inertia', value=0.39785, expected=0.3979, error=-5e-5, passed=True),
@@ -55,11 +56,12 @@ assert s['expect'] == [dict(name='taylor_inertia', value=0.39785, expected=0.397
 assert s['counts'] == {'steps': 42, 'velocity evaluations': 1234567890123, 'on': 1, '1e3': 2}
 assert s['seconds'] == {'far field: near: self': 1.25}
 assert s['plan'] == {'flow': 'simple shear, γ̇ = 1: "λ = 1" # no double layer\n\tC:\\', 'yes': ''}, s['plan']
+assert s['warnings'] == ['the load: "strong" # it fails']
 )");
   EXPECT_NO_THROW(printed_by("/usr/bin/python3 " + (scratch / "check.py").string() + " " + (scratch / "summary.yaml").string()));
 }
 
-TEST(Summary, OfNothingIsStillAMapOfItsParts) { EXPECT_EQ(yaml({}), "final: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\n"); }
+TEST(Summary, OfNothingIsStillAMapOfItsParts) { EXPECT_EQ(yaml({}), "final: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nwarnings: []\n"); }
 
 }  // namespace
 }  // namespace tanktread::output

@@ -1,0 +1,134 @@
+#include "app/warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace tanktread {
+
+namespace {
+
+constexpr double growth_limit =
+    2;  // of waves, over the rate of the flow: slower ones are carried out of the compressed part before they show
+constexpr int limited_steps = 10;   // in a row: fewer are the start
+constexpr double folding = 0.05;    // jacobian_ratio; even elements have 0.5 and more, those at a plain pole 0.1
+constexpr double slenderness = 10;  // aspect_ratio
+constexpr double lost_volume = 1e-3;
+
+std::string text(const char* format, auto... values) {
+  char line[400];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+double rate(const Scene& scene) {
+  const double of_flow = scene.speed() / scene.radius();
+  return of_flow > 0 ? of_flow : scene.modulus() / (scene.flow.viscosity * scene.radius());
+}
+
+bool elastic(const Scene& scene) { return !scene.particle.rigid() && scene.membrane.law != "surface tension"; }
+
+/// Shortest wave that elements of size h carry.
+double wave_number(double h) { return std::numbers::pi / h; }
+
+/// Mean viscosity of what is on either side.
+double mean_viscosity(const Scene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
+
+}  // namespace
+
+double stiffness(const Scene& scene, double h) {
+  const double k = wave_number(h), g = scene.modulus(), mu = mean_viscosity(scene);
+  const double in_plane = std::max(1 + scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
+  return std::max(in_plane, scene.membrane.bending_modulus * k * k * k / (4 * mu));
+}
+
+std::vector<std::string> Warnings::look(const Signs& signs) {
+  std::vector<std::string> fresh;
+  const auto add = [&](const char* kind, const std::string& sentence) {
+    if (sentence.empty() || !kinds_.insert(kind).second) return;
+    fresh.push_back(text("at time %.4g ", signs.time) + sentence);
+    said_.push_back(fresh.back());
+  };
+  add("choice", choice());
+  add("compression", compression(signs));
+  add("stiffness", stiffness(signs));
+  add("fold", fold(signs));
+  add("stretch", stretch(signs));
+  add("gap", gap(signs));
+  add("volume", volume(signs));
+  return fresh;
+}
+
+std::string Warnings::choice() const {
+  if (elastic(scene_) && scene_.membrane.load == "strong")
+    return "the load is taken in the strong form, which feeds the shape's errors until steps vanish: set Membrane/load to weak";
+  if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == "fixed")
+    return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
+           "adaptive";
+  return {};
+}
+
+/// A flat membrane under the tension -T with bending modulus B: waves of number k grow at (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B).
+std::string Warnings::compression(const Signs& signs) const {
+  if (!elastic(scene_) || signs.smallest_tension >= 0) return {};
+  const double tension = -signs.smallest_tension * scene_.modulus(), mesh = wave_number(signs.element);
+  const double bending = scene_.membrane.bending_modulus;
+  const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh;
+  if (fastest < mesh / 2) return {};  // a wave that the mesh resolves
+  const double k = std::min(fastest, mesh), growth = (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_)) / rate(scene_);
+  if (growth < growth_limit) return {};
+  const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
+  return text(
+      "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements grow up to %.1f times as fast as "
+      "the flow; set Membrane/bending modulus%s or Membrane/pre-inflation",
+      100 * signs.compressed_area, signs.smallest_tension, resistance, growth, bending > 0 ? " higher" : "");
+}
+
+std::string Warnings::stiffness(const Signs& signs) {
+  const bool fixed = scene_.time.fixed_step.has_value(), explicit_scheme = scene_.time.scheme == "bs3";
+  const bool iterated = scene_.time.scheme == "crank-nicolson" && scene_.time.nonlinear_solver == "plain";
+  if (!elastic(scene_) || !(explicit_scheme || iterated)) return {};
+  const double limit = explicit_scheme ? 2.51 : 2, reached = signs.step * tanktread::stiffness(scene_, signs.element);
+  limited_ = reached > 0.8 * limit ? limited_ + 1 : 0;
+  if (!(fixed && reached > limit) && limited_ < limited_steps) return {};
+  const char* what = explicit_scheme ? "explicit step" : "sub-iterated step";
+  return text("the %s times the membrane's stiffness is %.2g, where about %.2g is the limit: %s; set Time/scheme to auto", what, reached,
+              limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
+}
+
+std::string Warnings::fold(const Signs& signs) const {
+  if (signs.jacobian_ratio > folding) return {};
+  const std::string cure = scene_.membrane.load == "strong" && elastic(scene_)           ? "set Membrane/load to weak"
+                           : scene_.interface_motion() == "material" && !elastic(scene_) ? "set Interface/motion to relaxed"
+                                                                                         : "set a finer mesh, or Adaptation/enabled";
+  return text("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure;
+}
+
+std::string Warnings::stretch(const Signs& signs) const {
+  if (signs.aspect_ratio < slenderness) return {};
+  return text("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
+         (elastic(scene_) ? "set Adaptation/enabled, or a finer mesh" : "set Interface/motion to relaxed, or Adaptation/enabled");
+}
+
+std::string Warnings::gap(const Signs& signs) const {
+  if (!signs.gap || *signs.gap > signs.element / 2) return {};
+  return text(
+      "the gap to the wall (%.2g) is less than half an element (%.2g): set finer meshes of particle and tube, or Adaptation/enabled",
+      *signs.gap, signs.element);
+}
+
+std::string Warnings::volume(const Signs& signs) const {
+  if (scene_.particle.rigid() || std::abs(signs.volume_error) < lost_volume) return {};
+  return text("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
+}
+
+surface::Quality Soundness::operator()(const Body& body, const Net& x) {
+  const bool same = map_ && map_->n_points() == body.space.n_points && map_->n_elements() == static_cast<int>(body.space.elements.size());
+  if (!same) map_.emplace(body.space);
+  const surface::Quality quality = surface::quality(*map_, x);
+  surface::require_sound(quality);
+  return quality;
+}
+
+}  // namespace tanktread

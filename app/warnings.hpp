@@ -1,0 +1,66 @@
+#pragma once
+// A run that goes near an edge where its method stops working says so, once an edge, with what to change in the deck. The edges are those of
+// tests/stability/README.md.
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/body.hpp"
+#include "app/scene.hpp"
+#include "surface/bezier_points.hpp"
+#include "surface/quality.hpp"
+
+namespace tanktread {
+
+/// What a finished step is judged by. Lengths and times in the deck's units.
+struct Signs {
+  double time = 0, step = 0;
+  double smallest_tension = 0, compressed_area = 0;  ///< as in the series
+  double volume_error = 0;
+  double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
+  double element = 1;                           ///< mean size, the square root of the area over the elements
+  std::optional<double> gap;                    ///< to the wall of a tube
+  bool rejected = false;                        ///< whether attempts at this step were given up
+};
+
+class Warnings {
+ public:
+  explicit Warnings(const Scene& scene) : scene_(scene) {}
+
+  /// Sentences that this step adds.
+  std::vector<std::string> look(const Signs& signs);
+
+  /// All so far.
+  const std::vector<std::string>& said() const { return said_; }
+
+ private:
+  std::string choice() const;
+  std::string compression(const Signs& signs) const;
+  std::string stiffness(const Signs& signs);
+  std::string fold(const Signs& signs) const;
+  std::string stretch(const Signs& signs) const;
+  std::string gap(const Signs& signs) const;
+  std::string volume(const Signs& signs) const;
+
+  const Scene& scene_;
+  int limited_ = 0;  // of the latest steps, how many were as long as stability allows
+  std::set<std::string> kinds_;
+  std::vector<std::string> said_;
+};
+
+/// Stiffness rho of an elastic membrane on elements of size h, 1/time: (4.5) with the mean of the viscosities, or that of waves that are bent.
+double stiffness(const Scene& scene, double h);
+
+/// The quality of a mesh over a run; the extraction is made once a mesh.
+class Soundness {
+ public:
+  /// Throws RunFailure where an element is folded or a control point is no number.
+  surface::Quality operator()(const Body& body, const Net& x);
+
+ private:
+  std::optional<surface::BezierMap> map_;
+};
+
+}  // namespace tanktread

@@ -1,0 +1,37 @@
+// The mesh of a drop in an extension: carried with the fluid its elements are drawn out until they fold; moved across the interface only, or
+// relaxed along it, they are not. Map drop-mesh of postproc/atlas.py.
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "surface/bezier_points.hpp"
+#include "surface/quality.hpp"
+#include "tests/evolution.hpp"
+
+namespace tanktread {
+namespace {
+
+/// The mesh at a time, or where the run fails.
+surface::Quality mesh_at(const std::string& motion, double time) {
+  Evolution run({"Flow/type=uniaxial extension", "Membrane/law=surface tension", "Membrane/capillary number=0.1",
+                 "Surface/elements per side=4", "Time/tolerance=1e-3", "Interface/motion=" + motion});
+  const surface::BezierMap map(run.body.space);
+  try {
+    run.to(time);
+  } catch (const RunFailure&) {
+  }
+  return surface::quality(map, run.state.x);
+}
+
+TEST(MeshOfADrop, CarriedWithTheFluidIsDrawnOutAndOnesThatAreNotKeepTheirShape) {
+  const double carried = mesh_at("material", 2).aspect_ratio;
+  for (const char* motion : {"normal", "relaxed"}) {
+    const surface::Quality quality = mesh_at(motion, 2);
+    EXPECT_LT(quality.aspect_ratio, carried / 2) << motion;
+    EXPECT_GT(quality.jacobian_ratio, 0.2) << motion;
+  }
+  EXPECT_LT(mesh_at("material", 1).aspect_ratio, carried / 1.5);  // it goes on and on
+}
+
+}  // namespace
+}  // namespace tanktread

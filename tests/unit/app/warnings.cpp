@@ -1,0 +1,107 @@
+#include "app/warnings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "deck/document.hpp"
+
+namespace tanktread {
+namespace {
+
+struct Told {
+  Scene scene;
+  Warnings warnings{scene};
+  explicit Told(const std::vector<std::string>& settings) {
+    deck::Document deck = deck::read({}, settings);
+    deck.declare(scene);
+    scene.check();
+  }
+  std::string first(const Signs& signs) {
+    const auto sentences = warnings.look(signs);
+    return sentences.empty() ? std::string() : sentences.front();
+  }
+};
+
+bool names(const std::string& sentence, const char* what) { return sentence.find(what) != std::string::npos; }
+
+Signs at(double step, double tension, double element = 0.13) {
+  Signs signs;
+  signs.time = 1;
+  signs.step = step;
+  signs.smallest_tension = tension;
+  signs.compressed_area = tension < 0 ? 0.5 : 0;
+  signs.element = element;
+  return signs;
+}
+
+TEST(Warnings, AreSilentAboutAHealthyRun) {
+  Told run({"Membrane/capillary number=0.3"});
+  EXPECT_EQ(run.first(at(0.2, -0.05)), "");  // as slow as the flow: seen in runs that agree with other methods to five digits
+  EXPECT_EQ(run.first(at(0.2, 0.1)), "");
+}
+
+TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
+  Told run({"Membrane/capillary number=0.1"});
+  const std::string sentence = run.first(at(0.1, -0.13));
+  EXPECT_TRUE(names(sentence, "Membrane/bending modulus") && names(sentence, "at time 1 ")) << sentence;
+  EXPECT_EQ(run.first(at(0.1, -0.14)), "");
+  EXPECT_EQ(run.warnings.said().size(), 1u);
+}
+
+TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
+  Told stiff({"Membrane/capillary number=0.1", "Membrane/bending modulus=0.02"});
+  EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // k = 4.7, of 24 on the mesh
+  Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
+  EXPECT_TRUE(names(soft.first(at(0.1, -0.13)), "too little resistance"));
+}
+
+TEST(Warnings, TellOfAFixedStepBeyondTheLimit) {
+  Told run({"Time/scheme=bs3", "Time/fixed step=0.2"});  // rho is 80 on these elements at Ca = 0.3
+  EXPECT_TRUE(names(run.first(at(0.2, 0)), "Time/scheme"));
+  Told implicit({"Time/scheme=tr-bdf2", "Time/fixed step=0.2"});
+  EXPECT_EQ(implicit.first(at(0.2, 0)), "");
+}
+
+TEST(Warnings, TellOfStepsThatStabilityKeepsShort) {
+  Told run({"Time/scheme=bs3"});
+  for (int k = 0; k < 9; ++k) EXPECT_EQ(run.first(at(0.03, 0)), "");
+  EXPECT_TRUE(names(run.first(at(0.03, 0)), "Time/tolerance"));
+}
+
+TEST(Warnings, TellOfAnElementThatFoldsWithTheCureOfTheScene) {
+  Signs signs = at(0.1, 0);
+  signs.jacobian_ratio = 0.01;
+  EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(signs), "Adaptation/enabled"));
+  EXPECT_TRUE(names(Told({"Membrane/law=surface tension", "Interface/motion=material"}).first(signs), "Interface/motion"));
+}
+
+TEST(Warnings, TellOfVolumeGapsAndSlimElements) {
+  Signs lost = at(0.1, 0), slim = lost, narrow = lost;
+  lost.volume_error = -0.01;
+  slim.aspect_ratio = 12;
+  narrow.gap = 0.02;
+  EXPECT_TRUE(names(Told({"Volume/constraint=flux"}).first(lost), "Volume/constraint"));
+  EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(slim), "Adaptation/enabled"));
+  EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(narrow), "gap"));
+}
+
+TEST(Warnings, TellFromTheStartOfChoicesThatAreKnownToFail) {
+  EXPECT_TRUE(names(Told({"Membrane/load=strong"}).first(at(0.01, 0)), "Membrane/load"));
+  EXPECT_TRUE(names(Told({"Surface/mesh=polar", "Surface/poles=plain", "Quadrature/rule=fixed"}).first(at(0.01, 0)), "poles"));
+}
+
+TEST(Soundness, EndsARunWhoseElementFolds) {
+  Scene scene;
+  deck::Document deck = deck::read({}, {"Surface/elements per side=4"});
+  deck.declare(scene);
+  const Body sphere = body(scene);
+  Soundness soundness;
+  EXPECT_GT(soundness(sphere, sphere.rest).jacobian_ratio, 0.4);
+  Net folded = sphere.rest;
+  const std::vector<int>& points = sphere.space.elements[14].points;
+  folded.row(points[5]) += 3 * (folded.row(points[6]) - folded.row(points[5]));  // pulled over its neighbour
+  EXPECT_THROW(soundness(sphere, folded), RunFailure);
+}
+
+}  // namespace
+}  // namespace tanktread
