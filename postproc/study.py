@@ -79,7 +79,9 @@ class Study:
         where = self.directory / _name(decks, settings, ranks)
         note = where / "outcome.json"
         if note.exists() and (not self.fresh or where in self._made):
-            return Outcome(where, json.loads(note.read_text()))
+            outcome = Outcome(where, json.loads(note.read_text()))
+            if where in self._made or not outcome.refused:  # another program may know more keys
+                return outcome
         self._made.add(where)
         where.mkdir(parents=True, exist_ok=True)
         note.write_text(json.dumps(self._make(words + ["--quiet", "--output", str(where)])))
