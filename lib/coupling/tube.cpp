@@ -48,14 +48,14 @@ Net Tube::load_on_wall(const Net& f) {
 Net Tube::velocity_on_wall(const Net& v) {
   Net u = Net::Zero(wall_->sites().rows(), 3);
   if (!particle_->dual) return u;
-  particle_->dual->apply(v, particle_->nearest_values(v), wall_->sites(), wall_->own(), u);
+  particle_->dual->apply(v, particle_->nearest_values(v), wall_->sites(), wall_->own(), u, particle_->kept(particle_->dual_on_wall));
   wall_->ranks().replicate(u);
   return (1 - particle_->parameters.viscosity_ratio) * u;
 }
 
 Net Tube::wall_on_particle(const Net& traction) {
   Net u(particle_->sites.rows(), 3);
-  wall_->layer().apply(traction, particle_->sites, particle_->own, u);
+  wall_->layer().apply(traction, particle_->sites, particle_->own, u, particle_->kept(particle_->wall_on_sites));
   particle_->ranks.replicate(u);
   return -u / viscosity();
 }

@@ -30,6 +30,8 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
   if (dual) {
     dual->place(shape);
     find_nearest(wall.sites());
+    dual_on_wall = dual->near(wall.sites(), wall.own());
+    wall_on_sites = wall.layer().near(sites, own);
   }
   weigh_pressure(flow);
 }

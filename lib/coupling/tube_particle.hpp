@@ -25,6 +25,8 @@ struct Tube::Particle {
   void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
   void freeze(Wall& wall);
 
+  const stokes::CrossLayer::Near* kept(const std::optional<stokes::CrossLayer::Near>& near) const { return near ? &*near : nullptr; }
+
   /// v at the collocation point of the particle that is nearest to each one of the wall.
   Net nearest_values(const Net& v) const;
 
@@ -40,12 +42,13 @@ struct Tube::Particle {
   stokes::CrossLayer single;
   std::optional<stokes::CrossLayer> dual;  ///< lambda != 1
 
-  Net shape;                                   ///< in the wall's frame
-  double centroid = 0;                         ///< where that frame has its origin
-  Net sites;                                   ///< collocation points, in the wall's frame
-  Net inlet;                                   ///< (1/mu) c there
-  Net pressure_of_load, pressure_of_velocity;  ///< the weights of f and v in (2.7); of v empty for lambda = 1
-  std::vector<int> nearest;                    ///< to a collocation point of the wall
+  Net shape;                                                            ///< in the wall's frame
+  double centroid = 0;                                                  ///< where that frame has its origin
+  Net sites;                                                            ///< collocation points, in the wall's frame
+  Net inlet;                                                            ///< (1/mu) c there
+  Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
+  std::vector<int> nearest;                                             ///< to a collocation point of the wall
+  std::optional<stokes::CrossLayer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;

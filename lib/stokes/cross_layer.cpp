@@ -59,7 +59,8 @@ const Pack* CrossLayer::area_weights_of(int e, const PointTable& table) {
 
 /// `own(e, table, k, sum)`: what panel e gives the target k under its near rule.
 template <class Sources, class Own>
-void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, const Net& at, std::span<const int> targets, Net& u) {
+void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, const Net& at, std::span<const int> targets, Net& u,
+                           const Near* kept) {
   const int n = static_cast<int>(targets.size());
   {
     const auto clock = phases_.time("far");
@@ -82,6 +83,11 @@ void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, co
     evaluations_.far += static_cast<long long>(n) * all.n;
   }
   const auto clock = phases_.time("near");
+  if (kept) {
+    add_kept(*kept, v0, targets, u);
+    for (const int i : targets) u.row(i) *= factor;
+    return;
+  }
   const double zero[3] = {0, 0, 0};
   for (const int i : targets) {
     const Vec3 y = at.row(i).transpose();
@@ -98,8 +104,8 @@ void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, co
   }
 }
 
-void CrossLayer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u) {
-  if (kernel_ == Kernel::double_layer) return apply(f, Net::Zero(at.rows(), 3), at, targets, u);
+void CrossLayer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
+  if (kernel_ == Kernel::double_layer) return apply(f, Net::Zero(at.rows(), 3), at, targets, u, kept);
   {
     const auto clock = phases_.time("setup");
     values(f, strength_);
@@ -113,10 +119,10 @@ void CrossLayer::apply(const Net& f, const Net& at, std::span<const int> targets
     const std::size_t bezier = surface_.panels[e].first_bezier;
     single_sum(table, &surface_.bezier[bezier], &bezier_f_[bezier], area_weights_of(e, table), y.data(), sum.data());
   };
-  integrate(all, nullptr, own, at, targets, u);
+  integrate(all, nullptr, own, at, targets, u, kept);
 }
 
-void CrossLayer::apply(const Net& v, const Net& v0, const Net& at, std::span<const int> targets, Net& u) {
+void CrossLayer::apply(const Net& v, const Net& v0, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
   assert(kernel_ == Kernel::double_layer);
   {
     const auto clock = phases_.time("setup");
@@ -129,7 +135,7 @@ void CrossLayer::apply(const Net& v, const Net& v0, const Net& at, std::span<con
     const std::size_t bezier = surface_.panels[e].first_bezier;
     double_sum(table, &surface_.bezier[bezier], &bezier_f_[bezier], y.data(), v0.row(i).data(), sum.data());
   };
-  integrate(all, &v0, own, at, targets, u);
+  integrate(all, &v0, own, at, targets, u, kept);
 }
 
 void CrossLayer::values(const Net& field, std::vector<double> (&value)[3]) {
@@ -152,20 +158,73 @@ Eigen::VectorXd CrossLayer::moments(const std::vector<double>& g) const {
   return sums;
 }
 
+/// Bernstein moments of panel e for y by a near rule.
+void CrossLayer::near_moments(int e, const PointTable& table, const Vec3& y, double* moments) {
+  const double* bezier = &surface_.bezier[surface_.panels[e].first_bezier];
+  scratch_.resize(static_cast<std::size_t>(6) * table.packs());
+  if (kernel_ == Kernel::double_layer) return double_moments(table, bezier, y.data(), scratch_.data(), moments);
+  single_moments(table, bezier, area_weights_of(e, table), y.data(), scratch_.data(), moments);
+}
+
+CrossLayer::Near CrossLayer::near(const Net& at, std::span<const int> targets) {
+  const auto clock = phases_.time("near");
+  Near kept{{0}, {}, {}};
+  for (const int i : targets) {
+    const Vec3 y = at.row(i).transpose();
+    for (const int e : surface_.near(y)) {
+      const Panel& panel = surface_.panels[e];
+      const NodeTable& t = *panel.table;
+      const std::size_t first = kept.moments.size();
+      kept.panels.push_back(e);
+      kept.moments.resize(first + static_cast<std::size_t>(6) * t.n_bernstein);
+      double* moments = &kept.moments[first];
+      const PointTable& table = surface_.near_field.rule(e, y);
+      near_moments(e, table, y, moments);
+      evaluations_.near += table.points + t.n_nodes;
+      for (int k = 0; k < t.n_nodes; ++k) {  // less those of the far rule
+        const int node = panel.first_node + k;
+        const Vec3 r = Vec3(surface_.node[0][node], surface_.node[1][node], surface_.node[2][node]) - y;
+        const Mat3 g = kernel_ == Kernel::single_layer ? Mat3(weight_[node] * stokeslet(r))
+                                                       : stresslet(r, Vec3(normal_[0][node], normal_[1][node], normal_[2][node]));
+        const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
+        for (int b = 0; b < t.n_bernstein; ++b)
+          for (int c = 0; c < 6; ++c) moments[6 * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
+      }
+    }
+    kept.first.push_back(kept.panels.size());
+  }
+  return kept;
+}
+
+void CrossLayer::add_kept(const Near& kept, const Net* v0, std::span<const int> targets, Net& u) const {
+  const double* m = kept.moments.data();
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const int i = targets[k];
+    const Vec3 base = v0 ? Vec3(v0->row(i)) : Vec3::Zero();
+    double sum[3] = {0, 0, 0};
+    for (std::size_t pair = kept.first[k]; pair < kept.first[k + 1]; ++pair) {
+      const Panel& panel = surface_.panels[kept.panels[pair]];
+      const int n_b = panel.table->n_bernstein;
+      const double* f = &bezier_f_[panel.first_bezier];
+      for (int b = 0; b < n_b; ++b, m += 6) {
+        const double f1 = f[b] - base[0], f2 = f[n_b + b] - base[1], f3 = f[2 * n_b + b] - base[2];
+        sum[0] += m[0] * f1 + m[1] * f2 + m[2] * f3;
+        sum[1] += m[1] * f1 + m[3] * f2 + m[4] * f3;
+        sum[2] += m[2] * f1 + m[4] * f2 + m[5] * f3;
+      }
+    }
+    for (int c = 0; c < 3; ++c) u(i, c) += sum[c];
+  }
+}
+
 /// The layer as dense_rows() wants it.
 struct CrossLayer::Moments {
   CrossLayer& layer;
-  std::vector<Pack> scratch;
 
   const std::vector<int>& near(int, const Vec3& y) { return layer.surface_.near(y); }
   std::span<SelfPair> own(int) { return {}; }
 
-  void own_moments(const Vec3& y, int e, const PointTable& table, SelfPair*, double* moments) {
-    scratch.resize(static_cast<std::size_t>(6) * table.packs());
-    const double* bezier = &layer.surface_.bezier[layer.surface_.panels[e].first_bezier];
-    if (layer.kernel_ == Kernel::double_layer) return double_moments(table, bezier, y.data(), scratch.data(), moments);
-    single_moments(table, bezier, layer.area_weights_of(e, table), y.data(), scratch.data(), moments);
-  }
+  void own_moments(const Vec3& y, int e, const PointTable& table, SelfPair*, double* moments) { layer.near_moments(e, table, y, moments); }
 
   template <class Real>
   void far_nodes(PanelNodes<Real>& nodes, int first) const {
@@ -184,7 +243,7 @@ void CrossLayer::assemble_rows(const Net& at, std::span<const int> targets, Rows
   const auto clock = phases_.time("assembly");
   std::vector<Vec3> points;
   for (const int i : targets) points.push_back(at.row(i).transpose());
-  Moments moments{*this, {}};
+  Moments moments{*this};
   dense_rows(surface_, targets, points, moments, evaluations_, a);
 }
 

@@ -32,12 +32,22 @@ class CrossLayer {
   /// Takes the shape, and what a density of the single layer is measured on.
   void place(const Net& x, Measure measure = Measure::current);
 
-  /// Rows `targets` of u, shape of `at`, at the points with rows `at`. `f`: control values.
-  void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u);
+  /// What the near rules of some points give beyond the far sum, for any density: 6 Bernstein moments for each point and close panel.
+  struct Near {
+    std::vector<std::size_t> first;  ///< of target k, in `panels`
+    std::vector<int> panels;
+    std::vector<double> moments;
+  };
+
+  /// For densities that are many, at the same points of the same shape.
+  Near near(const Net& at, std::span<const int> targets);
+
+  /// Rows `targets` of u, shape of `at`, at the points with rows `at`. `f`: control values. `kept`: near(at, targets), or nothing.
+  void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
   /// The same with constants `v0` (a row a point) taken from v. At points outside of a closed surface a constant gives nothing (2.3), so
   /// with v0 the velocity nearby the answer is the same and the integrand is smaller. Double layer.
-  void apply(const Net& v, const Net& v0, const Net& at, std::span<const int> targets, Net& u);
+  void apply(const Net& v, const Net& v0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
   /// The operator: three rows a target, in the order of `targets`; shape (3 targets, 3 N).
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
@@ -61,7 +71,9 @@ class CrossLayer {
   template <class Real>
   void assemble_rows(const Net& at, std::span<const int> targets, Rows<Real>& a);
   template <class Sources, class Own>
-  void integrate(const Sources& all, const Net* v0, const Own& own, const Net& at, std::span<const int> targets, Net& u);
+  void integrate(const Sources& all, const Net* v0, const Own& own, const Net& at, std::span<const int> targets, Net& u, const Near* kept);
+  void add_kept(const Near& kept, const Net* v0, std::span<const int> targets, Net& u) const;
+  void near_moments(int e, const PointTable& table, const Vec3& y, double* moments);
   const Pack* area_weights_of(int e, const PointTable& table);
 
   Kernel kernel_;
@@ -69,7 +81,7 @@ class CrossLayer {
   Measure measure_ = Measure::current;
   std::vector<double> bezier_unstressed_, bezier_f_;
   std::vector<double> weight_, weight_unstressed_, normal_[3], strength_[3];
-  std::vector<Pack> point_weights_;
+  std::vector<Pack> point_weights_, scratch_;
   Evaluations evaluations_;
   Phases phases_;
 };

@@ -72,6 +72,25 @@ TEST(CrossLayer, IsItsAssembledRows) {
   }
 }
 
+TEST(CrossLayer, KeepsItsNearRulesForFurtherDensities) {
+  const Fixture s;
+  for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
+    CrossLayer layer(s.space, s.options, kernel);
+    layer.place(s.x);
+    const CrossLayer::Near kept = layer.near(s.at, s.all);
+    EXPECT_GT(kept.panels.size(), 0u);
+    Net u(4, 3), again(4, 3);
+    layer.apply(s.f, s.at, s.all, u);
+    layer.apply(s.f, s.at, s.all, again, &kept);
+    EXPECT_LT((u - again).norm(), 1e-13);
+    if (kernel == CrossLayer::Kernel::single_layer) continue;
+    const Net v0 = Vec3(1, -2, 3).transpose().replicate(4, 1);
+    layer.apply(s.f, v0, s.at, s.all, u);
+    layer.apply(s.f, v0, s.at, s.all, again, &kept);
+    EXPECT_LT((u - again).norm(), 1e-13);
+  }
+}
+
 TEST(CrossLayer, FeelsNoConstantVelocityOutside) {
   const Fixture s;
   CrossLayer layer(s.space, s.options, CrossLayer::Kernel::double_layer);
