@@ -1,5 +1,5 @@
-// An interface of viscosity ratio lambda that keeps the shape of a sphere and bears no load: three routes to the pressure drop, of which the paper's sign of
-// (2.7) misses the other two.
+// An interface of viscosity ratio lambda that keeps the shape of a sphere and bears no load: three routes to the pressure drop, of which
+// the paper's sign of (2.7) misses the other two.
 
 #include <cmath>
 

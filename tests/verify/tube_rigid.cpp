@@ -1,4 +1,5 @@
-// The rigid sphere in a tube, held against the exact solution on the axis, the asymptotic one off it, and values that other discretisations agree on.
+// The rigid sphere in a tube, held against the exact solution on the axis, the asymptotic one off it, and values that other
+// discretisations agree on.
 
 #include <cmath>
 #include <numbers>
@@ -14,8 +15,8 @@ using std::numbers::pi;
 
 double error(double value, double exact) { return std::abs(value / exact - 1); }
 
-/// The exact multipole solution on the axis, a over R_T: drags K1 (towed) and K2 (held, 2 V in front), speed of the free sphere over the mean velocity, and
-/// the pressure drops R_T/(mu V).
+/// The exact multipole solution on the axis, a over R_T: drags K1 (towed) and K2 (held, 2 V in front), speed of the free sphere over
+/// the mean velocity, and the pressure drops R_T/(mu V).
 struct Exact {
   double a, towed, held, speed, free_drop, held_drop;
 };

@@ -92,7 +92,8 @@ struct RigidSphere {
     body = std::make_unique<coupling::FreeBodyInTube>(*resistance, sphere.centre, radius, flow, 1.0, solvers);
   }
 
-  /// Force density on the fluid of the sphere that is towed along the axis with unit speed in quiescent fluid, and of the one that is held in the flow.
+  /// Force density on the fluid of the sphere that is towed along the axis with unit speed in quiescent fluid, and of the one that is
+  /// held in the flow.
   Net towed() {
     return resistance->force_density(coupling::rigid_velocity(resistance->surface(), {Vec3::UnitX(), Vec3::Zero()}, Vec3::Zero()));
   }

@@ -1,4 +1,5 @@
-// Tubes that are not round, where no exact solution is known: values on which finer and finer meshes around spherical harmonics settled; and the empty tube.
+// Tubes that are not round, where no exact solution is known: values on which finer and finer meshes around spherical harmonics settled;
+// and the empty tube.
 
 #include <cmath>
 #include <numbers>
@@ -70,7 +71,8 @@ TEST(TubeSections, SquareWithItsFourCornersCarriesASphere) {
 }
 
 TEST(TubeSections, EmptyTubeIsPoiseuilleAndSampson) {
-  // With a unit of pressure drop and no row (2.7): Q/dp = pi/(8 (L + 3 pi/8)) to 2 %, end losses of an orifice at either end; and what other meshes gave.
+  // With a unit of pressure drop and no row (2.7): Q/dp = pi/(8 (L + 3 pi/8)) to 2 %, end losses of an orifice at either end; and what
+  // other meshes gave.
   const double lengths[] = {4, 2 * pi}, known[] = {0.077170, 0.053449};
   for (const int k : {0, 1}) {
     const coupling::Wall wall(circular_duct(21, 17, lengths[k]).wall, {});
