@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+# A run near an edge of its method says so once, on standard error and in its summary; a healthy one is silent.
+from harness import check, deck, main, run, summary
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.2}
+"""
+
+
+def _said(*settings, code=0):
+    """The sentences of a run, and those of its summary."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    told = [line for line in run(deck(DECK), *words, "--output", "out", "--quiet", code=code).stderr.splitlines() if "warning:" in line]
+    return told, summary("out")["warnings"] if code == 0 else None
+
+
+def a_healthy_run_is_silent():
+    check(_said() == ([], []), _said())
+
+
+def compression_without_bending_is_told_once_with_the_cure():
+    told, kept = _said("Membrane/capillary number=0.02")
+    check(len(told) == 1 and len(kept) == 1 and kept[0] in told[0] and "Membrane/bending modulus" in told[0], told, kept)
+
+
+def bending_or_inflation_silences_it():
+    for cure in "Membrane/bending modulus=2.0", "Membrane/pre-inflation=0.05":
+        told, kept = _said("Membrane/capillary number=0.02", cure)
+        check(told == [] and kept == [], cure, told, kept)
+
+
+def a_fixed_step_beyond_the_limit_is_told_before_the_run_fails():
+    told, _ = _said("Time/scheme=bs3", "Time/fixed step=0.3", "Membrane/capillary number=0.1", "Time/final time=30", code=3)
+    check(any("Time/scheme" in line for line in told), told)
+
+
+main()
