@@ -102,13 +102,13 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
       {"viscosity", scene.particle.viscosity_ratio == 1
                         ? std::string("ratio 1: no double layer, no system for the velocity")
                         : text("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
-                               scene.solvers.double_layer.c_str(), 3 * body.space.n_points)},
+                               scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * body.space.n_points)},
       {"membrane", scene.membrane.law + ", load " + scene.membrane.load +
                        (scene.membrane.load == "strong"              ? " at the collocation sites (P-3)"
                         : scene.membrane.law == "surface tension"    ? " per current area (3.6)"
                         : scene.membrane.load_measure == "reference" ? " per unstressed area (3.7), mass matrix factored once"
                                                                      : " per current area (3.6), mass matrix factored every evaluation")},
-      {"far sum", tree ? "single layer by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
+      {"far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
       {"time", scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
                    (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : "")

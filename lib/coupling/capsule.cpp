@@ -185,7 +185,7 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
-  const bool assembled = double_layer_ && parameters_.solvers.double_layer == "assembled";
+  const bool assembled = double_layer_ && parameters_.solvers.assembled(double_layer_->by_clusters());
   if (assembled) double_layer_->assemble(x, own_points_, double_rows_);
   const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall
     if (!double_layer_) return v;

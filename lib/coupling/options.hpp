@@ -32,9 +32,13 @@ struct SolverOptions {
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< list of the nonlinear solver of crank-nicolson, as it is
   double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
-  std::string double_layer = "assembled";         ///< once a velocity, for all iterations; or matrix-free: summed in each of them
+  std::string double_layer = "auto";              ///< assembled once a velocity, for all iterations; matrix-free: summed in each of them;
+                                                  ///< auto: the latter where far sums are taken by clusters
   std::string tube = "schur";                     ///< what is solved for in a tube: v with the wall eliminated; all blocks (BlockForm)
   membrane::DirectSolverOptions direct;
+
+  /// What `double layer` means where far sums are taken by clusters, or not.
+  bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
   void declare(deck::Section& section);
 };

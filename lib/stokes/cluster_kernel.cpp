@@ -66,6 +66,56 @@ Pack load(const double* a, int n) {
   return p;
 }
 
+template <int N>
+void spread_components(const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q) {
+  const auto [n0, n1, n2] = box.order;
+  std::fill_n(scratch, N * box.n_nodes(), Pack{});
+  Basis basis;
+  for (int k = 0; k < points.n; k += lanes) {
+    const int n = points.n - k;  // lanes beyond the last point carry nothing
+    basis.place(box, load(points.x + k, n), load(points.y + k, n), load(points.z + k, n));
+    Pack q[N];
+    for (int d = 0; d < N; ++d) q[d] = load(points.q[d] + k, n);
+    Pack* sum = scratch;
+    for (int c = 0; c < n2; ++c)
+      for (int b = 0; b < n1; ++b) {
+        const Pack both = basis.along[1][b] * basis.along[2][c];
+        Pack part[N];
+        for (int d = 0; d < N; ++d) part[d] = both * q[d];
+        for (int a = 0; a < n0; ++a, sum += N)
+          for (int d = 0; d < N; ++d) sum[d] += basis.along[0][a] * part[d];
+      }
+  }
+  for (int i = 0; i < box.n_nodes(); ++i)
+    for (int d = 0; d < N; ++d) node_q[d][i] += stokes::sum(scratch[N * i + d]);
+}
+
+template <int N>
+void interpolate_components(const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u) {
+  const auto [n0, n1, n2] = box.order;
+  Basis basis;
+  for (int k = 0; k < blocks; ++k, target += 3 * far_block, u += N * far_block)
+    for (int l = 0; l < far_block; l += lanes) {
+      basis.place(box, load(target + l, lanes), load(target + far_block + l, lanes), load(target + 2 * far_block + l, lanes));
+      Pack sum[N]{};
+      int i = 0;
+      for (int c = 0; c < n2; ++c)
+        for (int b = 0; b < n1; ++b) {
+          Pack row[N]{};
+          for (int a = 0; a < n0; ++a, ++i) {
+            const double* node = node_u + N * far_block * (i / far_block) + i % far_block;
+            for (int d = 0; d < N; ++d) row[d] += basis.along[0][a] * node[far_block * d];
+          }
+          const Pack both = basis.along[1][b] * basis.along[2][c];
+          for (int d = 0; d < N; ++d) sum[d] += both * row[d];
+        }
+      for (int d = 0; d < N; ++d) {
+        const Pack value = load(u + far_block * d + l, lanes) + sum[d];
+        std::memcpy(u + far_block * d + l, &value, sizeof value);
+      }
+    }
+}
+
 }  // namespace
 
 void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z) {
@@ -80,56 +130,12 @@ void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z) {
       }
 }
 
-void spread(const ChebyshevBox& box, const PointForces& points, Pack* scratch, double* node_fx, double* node_fy, double* node_fz) {
-  const auto [n0, n1, n2] = box.order;
-  std::fill_n(scratch, 3 * box.n_nodes(), Pack{});
-  Basis basis;
-  for (int k = 0; k < points.n; k += lanes) {
-    const int n = points.n - k;  // lanes beyond the last point have no force
-    basis.place(box, load(points.x + k, n), load(points.y + k, n), load(points.z + k, n));
-    const Pack fx = load(points.fx + k, n), fy = load(points.fy + k, n), fz = load(points.fz + k, n);
-    Pack* sum = scratch;
-    for (int c = 0; c < n2; ++c)
-      for (int b = 0; b < n1; ++b) {
-        const Pack both = basis.along[1][b] * basis.along[2][c];
-        const Pack gx = both * fx, gy = both * fy, gz = both * fz;
-        for (int a = 0; a < n0; ++a, sum += 3) {
-          sum[0] += basis.along[0][a] * gx;
-          sum[1] += basis.along[0][a] * gy;
-          sum[2] += basis.along[0][a] * gz;
-        }
-      }
-  }
-  for (int i = 0; i < box.n_nodes(); ++i) {
-    node_fx[i] += sum(scratch[3 * i]);
-    node_fy[i] += sum(scratch[3 * i + 1]);
-    node_fz[i] += sum(scratch[3 * i + 2]);
-  }
+void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q) {
+  n == 3 ? spread_components<3>(box, points, scratch, node_q) : spread_components<6>(box, points, scratch, node_q);
 }
 
-void interpolate(const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u) {
-  const auto [n0, n1, n2] = box.order;
-  Basis basis;
-  for (int k = 0; k < blocks; ++k, target += 3 * far_block, u += 3 * far_block)
-    for (int l = 0; l < far_block; l += lanes) {
-      basis.place(box, load(target + l, lanes), load(target + far_block + l, lanes), load(target + 2 * far_block + l, lanes));
-      Pack sum[3]{};
-      int i = 0;
-      for (int c = 0; c < n2; ++c)
-        for (int b = 0; b < n1; ++b) {
-          Pack row[3]{};
-          for (int a = 0; a < n0; ++a, ++i) {
-            const double* node = node_u + 3 * far_block * (i / far_block) + i % far_block;
-            for (int d = 0; d < 3; ++d) row[d] += basis.along[0][a] * node[far_block * d];
-          }
-          const Pack both = basis.along[1][b] * basis.along[2][c];
-          for (int d = 0; d < 3; ++d) sum[d] += both * row[d];
-        }
-      for (int d = 0; d < 3; ++d) {
-        const Pack value = load(u + far_block * d + l, lanes) + sum[d];
-        std::memcpy(u + far_block * d + l, &value, sizeof value);
-      }
-    }
+void interpolate(int n, const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u) {
+  n == 3 ? interpolate_components<3>(box, node_u, blocks, target, u) : interpolate_components<6>(box, node_u, blocks, target, u);
 }
 
 }  // namespace tanktread::stokes

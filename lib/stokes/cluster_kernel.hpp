@@ -23,12 +23,12 @@ struct ChebyshevBox {
 /// Places of the nodes.
 void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z);
 
-/// Forces at the nodes that act from afar like those at n points of the box: node_f += sum_k L_abc(x_k) f_k, L_abc the Lagrange polynomials
-/// of the nodes. `scratch`: 3 n_nodes packs.
-void spread(const ChebyshevBox& box, const PointForces& points, Pack* scratch, double* node_fx, double* node_fy, double* node_fz);
+/// Numbers at the nodes that act from afar like those at points of the box: node_q[c] += sum_k L_abc(x_k) q_k, L_abc the Lagrange
+/// polynomials of the nodes, for the first n components. `scratch`: n n_nodes packs.
+void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q);
 
-/// A velocity known at the nodes, in other points of the box: u += sum_abc L_abc(x) u_abc. Both in blocks of far_block, as far_sum() wants
-/// targets and gives velocities: block[3 far_block k + far_block c + l].
-void interpolate(const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u);
+/// n fields known at the nodes, in other points of the box: u += sum_abc L_abc(x) u_abc. All in blocks of far_block, as kernels want targets
+/// and give values: block[n far_block k + far_block c + l].
+void interpolate(int n, const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u);
 
 }  // namespace tanktread::stokes

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "stokes/far_kernel.hpp"
 #include "stokes/kernels.hpp"
 #include "stokes/layer_surface.hpp"
+#include "stokes/tree_sum.hpp"
 
 namespace tanktread::stokes {
 
@@ -33,6 +35,9 @@ class DoubleLayer {
   void assemble(const Net& x, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& x, std::span<const int> targets, Rows<double>& a);
 
+  /// Whether the far sum is taken by clusters, so that applying is faster than assembling for a few products.
+  bool by_clusters() const { return tree_.has_value(); }
+
   /// Kernel evaluations of all calls so far.
   const Evaluations& evaluations() const { return evaluations_; }
 
@@ -41,10 +46,19 @@ class DoubleLayer {
   void place(const Net& x, std::span<const int> targets);
   void take(const Net& v);
   void integrate(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
+  void add_far(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
+  void add_by_tree(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
+  void place_tree(std::span<const int> targets);
+  Stresslets nodes() const;
 
   LayerSurface surface_;
   std::vector<double> bezier_v_, velocity_[3], normal_[3];  // of the far nodes; normals times weights
   std::vector<Vec3> at_;
+  std::optional<TreeSum> tree_;  // where clusters are faster
+  Net x_, tree_x_;               // shape; that of the tree and of stress_
+  std::vector<int> tree_targets_;
+  std::vector<double> stress_;     // 8 pi times the solid angle of the far nodes at tree_targets_, six numbers each
+  std::vector<double> moment_[6];  // of the far nodes: symmetric part of velocity times normal
   Evaluations evaluations_;
 };
 

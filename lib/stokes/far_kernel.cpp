@@ -94,4 +94,48 @@ void node_sum(const Stresslets& nodes, const double* x0, const double* v0, doubl
   u[0] = ux, u[1] = uy, u[2] = uz;
 }
 
+void StokesletKernel::sum(const Charges& p, const double* target, double* value) {
+  far_sum(PointForces{p.n, p.x, p.y, p.z, p.q[0], p.q[1], p.q[2]}, target, value);
+}
+
+void StressletKernel::sum(const Charges& points, const double* target, double* value) {
+  const auto& q = points.q;
+  for (int p = 0; p < packs; ++p) {
+    Pack t[3], u[3] = {};
+    for (int c = 0; c < 3; ++c) t[c] = load(target + far_block * c + lanes * p);
+    for (int k = 0; k < points.n; ++k) {
+      const Pack rx = points.x[k] - t[0], ry = points.y[k] - t[1], rz = points.z[k] - t[2];
+      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), square = inverse * inverse;
+      const Pack form =
+          rx * (q[0][k] * rx) + ry * (q[1][k] * ry) + rz * (q[2][k] * rz) + 2 * (rx * (q[3][k] * ry + q[4][k] * rz) + ry * (q[5][k] * rz));
+      const Pack strength = -6 * form * (square * square * inverse);
+      u[0] += strength * rx;
+      u[1] += strength * ry;
+      u[2] += strength * rz;
+    }
+    for (int c = 0; c < 3; ++c) store(u[c], value + far_block * c + lanes * p);
+  }
+}
+
+void NormalStressKernel::sum(const Charges& points, const double* target, double* value) {
+  const auto& n = points.q;
+  for (int p = 0; p < packs; ++p) {
+    Pack t[3], u[6] = {};
+    for (int c = 0; c < 3; ++c) t[c] = load(target + far_block * c + lanes * p);
+    for (int k = 0; k < points.n; ++k) {
+      const Pack rx = points.x[k] - t[0], ry = points.y[k] - t[1], rz = points.z[k] - t[2];
+      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), square = inverse * inverse;
+      const Pack strength = -6 * (rx * n[0][k] + ry * n[1][k] + rz * n[2][k]) * (square * square * inverse);
+      const Pack sx = strength * rx, sy = strength * ry;
+      u[0] += sx * rx;
+      u[1] += sy * ry;
+      u[2] += strength * rz * rz;
+      u[3] += sx * ry;
+      u[4] += sx * rz;
+      u[5] += sy * rz;
+    }
+    for (int c = 0; c < 6; ++c) store(u[c], value + far_block * c + lanes * p);
+  }
+}
+
 }  // namespace tanktread::stokes

@@ -1,6 +1,8 @@
 #pragma once
 // The bare sums: every target against every node, on plain arrays.
 
+#include <array>
+
 namespace tanktread::stokes {
 
 /// Point forces: positions and strengths (weight times density), n of each.
@@ -35,5 +37,33 @@ void node_sum(const PointForces& forces, const double* x0, double* u);
 /// u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 the place, 3, 4, 5 the velocity v0 there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
+
+/// Points that carry up to six numbers each.
+struct Charges {
+  int n = 0;
+  const double *x = nullptr, *y = nullptr, *z = nullptr;
+  std::array<const double*, 6> q{};
+
+  Charges part(int first, int count) const {
+    Charges c{count, x + first, y + first, z + first, q};
+    for (const double*& component : c.q) component = component ? component + first : nullptr;
+    return c;
+  }
+};
+
+/// Kernels that TreeSum interpolates: numbers a point carries, numbers a target gets, and the sum for far_block targets, which are given as
+/// to far_sum(); value[far_block c + l].
+struct StokesletKernel {  ///< forces -> G f
+  static constexpr int in = 3, out = 3;
+  static void sum(const Charges& points, const double* target, double* value);
+};
+struct StressletKernel {  ///< S_jk + S_kj over 2 in the order 11, 22, 33, 12, 13, 23 -> T_ijk S_jk
+  static constexpr int in = 6, out = 3;
+  static void sum(const Charges& points, const double* target, double* value);
+};
+struct NormalStressKernel {  ///< n_k -> T_ijk n_k, ij in the order 11, 22, 33, 12, 13, 23
+  static constexpr int in = 3, out = 6;
+  static void sum(const Charges& points, const double* target, double* value);
+};
 
 }  // namespace tanktread::stokes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "quadrature/ellipse.hpp"
@@ -71,6 +72,16 @@ void LayerSurface::place(const Net& x) {
 void LayerSurface::collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const {
   at.clear();
   for (const int i : targets) at.push_back(self_field.value(i, panels, bezier));
+}
+
+void LayerSurface::place(TreeSum& tree) const {
+  std::vector<int> everybody(n_points), first_nodes;
+  std::iota(everybody.begin(), everybody.end(), 0);
+  std::vector<Vec3> at;
+  collocation_points(everybody, at);
+  for (int e = 0; e < panels.size(); ++e) first_nodes.push_back(panels[e].first_node);
+  first_nodes.push_back(panels.n_nodes());
+  tree.place(node[0].data(), node[1].data(), node[2].data(), first_nodes, at);
 }
 
 const std::vector<int>& LayerSurface::near(int i, const Vec3& x0) {

@@ -9,6 +9,7 @@
 #include "stokes/near_field.hpp"
 #include "stokes/panels.hpp"
 #include "stokes/self_field.hpp"
+#include "stokes/tree_sum.hpp"
 
 namespace tanktread::stokes {
 
@@ -26,6 +27,9 @@ class LayerSurface {
 
   /// Collocation points of the shape.
   void collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const;
+
+  /// Far nodes, panel by panel, and all collocation points into a tree: clusters must not depend on who asks for which targets.
+  void place(TreeSum& tree) const;
 
   /// The panels that collocation point i lies on and that have a rule of their own for it: all but under the rule `desingularised`.
   std::span<SelfPair> own(int i) { return options.rule == "desingularised" ? std::span<SelfPair>() : self_field[i]; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <numbers>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -45,15 +44,8 @@ PointForces SingleLayer::forces() const {
 }
 
 void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
-  std::vector<int> everybody(surface_.n_points), first_nodes;
-  std::iota(everybody.begin(), everybody.end(), 0);
-  std::vector<Vec3> at;
-  surface_.collocation_points(everybody, at);  // those of others too: clusters must not depend on who asks
-  for (int e = 0; e < surface_.panels.size(); ++e) first_nodes.push_back(surface_.panels[e].first_node);
-  first_nodes.push_back(n_nodes());
-  const auto& node = surface_.node;
-  tree_->place(node[0].data(), node[1].data(), node[2].data(), first_nodes, at);
-  tree_->sum(force_[0].data(), force_[1].data(), force_[2].data(), targets, u);
+  surface_.place(*tree_);
+  tree_->sum<StokesletKernel>({force_[0].data(), force_[1].data(), force_[2].data()}, targets, u.data());
   evaluations_.far += tree_->interactions();
 }
 

@@ -44,48 +44,54 @@ void TreeSum::place(const double* x, const double* y, const double* z, std::span
   for (const Cluster& c : targets_.all())
     fill_blocks(c.n_nodes(), targets_.node(0) + c.first_node, targets_.node(1) + c.first_node, targets_.node(2) + c.first_node,
                 &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
-  int most = 0;
-  for (const Cluster& c : sources_.all()) most = std::max(most, c.n_nodes());
-  scratch_.resize(static_cast<std::size_t>(3) * most);
 }
 
-void TreeSum::sum(const double* fx, const double* fy, const double* fz, std::span<const int> wanted, Net& u) {
+void TreeSum::sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
   interactions_ = 0;
-  collect(fx, fy, fz);
+  collect(carried);
   mark(wanted);
-  target_u_.assign(target_at_.size(), 0);
-  node_u_.assign(node_at_.size(), 0);
+  target_u_.assign(target_at_.size() / 3 * out_, 0);
+  node_u_.assign(node_at_.size() / 3 * out_, 0);
   has_nodes_.assign(targets_.all().size(), 0);
   meet(targets_.all().front(), sources_.all().front());
   hand_down();
-  std::vector<char> row(targets_.order().size(), 0);
-  for (const int i : wanted) row[i] = 1;
   for (std::size_t k = 0; k < targets_.order().size(); ++k)
-    if (const int i = targets_.order()[k]; row[i])
-      for (int c = 0; c < 3; ++c) u(i, c) = target_u_[3 * far_block * (k / far_block) + far_block * c + k % far_block];
+    if (const int i = targets_.order()[k]; row_[i])
+      for (int c = 0; c < out_; ++c)
+        values[static_cast<std::size_t>(out_) * i + c] = target_u_[out_ * far_block * (k / far_block) + far_block * c + k % far_block];
 }
 
-/// Forces in the order of the tree, and at the Chebyshev nodes of all clusters, from the leaves up.
-void TreeSum::collect(const double* fx, const double* fy, const double* fz) {
-  const double* const given[3] = {fx, fy, fz};
-  for (int c = 0; c < 3; ++c) {
-    force_[c].resize(sources_.order().size());
-    for (std::size_t k = 0; k < force_[c].size(); ++k) force_[c][k] = given[c][sources_.order()[k]];
-    node_force_[c].assign(sources_.n_nodes(), 0);
+Charges TreeSum::points() const {
+  return {sources_.all().front().n_points(),
+          sources_.point(0),
+          sources_.point(1),
+          sources_.point(2),
+          {q_[0].data(), q_[1].data(), q_[2].data(), q_[3].data(), q_[4].data(), q_[5].data()}};
+}
+
+Charges TreeSum::nodes() const {
+  return {sources_.n_nodes(),
+          sources_.node(0),
+          sources_.node(1),
+          sources_.node(2),
+          {node_q_[0].data(), node_q_[1].data(), node_q_[2].data(), node_q_[3].data(), node_q_[4].data(), node_q_[5].data()}};
+}
+
+/// What is carried, in the order of the tree, and at the Chebyshev nodes of all clusters, from the leaves up.
+void TreeSum::collect(const std::array<const double*, 6>& carried) {
+  for (int c = 0; c < in_; ++c) {
+    q_[c].resize(sources_.order().size());
+    for (std::size_t k = 0; k < q_[c].size(); ++k) q_[c][k] = carried[c][sources_.order()[k]];
+    node_q_[c].assign(sources_.n_nodes(), 0);
   }
   const std::vector<Cluster>& all = sources_.all();
-  const auto take = [&](const Cluster& c, const PointForces& points) {
-    spread(c, points, scratch_.data(), &node_force_[0][c.first_node], &node_force_[1][c.first_node], &node_force_[2][c.first_node]);
+  const Charges points = this->points(), nodes = this->nodes();
+  const auto take = [&](const Cluster& c, const Charges& from) {
+    std::array<double*, 6> to{};
+    for (int d = 0; d < in_; ++d) to[d] = &node_q_[d][c.first_node];
+    scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(in_) * c.n_nodes()));
+    spread(in_, c, from, scratch_.data(), to);
   };
-  const PointForces points{static_cast<int>(force_[0].size()),
-                           sources_.point(0),
-                           sources_.point(1),
-                           sources_.point(2),
-                           force_[0].data(),
-                           force_[1].data(),
-                           force_[2].data()};
-  const PointForces nodes{sources_.n_nodes(),    sources_.node(0),      sources_.node(1),     sources_.node(2),
-                          node_force_[0].data(), node_force_[1].data(), node_force_[2].data()};
   for (auto c = all.rbegin(); c != all.rend(); ++c) {
     if (c->leaf())
       take(*c, points.part(c->first, c->n_points()));
@@ -96,14 +102,14 @@ void TreeSum::collect(const double* fx, const double* fy, const double* fz) {
 
 /// Which target clusters hold rows that are wanted.
 void TreeSum::mark(std::span<const int> wanted) {
-  std::vector<char> row(targets_.order().size(), 0);
-  for (const int i : wanted) row[i] = 1;
+  row_.assign(targets_.order().size(), 0);
+  for (const int i : wanted) row_[i] = 1;
   const std::vector<Cluster>& all = targets_.all();
   wanted_.assign(all.size(), 0);
   for (std::size_t t = all.size(); t-- > 0;) {
     if (all[t].leaf())
       wanted_[t] =
-          std::any_of(targets_.order().begin() + all[t].first, targets_.order().begin() + all[t].last, [&](int i) { return row[i]; });
+          std::any_of(targets_.order().begin() + all[t].first, targets_.order().begin() + all[t].last, [&](int i) { return row_[i]; });
     else
       wanted_[t] = wanted_[all[t].child[0]] || wanted_[all[t].child[1]];
   }
@@ -125,37 +131,29 @@ void TreeSum::meet(const Cluster& target, const Cluster& source) {
 }
 
 void TreeSum::add(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes) {
-  const std::size_t first = static_cast<std::size_t>(3) * far_block * (target_nodes ? target.first_block : target.first / far_block);
-  const double* at = (target_nodes ? node_at_ : target_at_).data() + first;
-  double* u = (target_nodes ? node_u_ : target_u_).data() + first;
-  const int n = target_nodes ? target.n_nodes() : target.n_points(), k = source_nodes ? source.first_node : source.first;
-  const auto& f = source_nodes ? node_force_ : force_;
-  const Clusters& s = sources_;
-  const PointForces forces{source_nodes ? source.n_nodes() : source.n_points(),
-                           (source_nodes ? s.node(0) : s.point(0)) + k,
-                           (source_nodes ? s.node(1) : s.point(1)) + k,
-                           (source_nodes ? s.node(2) : s.point(2)) + k,
-                           f[0].data() + k,
-                           f[1].data() + k,
-                           f[2].data() + k};
-  double sums[3 * far_block];
-  for (int b = 0; b < blocks_of(n); ++b, at += 3 * far_block, u += 3 * far_block) {
-    far_sum(forces, at, sums);
-    for (int l = 0; l < 3 * far_block; ++l) u[l] += sums[l];
+  const std::size_t block = target_nodes ? target.first_block : target.first / far_block;
+  const double* at = (target_nodes ? node_at_ : target_at_).data() + 3 * far_block * block;
+  double* u = (target_nodes ? node_u_ : target_u_).data() + out_ * far_block * block;
+  const int n = target_nodes ? target.n_nodes() : target.n_points();
+  const Charges from = source_nodes ? nodes().part(source.first_node, source.n_nodes()) : points().part(source.first, source.n_points());
+  double sums[6 * far_block];
+  for (int b = 0; b < blocks_of(n); ++b, at += 3 * far_block, u += out_ * far_block) {
+    kernel_(from, at, sums);
+    for (int l = 0; l < out_ * far_block; ++l) u[l] += sums[l];
   }
   if (target_nodes) has_nodes_[&target - targets_.all().data()] = 1;
-  interactions_ += static_cast<long long>(n) * forces.n;
+  interactions_ += static_cast<long long>(n) * from.n;
 }
 
-/// Velocities at Chebyshev nodes handed to those of the children, and by leaves to their targets.
+/// Values at Chebyshev nodes handed to those of the children, and by leaves to their targets.
 void TreeSum::hand_down() {
   const std::vector<Cluster>& all = targets_.all();
   for (std::size_t t = 0; t < all.size(); ++t) {
     if (!has_nodes_[t]) continue;
-    const double* from = &node_u_[static_cast<std::size_t>(3) * far_block * all[t].first_block];
+    const double* from = &node_u_[static_cast<std::size_t>(out_) * far_block * all[t].first_block];
     const auto give = [&](int n, int block, const std::vector<double>& at, std::vector<double>& u) {
-      const std::size_t first = static_cast<std::size_t>(3) * far_block * block;
-      interpolate(all[t], from, blocks_of(n), &at[first], &u[first]);
+      const std::size_t first = static_cast<std::size_t>(far_block) * block;
+      interpolate(out_, all[t], from, blocks_of(n), &at[3 * first], &u[out_ * first]);
     };
     if (all[t].leaf()) {
       give(all[t].n_points(), all[t].first / far_block, target_at_, target_u_);
@@ -171,7 +169,7 @@ void TreeSum::hand_down() {
 
 std::size_t TreeSum::bytes() const {
   std::size_t doubles = target_at_.capacity() + node_at_.capacity() + target_u_.capacity() + node_u_.capacity();
-  for (int c = 0; c < 3; ++c) doubles += force_[c].capacity() + node_force_[c].capacity();
+  for (int c = 0; c < 6; ++c) doubles += q_[c].capacity() + node_q_[c].capacity();
   return sizeof(double) * doubles + sources_.bytes() + targets_.bytes();
 }
 

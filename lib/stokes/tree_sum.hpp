@@ -1,6 +1,7 @@
 #pragma once
 // The far sum in a time proportional to the number of nodes.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -9,36 +10,45 @@
 
 namespace tanktread::stokes {
 
-/// u_i = sum_k G(x_k, x0_i) f_k (2.1) over clusters of nodes and of targets, by Chebyshev interpolation on whichever side it saves work, and
-/// one by one where clusters are close. Every sum is far_sum() on other places: at nodes or Chebyshev nodes, for targets or Chebyshev nodes.
-/// After Wang, Krasny & Vaughn, *A kernel-independent treecode based on barycentric Lagrange interpolation*, Commun. Comput. Phys. 28, 2020,
-/// in its form with cluster-cluster interactions; boxes that turn with the surface are ours.
+/// sum_k K(x_k, x0_i) q_k for a kernel K over clusters of nodes and of targets, by Chebyshev interpolation on whichever side it saves work,
+/// and one by one where clusters are close. Every sum is the kernel's own on other places: at nodes or Chebyshev nodes, for targets or
+/// Chebyshev nodes. After Wang, Krasny & Vaughn, *A kernel-independent treecode based on barycentric Lagrange interpolation*, Commun. Comput.
+/// Phys. 28, 2020, in its form with cluster-cluster interactions; boxes that turn with the surface are ours.
 class TreeSum {
  public:
-  /// `tolerance`: of the sum, relative to sum_k |f_k| / |x_k - x0_i|.
+  /// `tolerance`: of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance);
 
   /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all targets.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets);
 
-  /// Rows `wanted` of u for forces at the nodes. A row does not depend on which others are wanted.
-  void sum(const double* fx, const double* fy, const double* fz, std::span<const int> wanted, Net& u);
+  /// Rows `wanted` of the sum for what the nodes carry; values[Kernel::out i + c]. A row does not depend on which others are wanted.
+  template <class Kernel>
+  void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
+    in_ = Kernel::in, out_ = Kernel::out, kernel_ = Kernel::sum;
+    sum(carried, wanted, values);
+  }
 
   long long interactions() const { return interactions_; }  ///< of the last sum
   std::size_t bytes() const;
 
  private:
-  void collect(const double* fx, const double* fy, const double* fz);
+  void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values);
+  void collect(const std::array<const double*, 6>& carried);
   void mark(std::span<const int> wanted);
   void meet(const Cluster& target, const Cluster& source);
   void add(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes);
   void hand_down();
+  Charges points() const;
+  Charges nodes() const;
 
+  int in_ = 3, out_ = 3;  // of the kernel
+  void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, targets_;
-  std::vector<double> force_[3], node_force_[3];  // of the sources and of their Chebyshev nodes
-  std::vector<double> target_at_, node_at_;       // targets and their Chebyshev nodes, in blocks
-  std::vector<double> target_u_, node_u_;         // velocities there
-  std::vector<char> wanted_, has_nodes_;          // of target clusters: any row wanted; velocity at Chebyshev nodes
+  std::vector<double> q_[6], node_q_[6];        // what the sources and their Chebyshev nodes carry
+  std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
+  std::vector<double> target_u_, node_u_;       // values there
+  std::vector<char> row_, wanted_, has_nodes_;  // targets wanted; of target clusters: any of them wanted; values at Chebyshev nodes
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };
