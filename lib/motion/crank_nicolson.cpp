@@ -10,7 +10,7 @@ namespace tanktread::motion {
 namespace {
 constexpr double shrink = 0.75, grow = 1.33;
 constexpr int most = 8, few = 4;      // sub-iterations
-constexpr int most_accelerated = 40;  // time.md: a step that needs more is better halved
+constexpr int most_accelerated = 40;  // a step that needs more is better halved
 }  // namespace
 
 CrankNicolson::CrankNicolson(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox)
