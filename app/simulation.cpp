@@ -82,7 +82,8 @@ class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->columns(), ranks_), scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
+        results_(scene, request, particle_->body(), particle_->columns(), ranks_),
+        scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
 
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(scene_, ranks_.size()).c_str(), stdout);
