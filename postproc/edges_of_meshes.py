@@ -75,36 +75,36 @@ def gap(study):
 def gap_tube(study):
     """Gaps towards zero: a sphere that fills its tube
 
-    Free rigid sphere on the axis of a circular tube, 218 control points. Between sphere and wall fluid is lost or made where the gap is thinner than the elements on
-    either side: the net flux of the disturbance through the inlet, which should vanish, over the flow rate (left). Right: the sphere's velocity against the exact one,
-    where it is known.
+    Free rigid sphere on the axis of a circular tube: its velocity against the exact one where that is known (gaps of 0.8, 0.5, 0.2), elsewhere against finer
+    elements on both sides (n = 9). Left of where a rule's points, or elements, lie further apart than sphere and wall, the answer is lost.
 
-    Survives: rules by tolerance down to gaps of a tenth of an element; beyond, finer elements on both sides of the gap."""
+    Survives: rules by tolerance, forty times as accurate as 8 × 8 Gauss points on the same mesh at a gap of 0.2; for narrower ones finer elements."""
     deck = "inputs/sphere_in_tube.yaml"
     if not study.knows("Tube/section"):
         return None
     exact = {0.2: 1.94677814, 0.5: 1.67984674, 0.8: 1.27548564}  # by multipoles
-    radii = [0.2, 0.5, 0.7, 0.8, 0.9, 0.95, 0.97]
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
+    radii = [0.2, 0.5, 0.7, 0.8, 0.9, 0.95]
+    short = {"Time/final time": 0.01, "Output/interval": 0.01, "Time/fixed step": 0.01}
+    finer = {"Surface/elements per side": 9, "Tube/azimuthal elements": 32, "Tube/axial elements": 33}
+
+    def velocity(settings, a):
+        outcome = study.run(deck, settings | short | {"Particle/radius": a})
+        return outcome.final["velocity_x1"] if outcome.done else float("nan")
+
+    true = {a: exact[a] if a in exact else velocity(finer, a) for a in radii}
+    figure, axis = plt.subplots(figsize=(7.2, 4.6))
     rows = []
     for name, settings, color, mark in (("n = 6, by tolerance", {}, style.RUNS[0], "o"), ("n = 6, 8 × 8 Gauss", {"Quadrature/rule": "fixed"}, style.RUNS[1], "s"),
                                         ("n = 4, by tolerance", {"Surface/elements per side": 4}, style.RUNS[2], "^")):
-        found = []
-        for a in radii:
-            outcome = study.run(deck, settings | {"Particle/radius": a, "Time/final time": 0.01, "Output/interval": 0.01, "Time/fixed step": 0.01})
-            if outcome.done:
-                error = abs(outcome.final["velocity_x1"] / exact[a] - 1) if a in exact else float("nan")
-                found.append((1 - a, abs(outcome.final.get("disturbance_flux", float("nan"))), error))
-            rows.append((name, a, *(found[-1][1:] if outcome.done else ("", "")), outcome.message[:100]))
-        left.loglog([one[0] for one in found], [one[1] for one in found], color=color, marker=mark, ms=5, label=name)
-        known = [one for one in found if one[2] == one[2]]
-        right.loglog([one[0] for one in known], [one[2] for one in known], color=color, marker=mark, ms=5)
-    for axis in left, right:
-        axis.set_xlabel("gap over the radius of the tube")
-    left.set_ylabel("flux lost, over the flow rate")
-    right.set_ylabel("relative error of the velocity")
-    left.legend(loc="best")
-    return figure, ["case", "radius", "flux_lost", "velocity_error", "message"], rows
+        errors = [abs(velocity(settings, a) / true[a] - 1) for a in radii]
+        rows += [(name, a, true[a], error) for a, error in zip(radii, errors)]
+        axis.loglog([1 - a for a in radii], errors, color=color, marker=mark, ms=5, label=name)
+    axis.set_xticks([1 - a for a in radii], [f"{1 - a:g}" for a in radii])
+    axis.xaxis.set_minor_locator(plt.NullLocator())
+    axis.set_xlabel("gap over the radius of the tube")
+    axis.set_ylabel("relative error of the velocity")
+    axis.legend(loc="best")
+    return figure, ["case", "radius", "reference", "error"], rows
 
 
 def hyperbolic(study):
@@ -169,7 +169,7 @@ def drop_mesh(study):
     left.set_xlabel("time reached")
     right.set_xlabel("largest over smallest element, by area")
     right.set_xscale("log")
-    left.legend(loc="lower left", frameon=True, framealpha=0.9)
+    figure.legend(*left.get_legend_handles_labels(), loc="upper right", ncols=3)
     return figure, ["capillary_number", "motion", "time_reached", "area_ratio", "taylor_surface", "message"], rows
 
 
