@@ -65,9 +65,11 @@ def main():
             waved = spectrum.short > QUIET
             if waved:
                 lengths.append((size, spectrum.wavelength(wave)))
-            rows.append((modulus, n, size, wave if waved else "", spectrum.wavelength(wave) if waved else "", spectrum.mean_degree, spectrum.short, mean, numpy.ptp(d[late]), one.seconds))
-            words = f"wave of degree {wave}, {spectrum.wavelength(wave):.3f} R = {spectrum.wavelength(wave) / size:.2f} elements" if waved else "no waves"
-            print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; D = {mean:.5f}, range {numpy.ptp(d[late]):.1e}; {one.seconds:.0f} s", flush=True)
+            length = spectrum.wavelength(wave)
+            rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.mean_degree, spectrum.short, mean, numpy.ptp(d[late]), one.seconds))
+            words = f"wave of degree {wave}, {length:.3f} R = {length / size:.2f} elements" if waved else "no waves"
+            print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; "
+                  f"D = {mean:.5f}, range {numpy.ptp(d[late]):.1e}; {one.seconds:.0f} s", flush=True)
             odd = spectrum.degrees % 2 == 1
             left.semilogy(spectrum.degrees[odd], spectrum.power[odd], "-", color=color, label=f"n = {n}")
             if waved:
