@@ -139,6 +139,17 @@ class Run {
     if (!scene_.tube.present) return;
     const std::string reason = contact(scene_, entry("gap"));
     if (!reason.empty()) fail(reason);
+    warn_of_coarse_wall(entry("gap"));
+  }
+
+  /// Across a gap that is narrower than 0.6 of the wall's elements its traction is off by more than 1e-4.
+  void warn_of_coarse_wall(double gap) {
+    const double widest = particle_->body().wall->widest;
+    if (warned_ || gap > 0.6 * widest) return;
+    warned_ = true;
+    if (ranks_.rank() == 0)
+      std::fprintf(stderr, "tanktread: at time %.6g the gap of %.4g is narrower than 0.6 of the wall's elements, %.4g: smaller ones resolve it\n",
+                   state_.time, gap, widest);
   }
 
   [[noreturn]] void fail(const std::string& reason) {
@@ -236,6 +247,7 @@ class Run {
   motion::StepReport report_;
   Standing standing_;
   std::vector<double> row_;
+  bool warned_ = false;
   bool snapshot_due_ = false;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
   Soundness soundness_;
