@@ -10,6 +10,7 @@
 #include <NOX_Solver_Factory.H>
 #include <NOX_StatusTest_Generic.H>
 #include <Teuchos_ParameterList.hpp>
+#include <Teuchos_oblackholestream.hpp>
 
 #include "base/errors.hpp"
 #include "coupling/krylov.hpp"
@@ -124,7 +125,8 @@ class Test : public NOX::StatusTest::Generic {
 
 Teuchos::ParameterList defaults(const std::string& method) {
   Teuchos::ParameterList list("NOX");
-  list.sublist("Printing").set("Output Information", 0);
+  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // a step that fails is tried again, shorter
+  list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
   if (method == "anderson") {
     list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");
     list.sublist("Anderson Parameters").set("Storage Depth", 4);
