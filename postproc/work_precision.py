@@ -82,6 +82,12 @@ class Point:
         self.label = ", ".join(option for choice, option in picked.items() if option != default[choice]) or "default"
 
 
+def kind(option):
+    """An option without its number: `tr-bdf2 1e-4` is a `tr-bdf2`."""
+    name, _, number = option.rpartition(" ")
+    return name if name and number[0].isdigit() else option
+
+
 def front(points, cost):
     """Those that no other beats in both, by rising cost."""
     best, kept = math.inf, []
@@ -96,7 +102,7 @@ def draw(axis, points, cost, label, colors, shape):
     kept = front(points, cost)
     axis.loglog([getattr(one, cost) for one in kept], [one.error for one in kept], color=style.FAINT, linewidth=1.2, zorder=1)
     for point in points:
-        color = colors[point.picked[shape]]
+        color = colors[kind(point.picked[shape])]
         axis.plot(getattr(point, cost), point.error, "o", color=color, ms=5 if point in kept else 3.5, mfc=color if point in kept else "none", mew=0.9)
     label_points(axis, points, cost, kept)
     axis.plot(getattr(points[0], cost), points[0].error, "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
@@ -175,15 +181,15 @@ def main():
         print(f"{name:44} error {point.error:.2e}  {point.seconds:7.2f} s  {point.kernels:.3g} kernel, {point.evaluations} velocity evaluations", flush=True)
 
     shape = max(scene.choices, key=lambda choice: len(scene.choices[choice]) if choice == "time" else 0.5 * len(scene.choices[choice]))
-    shades = plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(scene.choices[shape])))
-    colors = dict(zip(scene.choices[shape], shades))
+    kinds = list(dict.fromkeys(kind(option) for option in scene.choices[shape]))
+    colors = dict(zip(kinds, plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(kinds)))))
     figure, axes = plt.subplots(1, 2, figsize=(13.5, 6.5), sharey=True)
     draw(axes[0], points, "seconds", "processor seconds", colors, shape)
     draw(axes[1], points, "kernels", "kernel evaluations", colors, shape)
-    for option, color in colors.items():
-        if any(point.picked[shape] == option for point in points):
-            axes[1].plot([], [], "o", color=color, label=option)
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=7, fontsize=7.5)
+    for name, color in colors.items():
+        if any(kind(point.picked[shape]) == name for point in points):
+            axes[1].plot([], [], "o", color=color, label=name)
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=12, fontsize=7.5)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
     words = [parsed.study] + (["--differences", str(parsed.differences)] if parsed.differences != 2 else []) + (["--only", *parsed.only] if parsed.only else [])
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words) + f"\nerror: {scene.error.get('text', '')}", x=0.01, ha="left", fontsize=7.5)
