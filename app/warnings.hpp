@@ -37,7 +37,7 @@ class Warnings {
 
  private:
   std::string choice() const;
-  std::string compression(const Signs& signs) const;
+  std::string compression(const Signs& signs);
   std::string stiffness(const Signs& signs);
   std::string fold(const Signs& signs) const;
   std::string stretch(const Signs& signs) const;
@@ -45,7 +45,8 @@ class Warnings {
   std::string volume(const Signs& signs) const;
 
   const Scene& scene_;
-  int limited_ = 0;  // of the latest steps, how many were as long as stability allows
+  double waves_ = 0;  // e-folds by which the shortest waves can have grown
+  int limited_ = 0;   // of the latest steps, how many were as long as stability allows
   std::set<std::string> kinds_;
   std::vector<std::string> said_;
 };

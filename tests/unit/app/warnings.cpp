@@ -36,23 +36,28 @@ Signs at(double step, double tension, double element = 0.13) {
 
 TEST(Warnings, AreSilentAboutAHealthyRun) {
   Told run({"Membrane/capillary number=0.3"});
-  EXPECT_EQ(run.first(at(0.2, -0.05)), "");  // as slow as the flow: seen in runs that agree with other methods to five digits
-  EXPECT_EQ(run.first(at(0.2, 0.1)), "");
+  for (int k = 0; k < 100; ++k)
+    EXPECT_EQ(run.first(at(0.1, k < 10 ? -0.19 : -0.05)), "");  // the start and the steady state of a run that
+                                                                // agrees with other methods to five digits
 }
 
 TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
-  const std::string sentence = run.first(at(0.1, -0.13));
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // they take their time
+  for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
+  ASSERT_EQ(run.warnings.said().size(), 1u);
+  const std::string sentence = run.warnings.said().front();
   EXPECT_TRUE(names(sentence, "Membrane/bending modulus") && names(sentence, "at time 1 ")) << sentence;
-  EXPECT_EQ(run.first(at(0.1, -0.14)), "");
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(run.first(at(0.1, -0.14)), "");
   EXPECT_EQ(run.warnings.said().size(), 1u);
 }
 
 TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
   Told stiff({"Membrane/capillary number=0.1", "Membrane/bending modulus=0.02"});
-  EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // k = 4.7, of 24 on the mesh
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // k = 4.7, of 24 on the mesh
   Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
-  EXPECT_TRUE(names(soft.first(at(0.1, -0.13)), "too little resistance"));
+  for (int k = 0; k < 50; ++k) soft.first(at(0.1, -0.13));
+  EXPECT_TRUE(names(soft.warnings.said().at(0), "too little resistance"));
 }
 
 TEST(Warnings, TellOfAFixedStepBeyondTheLimit) {
