@@ -69,7 +69,9 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation):
     """Facets that face the eye, the farthest first, lit from the upper left; element edges on top."""
     view = view_axes(azimuth, elevation)
     grid = shot.sampled(shot.points, CELL_GRID) @ view.T
-    values = magnitude(shot.sampled(shot.fields[field], CELL_GRID))
+    values = shot.sampled(shot.fields[field], CELL_GRID)
+    if numpy.ndim(shot.fields[field]) > 1:
+        values = magnitude(values)
     corners = numpy.stack([grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]], axis=3).reshape(-1, 4, 3)
     colour_of = (values[:, :-1, :-1] + values[:, :-1, 1:] + values[:, 1:, 1:] + values[:, 1:, :-1]).ravel() / 4
     normal = numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])

@@ -34,7 +34,7 @@ struct AdaptationOptions {
   int largest_number_of_points = 4000;                     ///< refinement ends here, with a warning
   bool coarsen = false;
   double coarsening_margin = 0.7;                          ///< a doubled element must stay below this part of every limit
-  double coarsening_tolerance = 1e-5;                      ///< largest change of either surface by one coarsening, length
+  double coarsening_tolerance = 1e-4;                      ///< largest change of either surface by one coarsening, length
 
   void declare(deck::Section& section);
 
