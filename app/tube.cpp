@@ -92,7 +92,8 @@ const std::vector<Column>& tube_columns() {
       {"velocity_x3", "length/time", "of the centroid, component 3"},
       {"migration_velocity", "length/time", "speed of the centroid in the x2 x3 plane, positive towards the axis"},
       {"tank_treading_velocity", "length/time",
-       "mean tangential velocity relative to the centroid on the curve that the plane x2 = centroid cuts out; positive where the side of larger x3 moves on"},
+       "mean tangential velocity relative to the centroid on the curve that the plane x2 = centroid cuts out (6.5); positive where the side of "
+       "larger x3 moves on"},
       {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
       {"gap", "length", "smallest distance between particle and wall"},
       {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish"},
@@ -133,16 +134,17 @@ std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const
 output::Entries<std::string> tube_plan(const Scene& scene, const Body& body) {
   const surface::TubeWall& wall = *body.wall;
   const double unknowns = 3.0 * wall.space.n_points;
-  const std::string own_flow = scene.flow.type == "quiescent" ? std::string("quiescent fluid")
-                                                              : text("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(),
-                                                                     -body.duct->pressure_gradient());
+  std::string own_flow = "quiescent fluid";
+  if (scene.flow.type == "duct")
+    own_flow = text("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   const bool system = scene.particle.viscosity_ratio != 1 || scene.solvers.tube != "schur";
   const std::string solved = scene.particle.rigid()            ? std::string("eliminated from the system of the traction")
                              : scene.solvers.tube != "schur"   ? "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube
                              : system                          ? std::string("eliminated from the system of the velocity")
                                                                : std::string("solved for directly");
   return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : text(" by %d boundary elements", scene.tube.flow_elements))},
-          {"tube", text("%s of R_T = %.6g, length %.6g, %s", scene.tube.section.c_str(), wall.radius(), wall.length(), wall.space.description.c_str())},
+          {"tube", text("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
+                        wall.space.description.c_str())},
           {"wall", text("%.0f unknowns of the traction and the pressure drop, %s; factored once, %.1f MB", unknowns, solved.c_str(),
                         8e-6 * unknowns * unknowns)}};
 }

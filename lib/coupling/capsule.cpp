@@ -161,7 +161,7 @@ bool Capsule::enter_tube(const Net& x) {
   return !ranks_.any(outside);
 }
 
-/// What the mesh of an interface is carried by in a tube, while its points slide along the interface: int x v.n dG / V, nearly the centroid's velocity,
+/// What the mesh of an interface is carried by in a tube, while its points slide along it: int x v.n dG / V, nearly the centroid's velocity,
 /// with b = dV/dx.
 Eigen::RowVector3d Capsule::drift(const Net& x, const Net& b, const Net& v) const {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();

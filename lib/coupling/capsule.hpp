@@ -69,8 +69,8 @@ struct CapsuleParameters {
 ///
 /// Of a symmetric scene only the rows of fundamental control points are evaluated; the others are their images.
 ///
-/// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the right-hand side and B,
-/// here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
+/// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the
+/// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
 class Capsule : public Dynamics {
  public:
   /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`; the volume of `initial` is the one to be kept.

@@ -41,7 +41,8 @@ struct Capsule {
     parameters.radius = 0.6;
   }
 
-  double seconds(const stokes::AmbientFlow& flow, coupling::Ranks& ranks, Phases& phases, std::unique_ptr<coupling::Tube> tube, long& iterations) const {
+  double seconds(const stokes::AmbientFlow& flow, coupling::Ranks& ranks, Phases& phases, std::unique_ptr<coupling::Tube> tube,
+                 long& iterations) const {
     coupling::Capsule capsule(space, unstressed, x, flow, parameters, ranks, phases, std::move(tube));
     double best = 1e9;
     for (int k = 0; k < 12; ++k) {
