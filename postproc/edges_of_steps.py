@@ -65,10 +65,12 @@ def draw_steps(study, variable, label, values, of):
 def fixed_step(study):
     """Largest fixed step against the capillary number
 
-    Neo-Hookean capsule in shear, 98 control points. A softer membrane answers faster than the flow: an explicit scheme must follow the fastest mode of
-    the mesh, whose rate is ρ ~ 1/Ca, so Δt ρ ≤ 2.51; the sub-iteration of Crank–Nicolson contracts only for Δt ρ < 2, implicit or not.
+    Neo-Hookean capsule in shear, 98 control points. The stiffer the membrane (small Ca) the faster it answers: an explicit scheme must follow the
+    fastest mode of the mesh, whose rate is ρ ~ 1/Ca, so Δt ρ ≤ 2.51; the sub-iteration of Crank–Nicolson contracts only for Δt ρ < 2, and eight of
+    them have to do, implicit or not.
 
-    Survives: an iteration that knows the stiff part (TR-BDF2 or BDF3 with the frozen Jacobian), whose step is bound by accuracy; arrows: no edge found."""
+    Survives: an iteration that knows the stiff part (TR-BDF2 or BDF3 with the frozen Jacobian), whose step is bound by accuracy; as many stages as the
+    step needs (RKC2). Arrows: no edge found."""
     return draw_steps(study, "capillary_number", "Ca", [0.02, 0.05, 0.1, 0.2, 0.3, 0.6],
                       lambda ca: ({"Surface/elements per side": 4, "Membrane/capillary number": ca}, stiffness(ca, 4)))
 
