@@ -28,8 +28,8 @@ class Outcome:
         self.code, self.command = note["code"], note["command"]
         self._run = None
 
-    done = property(lambda self: self.code in (0, 1))
-    failed = property(lambda self: self.code not in (0, 1, 2, None))
+    done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
+    failed = property(lambda self: not (self.done or self.refused or self.slow))
     refused = property(lambda self: self.code == 2)
     slow = property(lambda self: self.code is None)
 
@@ -80,7 +80,8 @@ class Study:
         note = where / "outcome.json"
         if note.exists() and (not self.fresh or where in self._made):
             outcome = Outcome(where, json.loads(note.read_text()))
-            if where in self._made or not outcome.refused:  # another program may know more keys
+            never_began = outcome.refused or not (where / "run.h5").exists()  # another program may know more keys
+            if where in self._made or not never_began:
                 return outcome
         self._made.add(where)
         where.mkdir(parents=True, exist_ok=True)
