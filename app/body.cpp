@@ -111,8 +111,10 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
       {"far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
       {"time", scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
-                   (implicit ? text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : "")
-                             : std::string(", explicit in the fluid: nothing is assembled"))},
+                   (!implicit                                     ? std::string(", explicit in the fluid: nothing is assembled")
+                    : scene.solvers.frozen_operator == "nodal" ? std::string(", frozen single layer by one node a control point, not assembled")
+                                                               : text(", frozen single layer of %.1f MB on %d rank%s",
+                                                                      12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : ""))},
       {"mesh", !scene.adaptation.enabled                ? "fixed"
                : scene.adaptation.indicator == "error" ? "refined as the particle deforms, by estimated errors (1.5)"
                                                         : "refined as the particle deforms (P-37)"},

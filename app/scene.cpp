@@ -57,6 +57,7 @@ void check_size(const Scene& scene) {
   constexpr double limit = 64e9;
   const auto& imported = scene.particle.shape.imported;
   const double n_points = imported ? imported->space.n_points : scene.surface.n_points(), most = std::sqrt(limit / assembled_bytes(1));
+  if (scene.solvers.frozen_operator == "nodal" && scene.particle.viscosity_ratio == 1) return;
   if ((!scene.time.assembles() && scene.time.scheme != "auto") || n_points <= most) return;  // auto measures stiffness with it
   const auto number = [](double x) { return std::to_string(std::lround(x)); };
   const std::string size =

@@ -20,6 +20,7 @@ double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
     : space_(space),
+      unstressed_(unstressed),
       flow_(flow),
       parameters_(parameters),
       ranks_(ranks),
@@ -233,9 +234,16 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const
 void Capsule::freeze(const Net& x) {
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
-  frozen_.assemble(own_points_, space_.n_points, [&](std::span<const int> targets, stokes::Rows<float>& rows) {
+  const auto assemble = [&](std::span<const int> targets, stokes::Rows<float>& rows) {
     layer_.assemble(x, stokes::Measure::reference, targets, rows);
-  });
+  };
+  if (parameters_.solvers.frozen_operator == "nodal") {
+    const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
+    const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
+    nodal_.assemble(own_points_, {sites * x, sites, row_sums(unstressed_), row_sums(x)}, 3, assemble);
+  } else {
+    frozen_.assemble(own_points_, space_.n_points, assemble);
+  }
   if (tube_) {
     tube_->place(x);
     tube_->freeze();
@@ -264,7 +272,10 @@ Net Capsule::energy_part(const Net& delta) {
   tangent_.apply(delta, h);
   ranks_.replicate(h);
   const Net f = mass_.solve(h);
-  frozen_.apply(f, u);
+  if (nodal_.empty())
+    frozen_.apply(f, u);
+  else
+    nodal_.apply(f, u);
   ranks_.replicate(u);
   if (tube_) {
     u = tube_->frozen_response(f) - u / parameters_.viscosity;
@@ -318,7 +329,7 @@ Net Capsule::solve(double shift, const Net& r, double tolerance) {
 }
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
-  if (frozen_.empty()) return difference(x, v, delta);
+  if (frozen_.empty() && nodal_.empty()) return difference(x, v, delta);
   const auto clock = phases_.time("stiffness");
   linearise(x);
   const Net dv = fluid_velocity_change(delta);

@@ -13,6 +13,7 @@
 #include "coupling/frozen_operator.hpp"
 #include "coupling/interface_motion.hpp"
 #include "coupling/krylov.hpp"
+#include "coupling/nodal_operator.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
 #include "coupling/tube.hpp"
@@ -123,6 +124,7 @@ class Capsule : public Dynamics {
   Net interface_change(const Net& dv, const Net& delta);
 
   const spline::Space& space_;
+  Net unstressed_;
   stokes::AmbientFlow flow_;
   CapsuleParameters parameters_;
   Ranks& ranks_;
@@ -137,6 +139,7 @@ class Capsule : public Dynamics {
   membrane::DirectSolver collocation_;
   membrane::MassSolver mass_;
   Krylov krylov_, inner_krylov_;
+  NodalOperator nodal_;                     // or frozen_, as the options say
   FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_;

@@ -10,7 +10,7 @@
 namespace tanktread::surface {
 namespace {
 
-constexpr double exact = 1e-12, close = 1e-9;
+constexpr double exact = 1e-10, close = 1e-9;
 
 /// Places in space, to be found again.
 class Places {

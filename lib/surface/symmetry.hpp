@@ -19,8 +19,8 @@ struct Image {
   std::vector<int> point;
 };
 
-/// The image of the space and of all these nets on it, if it is the same space and nets: places within 1e-12 of the first net's size, bases within
-/// 1e-12, sites within 1e-9. Elements may turn and change places.
+/// The image of the space and of all these nets on it, if it is the same space and nets: places within 1e-10 of the first net's size (what
+/// refinement may add to a fit), bases within 1e-10, sites within 1e-9. Elements may turn and change places.
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs);
 
 /// A group of such images. Its fundamental control points are one of each set of points that are images of each other, all in one connected part

@@ -97,8 +97,11 @@ TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
 }
 
 // On the unstressed surface the load vanishes, so the part of the Jacobian that is left out, (dA/dx) f, vanishes too, and what is kept is exact.
-TEST(Capsule, JacobianIsTheDerivativeOfTheVelocityAtRest) {
+class JacobianOf : public testing::TestWithParam<std::pair<const char*, double>> {};
+
+TEST_P(JacobianOf, CapsuleIsTheDerivativeOfTheVelocityAtRest) {
   Fixture f;
+  f.parameters.solvers.frozen_operator = GetParam().first;
   f.parameters.volume.constraint = "flux";  // its derivative is left out of the Jacobian: directions without flux only
   Capsule capsule = f.capsule();
   Net delta(f.sphere.rows(), 3);
@@ -115,8 +118,11 @@ TEST(Capsule, JacobianIsTheDerivativeOfTheVelocityAtRest) {
   Capsule free = f.capsule();
   const Net jd = (free.velocity(f.sphere + h * delta) - free.velocity(f.sphere - h * delta)) / (2 * h);
   const Net solved = capsule.solve(shift, delta - shift * jd, 1e-7);
-  EXPECT_LT((solved - delta).norm(), 4e-3 * delta.norm());  // entries of the frozen operator are rounded to 2^-9
+  EXPECT_LT((solved - delta).norm(), GetParam().second * delta.norm());
 }
+
+// Entries of the assembled operator are rounded to 2^-9; one node a control point leaves some per cent out on 56 of them.
+INSTANTIATE_TEST_SUITE_P(FrozenOperators, JacobianOf, testing::Values(std::pair("assembled", 4e-3), std::pair("nodal", 4e-2)));
 
 TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays) {
   Fixture f;

@@ -45,6 +45,7 @@ struct Confined {
     flow.viscosity = 1.3;
     flow.mean_velocity = 1;
     CapsuleParameters parameters;
+    parameters.solvers.frozen_operator = "assembled";  // the sum over nodes is good to 3 per cent on so few
     parameters.viscosity = 1.3;
     parameters.viscosity_ratio = viscosity_ratio;
     parameters.radius = 0.6;

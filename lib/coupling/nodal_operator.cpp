@@ -1,0 +1,82 @@
+#include "coupling/nodal_operator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tanktread::coupling {
+
+namespace {
+
+constexpr double factor = 1 / (8 * std::numbers::pi);
+constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+
+Mat3 stokeslet(const Vec3& r) {
+  const double square = r.squaredNorm(), inverse = square > 0 ? 1 / std::sqrt(square) : 0;
+  return inverse * Mat3::Identity() + inverse * inverse * inverse * r * r.transpose();
+}
+
+}  // namespace
+
+void NodalOperator::assemble(const std::vector<int>& targets, const Surface& surface, double reach, const FrozenOperator::Assemble& assemble) {
+  constexpr std::size_t at_a_time = 64;
+  targets_ = targets;
+  values_ = surface.values;
+  weights_ = factor * surface.weights;
+  const Eigen::Index n = surface.sites.rows(), padded = (n + nodal_tile - 1) / nodal_tile * nodal_tile;
+  for (int c = 0; c < 3; ++c) {
+    node_[c].assign(static_cast<std::size_t>(padded), 0);
+    force_[c].assign(static_cast<std::size_t>(padded), 0);
+    for (Eigen::Index b = 0; b < n; ++b) node_[c][static_cast<std::size_t>(b)] = static_cast<float>(surface.sites(b, c));
+  }
+  blocks_.clear();
+  first_block_.assign(1, 0);
+  stokes::Rows<float> rows;
+  for (std::size_t first = 0; first < targets.size(); first += at_a_time) {
+    const std::span<const int> some(targets.data() + first, std::min(at_a_time, targets.size() - first));
+    assemble(some, rows);
+    for (std::size_t k = 0; k < some.size(); ++k) correct(some[k], surface, reach, rows, 3 * static_cast<Eigen::Index>(k));
+  }
+}
+
+/// K_iC of one target.
+void NodalOperator::correct(int target, const Surface& surface, double reach, const stokes::Rows<float>& rows, Eigen::Index row) {
+  const Vec3 x0 = surface.sites.row(target).transpose();
+  for (int point = 0; point < surface.sites.rows(); ++point) {
+    if ((surface.sites.row(point).transpose() - x0).squaredNorm() > reach * reach * surface.areas[point]) continue;
+    Mat3 rule = Mat3::Zero();
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(surface.values, point); entry; ++entry)
+      rule += weights_[entry.row()] * entry.value() * stokeslet(surface.sites.row(entry.row()).transpose() - x0);
+    Block block{point, {}};
+    for (int c = 0; c < 6; ++c)
+      block.a[c] = static_cast<float>(rows(row + upper[c][0], 3 * point + upper[c][1]) - rule(upper[c][0], upper[c][1]));
+    blocks_.push_back(block);
+  }
+  first_block_.push_back(blocks_.size());
+}
+
+void NodalOperator::apply(const Net& f, Net& u) const {
+  const Net at_nodes = weights_.asDiagonal() * (values_ * f);
+  for (Eigen::Index b = 0; b < f.rows(); ++b)
+    for (int c = 0; c < 3; ++c) force_[c][static_cast<std::size_t>(b)] = static_cast<float>(at_nodes(b, c));
+  const float* const node[3] = {node_[0].data(), node_[1].data(), node_[2].data()};
+  const float* const force[3] = {force_[0].data(), force_[1].data(), force_[2].data()};
+  float x0[3 * nodal_block], sums[3 * nodal_block];
+  for (std::size_t first = 0; first < targets_.size(); first += nodal_block) {
+    const std::size_t used = std::min<std::size_t>(nodal_block, targets_.size() - first);
+    for (std::size_t l = 0; l < nodal_block; ++l)  // idle lanes repeat the last target
+      for (int c = 0; c < 3; ++c) x0[3 * l + c] = node_[c][static_cast<std::size_t>(targets_[first + std::min(l, used - 1)])];
+    nodal_sum(static_cast<int>(node_[0].size()), node, force, x0, sums);
+    for (std::size_t l = 0; l < used; ++l) {
+      Vec3 sum(sums[3 * l], sums[3 * l + 1], sums[3 * l + 2]);
+      for (std::size_t k = first_block_[first + l]; k < first_block_[first + l + 1]; ++k) {
+        const Block& b = blocks_[k];
+        const double f1 = f(b.point, 0), f2 = f(b.point, 1), f3 = f(b.point, 2);
+        sum += Vec3(b.a[0] * f1 + b.a[1] * f2 + b.a[2] * f3, b.a[1] * f1 + b.a[3] * f2 + b.a[4] * f3, b.a[2] * f1 + b.a[4] * f2 + b.a[5] * f3);
+      }
+      u.row(targets_[first + l]) = sum.transpose();
+    }
+  }
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,62 @@
+#pragma once
+// The single layer that the Jacobian keeps frozen, by one node a control point and corrections for near ones.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "coupling/frozen_operator.hpp"
+
+namespace tanktread::coupling {
+
+/// A of (4.2) as the trapezoidal rule at the collocation sites x_B, corrected where control points are near the target:
+///
+///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dG0                         (4.11)
+///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
+///
+/// A node at the target counts as nothing. The sum is taken on the fly in single precision: it needs no memory, and what it leaves out of A is
+/// the rule's error at a distance of a few elements, which costs a quasi-Newton iteration some contraction and no accuracy.
+class NodalOperator {
+ public:
+  struct Surface {
+    Net sites;                          ///< x_B
+    Eigen::SparseMatrix<double> values;  ///< R, shape (N, N)
+    Eigen::VectorXd weights;             ///< w_B
+    Eigen::VectorXd areas;               ///< present ones: a control point C is near where |x_C - x_i| < reach sqrt(area_C)
+  };
+
+  /// `assemble(targets, rows)` fills three rows of the exact A a target, for a few targets at a time.
+  void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const FrozenOperator::Assemble& assemble);
+
+  /// Rows of the own targets of u = A f; other rows are untouched.
+  void apply(const Net& f, Net& u) const;
+
+  bool empty() const { return targets_.empty(); }
+
+ private:
+  struct Block {
+    int point;
+    float a[6];  // entries 11, 12, 13, 22, 23, 33
+  };
+  void correct(int target, const Surface& surface, double reach, const stokes::Rows<float>& rows, Eigen::Index row);
+
+  std::vector<int> targets_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> values_;
+  Eigen::VectorXd weights_;
+  std::vector<float> node_[3];  // padded to whole tiles
+  mutable std::vector<float> force_[3];
+  std::vector<Block> blocks_;
+  std::vector<std::size_t> first_block_;
+};
+
+/// Targets that share a pass over the nodes, and nodes worked on together.
+constexpr int nodal_block = 4, nodal_tile = 16;
+
+/// u[3 l + c] = sum_k G(x_k, x0_l) f_k for nodal_block targets x0[3 l + c]; n is a multiple of nodal_tile. Each target's sum does not depend on the
+/// other targets. A node at the target counts as nothing.
+void nodal_sum(int n, const float* const (&node)[3], const float* const (&force)[3], const float* x0, float* u);
+
+}  // namespace tanktread::coupling

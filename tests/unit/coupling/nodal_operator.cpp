@@ -1,0 +1,69 @@
+// The frozen operator by one node a control point.
+
+#include <gtest/gtest.h>
+
+#include "coupling/collocation.hpp"
+#include "coupling/nodal_operator.hpp"
+#include "membrane/mass.hpp"
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+struct Fixture {
+  spline::TMesh mesh = spline::cube(6);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  Net sphere = surface::initial_shape(space, mesh, {});
+  Net x = sphere * Eigen::Vector3d(1.4, 0.9, 0.8).asDiagonal();
+  stokes::SingleLayer layer{space, {}};
+  std::vector<int> targets;
+
+  Fixture() {
+    layer.set_reference(sphere);
+    for (int i = 0; i < space.n_points; ++i) targets.push_back(i);
+  }
+
+  Net nodal(double reach, const Net& f, const std::vector<int>& own) {
+    membrane::MassMatrix mass(space);
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(space.n_points);
+    const Eigen::SparseMatrix<double> sites = collocation_matrix(space);
+    const Eigen::VectorXd weights = mass.update(sphere) * ones, areas = mass.update(x) * ones;
+    NodalOperator nodal;
+    nodal.assemble(own, {sites * x, sites, weights, areas}, reach, [&](std::span<const int> some, stokes::Rows<float>& rows) {
+      layer.assemble(x, stokes::Measure::reference, some, rows);
+    });
+    Net u = Net::Zero(space.n_points, 3);
+    nodal.apply(f, u);
+    return u;
+  }
+
+  /// Relative error for a field of a few waves over the surface.
+  double error(double reach) {
+    Net f(space.n_points, 3), exact(space.n_points, 3);
+    for (Eigen::Index i = 0; i < f.rows(); ++i)
+      f.row(i) << std::sin(3 * sphere(i, 0)), sphere(i, 1) * sphere(i, 2), std::cos(2 * sphere(i, 1) + sphere(i, 0));
+    layer.apply(x, f, stokes::Measure::reference, targets, exact);
+    return (nodal(reach, f, targets) - exact).norm() / exact.norm();
+  }
+};
+
+TEST(NodalOperator, IsTheSingleLayerToSinglePrecisionWhereEveryPointIsNear) {
+  EXPECT_LT(Fixture().error(1e3), 3e-5);  // of a sum of 218 terms, and the tolerance of the rules, 1e-6
+}
+
+TEST(NodalOperator, IsCloseToTheSingleLayerWhereAFewElementsAreNear) {
+  EXPECT_LT(Fixture().error(3), 0.01);  // beside what the Jacobian leaves out, a tenth
+  EXPECT_GT(Fixture().error(0), 0.02);  // and without any correction
+}
+
+TEST(NodalOperator, RowsDoNotDependOnTheOtherRowsAskedFor) {
+  Fixture f;
+  const Net force = Net::Random(f.space.n_points, 3), whole = f.nodal(3, force, f.targets), part = f.nodal(3, force, {3, 70, 111, 200, 217});
+  for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), whole.row(i));
+  EXPECT_EQ(part.row(0), Net::Zero(1, 3));  // rows of others stay as they were
+}
+
+}  // namespace
+}  // namespace tanktread::coupling
