@@ -110,15 +110,18 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                                                                      : " per current area (3.6), mass matrix factored every evaluation")},
       {"far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
-      {"time", scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
-                   (!implicit                                     ? std::string(", explicit in the fluid: nothing is assembled")
-                    : scene.solvers.frozen_operator == "nodal" ? std::string(", frozen single layer by one node a control point, not assembled")
-                                                               : text(", frozen single layer of %.1f MB on %d rank%s",
-                                                                      12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : ""))},
-      {"mesh", !scene.adaptation.enabled                ? "fixed"
+      {"time",
+       scene.time.scheme + (scene.time.scheme == "auto" ? ", bs3 or tr-bdf2 by the measured stiffness" : "") +
+           (!implicit ? std::string(", explicit in the fluid: nothing is assembled")
+            : scene.solvers.frozen_operator == "nodal"
+                ? std::string(", frozen single layer by one node a control point, not assembled")
+                : text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : ""))},
+      {"mesh", !scene.adaptation.enabled               ? "fixed"
                : scene.adaptation.indicator == "error" ? "refined as the particle deforms, by estimated errors (1.5)"
-                                                        : "refined as the particle deforms (P-37)"},
-      {"symmetry", body.symmetry.order() == 1 ? std::string("none") + (scene.symmetry.use == "none" ? " used" : " found")
+                                                       : "refined as the particle deforms (P-37)"},
+      {"symmetry", body.symmetry.order() == 1 ? std::string("none") + (scene.symmetry.use == "none" ? " used"
+                                                                       : body.wall                  ? " looked for in a tube"
+                                                                                                    : " found")
                                               : body.symmetry.description() + text(": %d of %d control points evaluated, %.2g times less",
                                                                                    n_evaluated, body.space.n_points, points / n_evaluated)},
   };
