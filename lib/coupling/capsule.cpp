@@ -95,7 +95,6 @@ Net Capsule::flux_vector(const Net& x) {
   return b;
 }
 
-/// Rid of what round-off adds to a symmetric field, so that it cannot grow.
 Net Capsule::symmetric(Net field) const {
   parameters_.symmetry.complete(field);
   return field;

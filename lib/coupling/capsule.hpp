@@ -86,6 +86,7 @@ class Capsule : public Dynamics {
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
+  Net symmetric(Net field) const override;
 
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say.
   Net load(const Net& x);
@@ -107,7 +108,6 @@ class Capsule : public Dynamics {
  private:
   Net ambient(const Net& x) const;
   Net present_velocity(const Net& x);
-  Net symmetric(Net field) const;
   Net load_velocity(const Net& x, const Net& f);
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);

@@ -29,6 +29,10 @@ class Dynamics {
   /// Moves x onto the initial volume, if the constraint is `exact`; otherwise does nothing.
   virtual void restore_volume(Net& x) = 0;
 
+  /// Rids a rate of change of what round-off adds where the scene is symmetric. A velocity is rid of it already; a difference of shapes is not,
+  /// and what is extrapolated from it grows from step to step.
+  virtual Net symmetric(Net rate) const { return rate; }
+
   /// The norm of `Time/tolerance`: root mean square of the control points' displacement over R_C.
   virtual double norm(const Net& displacement) const = 0;
 

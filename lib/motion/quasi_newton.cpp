@@ -26,7 +26,8 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     if (k > 0) rate = std::max(0.3 * rate, size / previous);
     if (rate >= 1) return;
     if (rate / (1 - rate) * size < options.newton_tolerance * options.tolerance) {
-      stage.slope = (stage.y - rhs) / shift;
+      stage.slope = dynamics.symmetric((stage.y - rhs) / shift);
+      stage.y = rhs + shift * stage.slope;
       stage.solved = true;
       return;
     }

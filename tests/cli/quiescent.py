@@ -31,9 +31,8 @@ def a_neo_hookean_membrane_in_implicit_steps():
 
 
 def a_skalak_membrane_in_explicit_steps():
-    _relax("Membrane/law=Skalak", "Membrane/area dilatation=2.0", "Time/scheme=bs3", "Time/tolerance=1e-6")
-
-
+    """Short of the limit of stability: at the limit an explicit scheme rings, by what its tolerance allows."""
+    _relax("Membrane/law=Skalak", "Membrane/area dilatation=2.0", "Time/scheme=bs3", "Time/maximum step=0.1")
 
 
 main()

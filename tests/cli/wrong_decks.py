@@ -2,6 +2,7 @@
 # A mistake in the deck or on the command line is one sentence, exit code 2, and leaves nothing behind.
 import os
 import pathlib
+import shutil
 
 from harness import SOURCE, check, deck, main, run
 
@@ -49,14 +50,14 @@ SETTINGS = [
     (["Quadrature/tolerance=2"], ["Quadrature/tolerance", "between", "2"]),
     (["Surface/elements per side=2"], ["Surface/elements per side", "between 3 and 200", "2"]),
     (["Surface/elements per side=1000000000"], ["Surface/elements per side", "between 3 and 200", "1000000000"]),
-    (["Surface/elements per side=150"], ["Surface/elements per side", "150", "GB"]),
+    (["Surface/elements per side=150", "Solvers/frozen operator=assembled"], ["Surface/elements per side", "150", "GB"]),
     (["Output/wall-clock limit=-5"], ["Output/wall-clock limit", "positive", "seconds", "-5"]),
     (["Adaptation/enabled=true", "Adaptation/minimum length=0.6"], ["Adaptation/minimum length", "below", "0.482", "0.6"]),
     (["Adaptation/enabled=true", "Adaptation/largest number of points=56"], ["Adaptation/largest number of points", "above", "56"]),
     # contradictory keys
     (["Adaptation/enabled=true", "Adaptation/reference traction variation=8"], ["reference traction variation", "`variation`", "`error`"]),
     (["Adaptation/enabled=true", "Adaptation/indicator=variation", "Adaptation/load tolerance=8"], ["Adaptation/load tolerance", "`error`"]),
-    (["Particle/shape=file"], ["Particle/shape", "Particle/file"]),
+    (["Particle/shape=file"], ["Particle/shape", "Surface", "contradict"]),
     (["Particle/file=a.iga"], ["Particle/file", "contradict", "sphere"]),
     (["Particle/motion=free"], ["Membrane", "Particle/motion", "free", "contradict", "rigid"]),
     (["Particle/motion=prescribed"], ["Membrane", "Particle/motion", "prescribed", "contradict", "rigid"]),
@@ -167,6 +168,8 @@ def the_good_deck_is_good():
 
 
 def shipped_decks_are_good_and_so_is_what_they_effectively_say():
+    for outline in (SOURCE / "inputs").glob("*.csv"):
+        shutil.copy(outline, ".")  # looked for beside the deck
     for path in sorted((SOURCE / "inputs").glob("*.yaml")):
         printed = run(path, "--check").stdout
         effective = printed.split("\n\n", 1)[0] + "\n"
