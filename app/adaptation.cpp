@@ -35,7 +35,11 @@ std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMes
 
 Adapted refined(const Scene& scene, const Body& body, const motion::State& state, const std::vector<spline::Mark>& marks) {
   spline::Refinement refinement = spline::refine(body.mesh, marks);
-  if (refinement.mesh.edges == body.mesh.edges) return {.refused = refinement.refused};
+  if (refinement.mesh.edges == body.mesh.edges) {
+    Adapted unchanged;
+    unchanged.refused = refinement.refused;
+    return unchanged;
+  }
   auto target = on_mesh(scene, body, std::move(refinement.mesh));
   const spline::Transfer transfer(body.space, target->space);
   double residual = 0;
