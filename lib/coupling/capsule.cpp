@@ -344,9 +344,11 @@ Net Capsule::interface_change(const Net& dv, const Net& delta) {
 
 void Capsule::restore_volume(Net& x) {
   if (parameters_.volume.constraint != "exact") return;
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 5; ++k) {  // two are enough after any but a very long step
+    const double missing = volume0_ - geometry_.volume(x);
+    if (k > 1 && !(std::abs(missing) > 2e-15 * volume0_)) return;
     const Net b = flux_vector(x), c = symmetric(mass_.solve(b));
-    x += (volume0_ - geometry_.volume(x)) / dot(b, c) * c;
+    x += missing / dot(b, c) * c;
   }
 }
 
