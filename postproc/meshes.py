@@ -48,22 +48,9 @@ def cut(shot, field):
     """Ends of the short pieces in which the plane x2 = middle cuts the surface: rows of place (from the middle) and field, shape (pieces, 2, 3 + k)."""
     values = shot.fields[field]
     values = values if values.ndim > 1 else values[:, None]
-    grid = numpy.concatenate([shot.sampled(shot.points, GRID), shot.sampled(values, GRID)], axis=-1)
-    a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
-    n = grid.shape[-1]
-    triangles = numpy.concatenate([numpy.stack([a, b, c], 3).reshape(-1, 3, n), numpy.stack([a, c, d], 3).reshape(-1, 3, n)])
-    triangles[:, :, :3] -= (shot.points.min(0) + shot.points.max(0)) / 2
-    height = triangles[:, :, 1].copy()
-    height[height == 0] = 1e-300  # a corner in the plane belongs to its upper side
-    through = (height > 0).any(1) & (height < 0).any(1)
-    triangles, height = triangles[through], height[through]
-    lone = numpy.where((height > 0).sum(1) == 1, (height > 0).argmax(1), (height < 0).argmax(1))
-    rows = numpy.arange(len(lone))
-    ends = []
-    for other in (lone + 1) % 3, (lone + 2) % 3:
-        share = (height[rows, lone] / (height[rows, lone] - height[rows, other]))[:, None]
-        ends.append(triangles[rows, lone] + share * (triangles[rows, other] - triangles[rows, lone]))
-    return numpy.stack(ends, axis=1)
+    middle = (shot.points.min(0) + shot.points.max(0)) / 2
+    grid = numpy.concatenate([shot.sampled(shot.points, GRID) - middle, shot.sampled(values, GRID)], axis=-1)
+    return shape.cut(grid, 1, 0)
 
 
 def on_section(shot, field):

@@ -107,23 +107,28 @@ def draw_triad(axis, view, grid):
     axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # room for the letters
 
 
-def section(shot, place, across=1):
-    """Line pieces in which the plane x_{across+1} = place (x2 by default) cuts the surface: shape (pieces, 2, 2), the other two coordinates.
-    Cut on the triangles of a fine grid."""
-    grid = shot.sampled(shot.points, SECTION_GRID)
+def cut(grid, across, place):
+    """Ends of the line pieces in which the plane x_{across+1} = place cuts a surface, given on fine grids as rows of place and further values:
+    from shape (patches, m, m, k) to (pieces, 2, k). Cut on the triangles of the grids, the values with them."""
     a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
-    triangles = numpy.concatenate([numpy.stack([a, b, c], 3).reshape(-1, 3, 3), numpy.stack([a, c, d], 3).reshape(-1, 3, 3)])
+    k = grid.shape[-1]
+    triangles = numpy.concatenate([numpy.stack([a, b, c], 3).reshape(-1, 3, k), numpy.stack([a, c, d], 3).reshape(-1, 3, k)])
     height = triangles[:, :, across] - place
     height[height == 0] = 1e-300  # a corner in the plane belongs to its upper side
-    cut = (height > 0).any(1) & (height < 0).any(1)
-    triangles, height = triangles[cut], height[cut]
+    through = (height > 0).any(1) & (height < 0).any(1)
+    triangles, height = triangles[through], height[through]
     lone = numpy.where((height > 0).sum(1) == 1, (height > 0).argmax(1), (height < 0).argmax(1))
     rows = numpy.arange(len(lone))
     ends = []
     for other in (lone + 1) % 3, (lone + 2) % 3:
         share = (height[rows, lone] / (height[rows, lone] - height[rows, other]))[:, None]
         ends.append(triangles[rows, lone] + share * (triangles[rows, other] - triangles[rows, lone]))
-    return numpy.delete(numpy.stack(ends, axis=1), across, axis=2)
+    return numpy.stack(ends, axis=1)
+
+
+def section(shot, place, across=1):
+    """Line pieces in which the plane x_{across+1} = place (x2 by default) cuts the surface: shape (pieces, 2, 2), the other two coordinates."""
+    return numpy.delete(cut(shot.sampled(shot.points, SECTION_GRID), across, place), across, axis=2)
 
 
 def draw_sections(axis, runs, shots):

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/errors.hpp"
 #include "motion/quasi_newton.hpp"
 
 namespace tanktread::motion {
@@ -105,27 +104,19 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
 
     const double error =
         stage.solved ? scheme.shift / (dt - times[places]) * dynamics.norm(stage.y - predicted) / options_.tolerance : 0;
-    refreeze(dynamics, options_, state, stage.solved, stage.contraction);
-    if (!stage.solved) memory.contraction = std::min(0.5, stage.contraction);
-    if (!stage.solved && options_.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
-    const bool accepted = stage.solved && (error <= 1 || options_.fixed_step);
-    const double factor = stage.solved ? std::min(growth, step_factor(error, accepted ? memory.error : 0, 4)) : 0.5;
-    if (!accepted) {
+    const Verdict verdict = judge(dynamics, options_, state, stage, error, 4, memory);
+    const double factor = std::min(growth, verdict.factor);
+    if (!verdict.accepted) {
       h = dt * std::min(factor, 0.8);
       continue;
     }
 
-    Net y = stage.y;
-    dynamics.restore_volume(y);
-    report.step = dt;
-    report.error = error * options_.tolerance;
-    report.displacement = dynamics.norm(y - state.x);
+    const Net before = state.x;
+    accept(dynamics, options_, state, stage, dt, h, limit, error, factor, report);
+    state.step = std::min(state.step, growth * dt);
     state.memory = Memory{stage.contraction, error, dt}.values();
     state.memory.insert(state.memory.end(), {dt, -times[1], times[1] - times[2]});
-    state.history = {stage.slope, state.x, state.history[1], state.history[2]};
-    state.x = y;
-    state.time = dt == limit - state.time ? limit : state.time + dt;
-    state.step = std::min({dt < h ? std::max(h, dt * factor) : dt * factor, growth * dt, options_.maximum_step.value_or(1e300)});
+    state.history = {stage.slope, before, state.history[1], state.history[2]};
     return report;
   }
 }

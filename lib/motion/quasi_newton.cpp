@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "base/errors.hpp"
 
 namespace tanktread::motion {
 
@@ -35,10 +38,30 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
   }
 }
 
-void refreeze(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, bool solved, double contraction) {
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double error, int power, Memory& memory) {
   // A fresh operator helps only where the shape has moved on; the rest of the contraction rate is the part left out of (4.3).
   const double moved = dynamics.norm(state.x - state.frozen);
-  if (solved ? contraction > options.contraction_limit && moved > worth_assembling : moved > 0) dynamics.freeze(state.frozen = state.x);
+  if (last.solved ? last.contraction > options.contraction_limit && moved > worth_assembling : moved > 0) dynamics.freeze(state.frozen = state.x);
+  if (!last.solved) {
+    memory.contraction = std::min(0.5, last.contraction);
+    if (options.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
+    return {};
+  }
+  const bool accepted = error <= 1 || options.fixed_step;
+  return {accepted, step_factor(error, accepted ? memory.error : 0, power)};
+}
+
+void accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
+            double error, double factor, StepReport& report) {
+  Net y = last.y;
+  dynamics.restore_volume(y);
+  report.step = dt;
+  report.error = error * options.tolerance;
+  report.displacement = dynamics.norm(y - state.x);
+  state.x = std::move(y);
+  state.time = dt == limit - state.time ? limit : state.time + dt;
+  // A step shortened to meet `limit` says nothing against the longer one.
+  state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options.maximum_step.value_or(1e300));
 }
 
 }  // namespace tanktread::motion

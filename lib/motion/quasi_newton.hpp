@@ -33,8 +33,20 @@ struct Stage {
 /// Quasi-Newton iteration on the frozen-geometry Jacobian (4.3), H fresh in every iteration, to `Time/newton tolerance`.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, Stage& stage);
 
-/// After an attempt at a step: assembles the layer operator anew at state.x where the iteration failed or contracted too slowly and the
-/// shape has moved on since the last time.
-void refreeze(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, bool solved, double contraction);
+/// What an attempt at a step comes to.
+struct Verdict {
+  bool accepted = false;
+  double factor = 0.5;  ///< the next step over this one
+};
+
+/// After an attempt that ended with the stage `last` and the local error `error`, over the tolerance, of a scheme whose error falls with this
+/// power of the step. Assembles the layer operator anew at state.x where the iteration failed or contracted too slowly and the shape has moved
+/// on since the last time. Throws RunFailure when a step of fixed size was not solved.
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double error, int power, Memory& memory);
+
+/// Ends the step dt towards `limit`, where h was proposed, at the stage `last`, its volume restored: place, time and next step of the state, and
+/// the report. The scheme's history and memory are its own.
+void accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
+            double error, double factor, StepReport& report);
 
 }  // namespace tanktread::motion

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/errors.hpp"
 #include "motion/quasi_newton.hpp"
 #include "motion/slopes.hpp"
 
@@ -42,33 +41,19 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       solve(dynamics, options_, rhs3, shift, third);
     }
     report.iterations += second.iterations + third.iterations;
-    const bool solved = third.solved;
-    if (solved) {
+    if (third.solved) {
       const Net raw = dt * ((4 * w - 1) / 3 * k1 - k2 / 3 + 2 * d / 3 * third.slope);
       error = dynamics.norm(dynamics.solve(shift, raw, options_.linear_tolerance)) / options_.tolerance;
     }
-    refreeze(dynamics, options_, state, solved, third.contraction);
-    if (!solved) memory.contraction = std::min(0.5, third.contraction);
-    if (!solved && options_.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
-    const bool accepted = solved && (error <= 1 || options_.fixed_step);
-    const double factor = solved ? step_factor(error, accepted ? memory.error : 0, 3) : 0.5;
+    const auto [accepted, factor] = judge(dynamics, options_, state, third, error, 3, memory);
     if (!accepted) {
       h = dt * std::min(factor, 0.8);
       continue;
     }
 
-    Net y = third.y;
-    dynamics.restore_volume(y);
-    report.step = dt;
-    report.error = error * options_.tolerance;
-    report.displacement = dynamics.norm(y - state.x);
+    accept(dynamics, options_, state, third, dt, h, limit, error, factor, report);
     state.history = {third.slope, k2, k1};
-    state.x = y;
-    state.time = dt == limit - state.time ? limit : state.time + dt;
-    // A step shortened to meet `limit` says nothing against the longer one.
-    state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options_.maximum_step.value_or(1e300));
-    memory = {third.contraction, error, dt};
-    state.memory = memory.values();
+    state.memory = Memory{third.contraction, error, dt}.values();
     return report;
   }
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "stokes/duct_boundary.hpp"
+#include "tests/outlines.hpp"
 
 namespace tanktread {
 namespace {
@@ -17,27 +18,7 @@ using surface::Vec2;
 
 constexpr double pi = std::numbers::pi;
 
-Outline ellipse(double a, double b) { return Outline({surface::Ellipse{Vec2::Zero(), Vec2(a, b)}}); }
 double ellipse_rate(double a, double b) { return pi * std::pow(a * b, 3) / (4 * (a * a + b * b)); }
-
-Outline polygon(const std::vector<Vec2>& corners) {
-  std::vector<surface::PlaneCurve> sides;
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    sides.push_back(surface::interpolate_open({0, 1}, {corners[k], corners[(k + 1) % corners.size()]}));
-  return Outline(std::move(sides));
-}
-
-/// r = 1 + 0.3 cos 3t, a spline through n points.
-Outline trefoil(int n) {
-  std::vector<double> breaks;
-  std::vector<Vec2> points;
-  for (int i = 0; i <= n; ++i) {
-    const double t = 2 * pi * i / n;
-    breaks.push_back(t);
-    if (i < n) points.push_back((1 + 0.3 * std::cos(3 * t)) * Vec2(std::cos(t), std::sin(t)));
-  }
-  return Outline({surface::interpolate_closed(breaks, points)});
-}
 
 /// Relative error of the flow rate with outline and density on the same n elements.
 double rate_error(const Outline& isogeometric, int n, double exact) { return BoundaryProfile(isogeometric, n).flow_rate() / exact - 1; }

@@ -4,11 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/capsule.hpp"
 #include "coupling/collocation.hpp"
-#include "spline/extraction.hpp"
-#include "spline/t_mesh.hpp"
-#include "surface/shapes.hpp"
+#include "tests/unit/coupling/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace {
@@ -16,21 +13,11 @@ namespace {
 double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 
 /// A unit sphere on the coarsest mesh, in shear or at rest.
-struct Fixture {
-  spline::TMesh mesh = spline::cube(3);
-  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net sphere = surface::initial_shape(space, mesh, {});
-  stokes::FlowOptions flow;
-  CapsuleParameters parameters;
-  Ranks ranks;
-  Phases phases;
-
-  explicit Fixture(const char* type = "simple shear") {
-    flow.type = type;
+struct Fixture : SphereInFlow {
+  explicit Fixture(const char* type = "simple shear") : SphereInFlow(3, type) {
     parameters.law = membrane::NeoHookean{2.5};
     parameters.viscosity = 1.7;
   }
-  Capsule capsule() { return Capsule(space, sphere, sphere, stokes::AmbientFlow(flow), parameters, ranks, phases); }
 
   /// Stretched, sheared and bent, with the volume of nothing in particular.
   Net deformed() const {

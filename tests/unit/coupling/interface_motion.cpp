@@ -4,33 +4,21 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/capsule.hpp"
 #include "coupling/collocation.hpp"
-#include "spline/extraction.hpp"
-#include "spline/t_mesh.hpp"
-#include "surface/shapes.hpp"
+#include "tests/unit/coupling/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace {
 
-struct Drop {
-  spline::TMesh mesh = spline::cube(3);
-  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net sphere = surface::initial_shape(space, mesh, {});
-  stokes::FlowOptions flow;
-  CapsuleParameters parameters;
-  Ranks ranks;
-  Phases phases;
-
-  Drop() {
-    flow.type = "planar hyperbolic";
+struct Drop : SphereInFlow {
+  Drop() : SphereInFlow(3, "planar hyperbolic") {
     parameters.law = membrane::SurfaceTension{5};
     parameters.measure = stokes::Measure::current;
     parameters.interface_speed = 1;
   }
   Net velocity(const std::string& motion, const Net& x) {
     parameters.interface_motion = motion;
-    return Capsule(space, sphere, sphere, stokes::AmbientFlow(flow), parameters, ranks, phases).velocity(x);
+    return capsule().velocity(x);
   }
   /// Largest normal and tangential component at the sites.
   std::pair<double, double> components(const Net& x, const Net& v) const {

@@ -2,26 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/capsule.hpp"
 #include "coupling/symmetry.hpp"
-#include "spline/extraction.hpp"
-#include "spline/t_mesh.hpp"
-#include "surface/shapes.hpp"
+#include "tests/unit/coupling/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace {
 
-struct Fixture {
-  spline::TMesh mesh = spline::cube(4);
-  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net sphere = surface::initial_shape(space, mesh, {});
-  stokes::FlowOptions flow;
-  CapsuleParameters parameters;
-  Ranks ranks;
-  Phases phases;
-
-  Fixture() {
-    flow.type = "simple shear";
+struct Fixture : SphereInFlow {
+  Fixture() : SphereInFlow(4, "simple shear") {
     parameters.law = membrane::NeoHookean{2.5};
     parameters.quadrature.tolerance = 1e-8;  // what rules leave of the integrals need not be symmetric
   }
@@ -33,7 +21,7 @@ struct Fixture {
 
   Capsule capsule(bool reduced) {
     parameters.symmetry = reduced ? symmetry() : surface::Symmetry();
-    return Capsule(space, sphere, sphere, stokes::AmbientFlow(flow), parameters, ranks, phases);
+    return SphereInFlow::capsule();
   }
 
   /// An ellipsoid turned in the plane of shear: of that flow's symmetry.

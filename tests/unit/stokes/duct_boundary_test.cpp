@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "quadrature/gauss.hpp"
+#include "tests/outlines.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -15,15 +16,6 @@ using surface::Outline;
 using surface::Vec2;
 
 constexpr double pi = std::numbers::pi;
-
-Outline polygon(const std::vector<Vec2>& corners) {
-  std::vector<surface::PlaneCurve> sides;
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    sides.push_back(surface::interpolate_open({0, 1}, {corners[k], corners[(k + 1) % corners.size()]}));
-  return Outline(std::move(sides));
-}
-
-Outline ellipse(double a, double b) { return Outline({surface::Ellipse{Vec2::Zero(), Vec2(a, b)}}); }
 
 TEST(OutlineSpace, HasOneSiteAFunctionAndElementsThatEndAtTheOutlinesKnots) {
   const Outline smooth = ellipse(1, 0.5).spline(10), cornered = polygon({{0, 0}, {4, 0}, {0, 1}});

@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "spline/knots.hpp"
+#include "tests/outlines.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -37,25 +38,6 @@ Outline rectangle(double w, double h) {
   TubeOptions options = tube("rectangle");
   options.sides = Vec2(w, h);
   return outline(options);
-}
-
-Outline polygon(const std::vector<Vec2>& corners) {
-  std::vector<PlaneCurve> sides;
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    sides.push_back(interpolate_open({0, 1}, {corners[k], corners[(k + 1) % corners.size()]}));
-  return Outline(std::move(sides));
-}
-
-/// A trefoil, r = 1 + 0.3 cos 3t, as a spline through n points.
-Outline trefoil(int n) {
-  std::vector<double> breaks;
-  std::vector<Vec2> points;
-  for (int i = 0; i <= n; ++i) {
-    const double t = 2 * pi * i / n;
-    breaks.push_back(t);
-    if (i < n) points.push_back((1 + 0.3 * std::cos(3 * t)) * Vec2(std::cos(t), std::sin(t)));
-  }
-  return Outline({interpolate_closed(breaks, points)});
 }
 
 TEST(CubicCurve, ThroughPointsOfACubicIsThatCubic) {
