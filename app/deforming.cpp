@@ -7,7 +7,7 @@
 #include "app/moving.hpp"
 #include "app/tube.hpp"
 #include "surface/geometry.hpp"
-#include "surface/metrics.hpp"
+#include "surface/patch.hpp"
 
 namespace tanktread {
 
@@ -75,7 +75,7 @@ class Deforming : public Moving {
 
   Portrait portrait(const motion::State& state) override {
     const Net load = capsule_->load(state.x);
-    return {state.x, [this, &state, load](const output::LagrangeMesh& mesh) { return fields(mesh, state, load); }};
+    return {state.x, [this, &state, load](const output::Nodes& nodes) { return fields(nodes, state, load); }};
   }
 
  private:
@@ -102,26 +102,25 @@ class Deforming : public Moving {
     if (ranks_.rank() == 0) std::fprintf(stderr, "tanktread: %s\n", sentence.c_str());
   }
 
-  /// The load per present area.
-  Net traction(const output::LagrangeMesh& mesh, const motion::State& state, const Net& load) const {
-    const auto at = surface::per_current_area(body_->space, body_->unstressed, state.x, load);
-    Net values(static_cast<Eigen::Index>(mesh.sites.size()), 3);
-    for (size_t i = 0; i < mesh.sites.size(); ++i) values.row(static_cast<Eigen::Index>(i)) = at(mesh.sites[i]).transpose();
-    return values;
-  }
-
-  std::vector<output::Field> fields(const output::LagrangeMesh& mesh, const motion::State& state, const Net& load) const {
+  std::vector<output::Field> fields(const output::Nodes& nodes, const motion::State& state, const Net& load) const {
+    const std::vector<surface::Jet> before = nodes.jets(body_->unstressed), now = nodes.jets(state.x);
+    const auto n = static_cast<Eigen::Index>(now.size());
+    const Net at_nodes = nodes.values(load);
     std::vector<output::Field> fields;
-    fields.push_back({"load", output::nodal_values(body_->space, mesh, load)});
-    if (capsule_->measure() == stokes::Measure::reference) fields.push_back({"traction", traction(mesh, state, load)});
-    fields.push_back({"displacement", output::nodal_values(body_->space, mesh, state.x - body_->unstressed)});
-    if (!state.history.empty()) fields.push_back({"velocity", output::nodal_values(body_->space, mesh, state.history.front())});
-    const Eigen::MatrixX2d tensions = capsule_->membrane().tensions(state.x, mesh.sites);
+    fields.push_back({"load", at_nodes});
+    if (capsule_->measure() == stokes::Measure::reference) {
+      Net traction = at_nodes;  // the load per present area
+      for (Eigen::Index i = 0; i < n; ++i)
+        traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
+      fields.push_back({"traction", traction});
+    }
+    fields.push_back({"displacement", nodes.values(state.x - body_->unstressed)});
+    if (!state.history.empty()) fields.push_back({"velocity", nodes.values(state.history.front())});
+    const Eigen::MatrixX2d tensions = membrane::tensions(body_->law, before, now);
     fields.push_back({"smallest tension", tensions.col(0)});
     fields.push_back({"largest tension", tensions.col(1)});
-    Eigen::VectorXd curvature(static_cast<Eigen::Index>(mesh.sites.size()));
-    for (size_t i = 0; i < mesh.sites.size(); ++i)
-      curvature[static_cast<Eigen::Index>(i)] = surface::mean_curvature(body_->space, state.x, mesh.sites[i]);
+    Eigen::VectorXd curvature(n);
+    for (Eigen::Index i = 0; i < n; ++i) curvature[i] = surface::mean_curvature(now[static_cast<size_t>(i)]);
     fields.push_back({"mean curvature", curvature});
     return fields;
   }

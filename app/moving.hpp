@@ -32,8 +32,8 @@ struct Resumed {
 
 /// The particle at one moment, as a picture shows it.
 struct Portrait {
-  Net surface;                                                                         ///< control net
-  std::function<std::vector<output::Field>(const output::LagrangeMesh& mesh)> fields;  ///< at the nodes; called on the first rank only
+  Net surface;                                                                   ///< control net
+  std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;  ///< at the nodes; called on the first rank only
 };
 
 /// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled.

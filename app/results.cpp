@@ -112,7 +112,7 @@ void Results::declare_columns() {
 
 void Results::remesh(const Body& body) {
   body_ = &body;
-  if (writes_) picture_mesh_ = output::lagrange_mesh(body.space, body.unstressed);
+  if (writes_) nodes_.emplace(body.space, output::lagrange_mesh(body.space, body.unstressed));
 }
 
 std::optional<Resumed> Results::resumed() {
@@ -155,8 +155,8 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   checkpoint.texts["deck"] = request_.deck_text;
   if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
 
-  output::Picture picture = output::picture(body_->space, picture_mesh_, portrait.surface);
-  for (output::Field& field : portrait.fields(picture_mesh_)) picture.point_fields.push_back(std::move(field));
+  output::Picture picture = output::picture(*nodes_, portrait.surface);
+  for (output::Field& field : portrait.fields(*nodes_)) picture.point_fields.push_back(std::move(field));
   output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, picture);
   series_->add(standing.step, picture_time);
 }

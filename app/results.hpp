@@ -66,7 +66,7 @@ class Results {
   std::filesystem::path directory_;
   std::optional<output::RunRecord> record_;
   std::optional<output::SnapshotSeries> series_;
-  output::LagrangeMesh picture_mesh_;
+  std::optional<output::Nodes> nodes_;  // of the pictures, on the first rank
   std::vector<std::string> warnings_;
   int last_saved_ = -1;
 };

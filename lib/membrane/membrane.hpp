@@ -11,6 +11,7 @@
 #include "membrane/bending.hpp"
 #include "membrane/laws.hpp"
 #include "spline/space.hpp"
+#include "surface/patch.hpp"
 
 namespace tanktread::membrane {
 
@@ -69,6 +70,9 @@ class Membrane {
   std::vector<int> all_;
   mutable std::vector<std::shared_ptr<const Part>> parts_;  // the latest first
 };
+
+/// Principal tensions, smaller first, over the modulus, where the unstressed and the present surface are so. Shape (places, 2).
+Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstressed, std::span<const surface::Jet> now);
 
 /// H = d^2E/dx^2 at a configuration, symmetric, applied without being assembled.
 class Tangent {

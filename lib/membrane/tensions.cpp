@@ -53,17 +53,24 @@ TensionSummary Membrane::tension_summary(const Net& x) const {
   return {smallest, compressed / area};
 }
 
-Eigen::MatrixX2d Membrane::tensions(const Net& x, std::span<const spline::Site> sites) const {
-  Eigen::MatrixX2d result(sites.size(), 2);
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    const auto [element, s, t] = sites[i];
-    const surface::Jet before = surface::jet(surface::ElementPoints(*space_, unstressed_, element).patch(), s, t);
-    const surface::Jet now = surface::jet(surface::ElementPoints(*space_, x, element).patch(), s, t);
-    const auto metric = [](const surface::Jet& a) { return Metric{a.s.dot(a.s), a.s.dot(a.t), a.t.dot(a.t)}; };
-    const auto tension = tensions_of(law_, metric(before), metric(now));
-    result.row(i) << tension[0] / modulus(law_), tension[1] / modulus(law_);
+Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstressed, std::span<const surface::Jet> now) {
+  const auto metric = [](const surface::Jet& a) { return Metric{a.s.dot(a.s), a.s.dot(a.t), a.t.dot(a.t)}; };
+  const double unit = modulus(law);
+  Eigen::MatrixX2d result(now.size(), 2);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const auto tension = tensions_of(law, metric(unstressed[i]), metric(now[i]));
+    result.row(i) << tension[0] / unit, tension[1] / unit;
   }
   return result;
+}
+
+Eigen::MatrixX2d Membrane::tensions(const Net& x, std::span<const spline::Site> sites) const {
+  std::vector<surface::Jet> before, now;
+  for (const auto& [element, s, t] : sites) {
+    before.push_back(surface::jet(surface::ElementPoints(*space_, unstressed_, element).patch(), s, t));
+    now.push_back(surface::jet(surface::ElementPoints(*space_, x, element).patch(), s, t));
+  }
+  return membrane::tensions(law_, before, now);
 }
 
 }  // namespace tanktread::membrane

@@ -72,9 +72,9 @@ int step_of(const std::string& name) {
 
 }  // namespace
 
-Picture picture(const spline::Space& space, const LagrangeMesh& mesh, const Net& net) {
-  Picture result{mesh, nodal_values(space, mesh, net), {}, {}};
-  result.point_fields.push_back({"Normals", nodal_normals(space, mesh, net)});
+Picture picture(const Nodes& nodes, const Net& net) {
+  Picture result{nodes.mesh(), nodes.values(net), {}, {}};
+  result.point_fields.push_back({"Normals", nodes.normals(net)});
   return result;
 }
 

@@ -31,13 +31,13 @@ struct Field {
 /// The surface as ParaView draws it at one moment.
 struct Picture {
   const LagrangeMesh& mesh;
-  Eigen::MatrixXd points;           ///< (n_nodes, 3), from `nodal_values`
+  Eigen::MatrixXd points;           ///< (n_nodes, 3)
   std::vector<Field> point_fields;  ///< `Normals` among them gives smooth shading
   std::vector<Field> cell_fields;
 };
 
-/// Points and `Normals` of `net`; further fields are the caller's to add.
-Picture picture(const spline::Space& space, const LagrangeMesh& mesh, const Net& net);
+/// Points and `Normals` of `net`; further fields are the caller's to add. `nodes` must outlive the picture.
+Picture picture(const Nodes& nodes, const Net& net);
 
 /// `snapshot_000123.hdf` for step 123.
 std::string snapshot_name(int step);

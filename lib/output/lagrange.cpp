@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -16,10 +16,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 
-/// Bernstein polynomials of one direction at a place, and their slopes.
+/// Bernstein polynomials of one direction at a place, and their derivatives.
 struct Line {
-  RowVectorXd values, slopes;
-  Line(int p, double s) : values(p + 1), slopes(p + 1) { spline::bernstein(p, s, values.data(), slopes.data(), nullptr); }
+  RowVectorXd value, first, second;
+  Line(int p, double s) : value(p + 1), first(p + 1), second(p + 1) { spline::bernstein(p, s, value.data(), first.data(), second.data()); }
 };
 
 /// Tensor product of a row in s and one in t, s fastest.
@@ -39,50 +39,6 @@ std::vector<std::array<int, 2>> node_order(int p) {
   for (int j = 1; j < p; ++j)
     for (int i = 1; i < p; ++i) nodes.push_back({i, j});
   return nodes;
-}
-
-/// Bernstein rows at the nodes of a cell: values, and slopes in s and t taken at the place shrunk towards the middle by `inset`.
-struct Table {
-  std::vector<std::array<int, 2>> order;
-  MatrixXd values;
-  MatrixXd s_slopes, t_slopes;
-};
-
-Table table(int p, double inset) {
-  Table result{node_order(p), {}, {}, {}};
-  const auto n = static_cast<Eigen::Index>(result.order.size());
-  result.values.resize(n, n);
-  result.s_slopes.resize(n, n);
-  result.t_slopes.resize(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const auto [i, j] = result.order[static_cast<std::size_t>(k)];
-    const double s = double(i) / p, t = double(j) / p;
-    result.values.row(k) = tensor(Line(p, s).values, Line(p, t).values);
-    const Line in_s(p, s + inset * (0.5 - s)), in_t(p, t + inset * (0.5 - t));
-    result.s_slopes.row(k) = tensor(in_s.slopes, in_t.values);
-    result.t_slopes.row(k) = tensor(in_s.values, in_t.slopes);
-  }
-  return result;
-}
-
-/// Tables by degree, made once a call.
-class Tables {
- public:
-  explicit Tables(double inset = 0) : inset_(inset) {}
-  const Table& of(int p) {
-    const auto it = tables_.find(p);
-    return it != tables_.end() ? it->second : tables_.emplace(p, table(p, inset_)).first->second;
-  }
-
- private:
-  double inset_;
-  std::map<int, Table> tables_;
-};
-
-/// Bezier values of an element, shape ((p + 1)^2, k).
-template <class Field>
-MatrixXd bezier(const spline::Element& element, const Field& control_values) {
-  return element.extraction.transpose() * control_values(element.points, Eigen::all);
 }
 
 /// For each place, the first of all places that coincide with it. They are swept along a direction that no symmetry of a mesh has, so
@@ -111,21 +67,29 @@ std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   return first;
 }
 
+/// The normal of an element at node (i, j), moved by `inset` of the way to the middle.
+Vec3 normal_inside(const surface::BezierMap& map, const Net& net, int element, const std::array<int, 2>& node, double inset) {
+  const int p = map.degree(element);
+  std::vector<double> points(3 * static_cast<std::size_t>(map.n_bezier(element)));
+  map.points(element, net, points.data());
+  const double s = double(node[0]) / p, t = double(node[1]) / p;
+  const surface::Jet at = surface::jet({p, points.data()}, s + inset * (0.5 - s), t + inset * (0.5 - t));
+  return at.s.cross(at.t);
+}
+
 }  // namespace
 
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
   LagrangeMesh mesh;
-  Tables tables;
   std::vector<Vec3> places;
   std::vector<spline::Site> sites;
   mesh.offsets.push_back(0);
   for (std::size_t e = 0; e < space.elements.size(); ++e) {
-    const auto& element = space.elements[e];
-    const Table& at = tables.of(element.degree);
-    const MatrixXd x = at.values * bezier(element, net);
-    for (std::size_t k = 0; k < at.order.size(); ++k) {
-      places.push_back(x.row(static_cast<Eigen::Index>(k)).transpose());
-      sites.push_back({static_cast<int>(e), double(at.order[k][0]) / element.degree, double(at.order[k][1]) / element.degree});
+    const int p = space.elements[e].degree;
+    const surface::ElementPoints points(space, net, static_cast<int>(e));
+    for (const auto& [i, j] : node_order(p)) {
+      sites.push_back({static_cast<int>(e), double(i) / p, double(j) / p});
+      places.push_back(surface::place(points.patch(), sites.back().s, sites.back().t));
     }
     mesh.offsets.push_back(static_cast<std::int64_t>(places.size()));
   }
@@ -141,41 +105,104 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
   return mesh;
 }
 
-Eigen::MatrixXd nodal_values(const spline::Space& space, const LagrangeMesh& mesh, const Eigen::MatrixXd& control_values) {
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(mesh.sites.size()), control_values.cols());
-  Tables tables;
+Nodes::Table::Table(int degree) {
+  const auto order = node_order(degree);
+  const auto n = static_cast<Eigen::Index>(order.size());
+  for (MatrixXd* part : {&value, &s, &t, &ss, &st, &tt}) part->resize(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto [i, j] = order[static_cast<std::size_t>(k)];
+    const Line along_s(degree, double(i) / degree), along_t(degree, double(j) / degree);
+    value.row(k) = tensor(along_s.value, along_t.value);
+    s.row(k) = tensor(along_s.first, along_t.value);
+    t.row(k) = tensor(along_s.value, along_t.first);
+    ss.row(k) = tensor(along_s.second, along_t.value);
+    st.row(k) = tensor(along_s.first, along_t.first);
+    tt.row(k) = tensor(along_s.value, along_t.second);
+  }
+}
+
+Nodes::Nodes(const spline::Space& space, LagrangeMesh mesh) : mesh_(std::move(mesh)), map_(space), origins_(mesh_.sites.size()) {
+  for (const surface::Block& block : map_.blocks().blocks) tables_.emplace_back(block.degree);
   // Backwards, so that the first element of a node has the last word: the one that `sites` names.
-  for (std::size_t e = space.elements.size(); e-- > 0;) {
-    const auto& element = space.elements[e];
-    const MatrixXd values = tables.of(element.degree).values * bezier(element, control_values);
-    for (Eigen::Index k = 0; k < values.rows(); ++k)
-      result.row(mesh.connectivity[static_cast<std::size_t>(mesh.offsets[e] + k)]) = values.row(k);
+  for (int e = map_.n_elements() - 1; e >= 0; --e) {
+    const auto [block, element] = map_.blocks().place[static_cast<std::size_t>(e)];
+    const auto begin = static_cast<std::size_t>(mesh_.offsets[static_cast<std::size_t>(e)]);
+    for (int k = map_.n_bezier(e) - 1; k >= 0; --k)
+      origins_[static_cast<std::size_t>(mesh_.connectivity[begin + static_cast<std::size_t>(k)])] = {block, element, k};
+  }
+}
+
+/// For each block one number a node, component and element: shape (nodes of a cell, 3 n_e), component c of element k in column c n_e + k.
+std::vector<MatrixXd> Nodes::at_cells(const Net& net, MatrixXd Table::*part) const {
+  std::vector<MatrixXd> result;
+  MatrixXd bezier;
+  for (const surface::Block& block : map_.blocks().blocks) {
+    map_.points(block, net, bezier);
+    result.emplace_back(tables_[result.size()].*part * bezier);
   }
   return result;
 }
 
-Net nodal_normals(const spline::Space& space, const LagrangeMesh& mesh, const Net& net) {
+Vec3 Nodes::at_node(const std::vector<MatrixXd>& cells, const Origin& origin) const {
+  const MatrixXd& cell = cells[static_cast<std::size_t>(origin.block)];
+  const Eigen::Index n_e = cell.cols() / 3;
+  return {cell(origin.node, origin.element), cell(origin.node, n_e + origin.element), cell(origin.node, 2 * n_e + origin.element)};
+}
+
+Net Nodes::values(const Net& control_values) const {
+  const std::vector<MatrixXd> cells = at_cells(control_values, &Table::value);
+  Net result(static_cast<Eigen::Index>(origins_.size()), 3);
+  for (std::size_t i = 0; i < origins_.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = at_node(cells, origins_[i]).transpose();
+  return result;
+}
+
+std::vector<surface::Jet> Nodes::jets(const Net& net) const {
+  const auto x = at_cells(net, &Table::value), s = at_cells(net, &Table::s), t = at_cells(net, &Table::t), ss = at_cells(net, &Table::ss),
+             st = at_cells(net, &Table::st), tt = at_cells(net, &Table::tt);
+  std::vector<surface::Jet> result;
+  result.reserve(origins_.size());
+  for (const Origin& at : origins_)
+    result.push_back({at_node(x, at), at_node(s, at), at_node(t, at), at_node(ss, at), at_node(st, at), at_node(tt, at)});
+  return result;
+}
+
+Net Nodes::normals(const Net& net) const {
   constexpr double kDegenerate = 1e-6;  // |a1 x a2| over |a1|_max |a2|_max of the element
   constexpr double kInset = 1e-4;
-  Net sum = Net::Zero(static_cast<Eigen::Index>(mesh.sites.size()), 3);
-  Tables tables, inside(kInset);
-  for (std::size_t e = 0; e < space.elements.size(); ++e) {
-    const auto& element = space.elements[e];
-    const MatrixXd control = bezier(element, net);
-    const Table& at = tables.of(element.degree);
-    const MatrixXd a1 = at.s_slopes * control, a2 = at.t_slopes * control;
-    const double scale = a1.rowwise().norm().maxCoeff() * a2.rowwise().norm().maxCoeff();
-    for (Eigen::Index k = 0; k < a1.rows(); ++k) {
-      Vec3 n = Vec3(a1.row(k)).cross(Vec3(a2.row(k)));
-      if (n.norm() < kDegenerate * scale) {
-        const Table& in = inside.of(element.degree);
-        n = Vec3(in.s_slopes.row(k) * control).cross(Vec3(in.t_slopes.row(k) * control));
-      }
-      sum.row(mesh.connectivity[static_cast<std::size_t>(mesh.offsets[e] + k)]) += n.normalized();
+  const auto a1 = at_cells(net, &Table::s), a2 = at_cells(net, &Table::t);
+  Net sum = Net::Zero(static_cast<Eigen::Index>(mesh_.sites.size()), 3);
+  for (int e = 0; e < map_.n_elements(); ++e) {
+    const auto [block, element] = map_.blocks().place[static_cast<std::size_t>(e)];
+    const int n = map_.n_bezier(e);
+    double longest_s = 0, longest_t = 0;
+    for (int k = 0; k < n; ++k) {
+      longest_s = std::max(longest_s, at_node(a1, {block, element, k}).squaredNorm());
+      longest_t = std::max(longest_t, at_node(a2, {block, element, k}).squaredNorm());
+    }
+    const double least = kDegenerate * std::sqrt(longest_s * longest_t);
+    const std::int64_t* node = mesh_.connectivity.data() + mesh_.offsets[static_cast<std::size_t>(e)];
+    for (int k = 0; k < n; ++k) {
+      Vec3 normal = at_node(a1, {block, element, k}).cross(at_node(a2, {block, element, k}));
+      if (normal.norm() < least) normal = normal_inside(map_, net, e, node_order(map_.degree(e))[static_cast<std::size_t>(k)], kInset);
+      sum.row(node[k]) += normal.normalized();
     }
   }
   sum.rowwise().normalize();
   return sum;
 }
+
+MatrixXd nodal_values(const spline::Space& space, const LagrangeMesh& mesh, const MatrixXd& control_values) {
+  const Nodes nodes(space, mesh);
+  MatrixXd result(static_cast<Eigen::Index>(mesh.sites.size()), control_values.cols());
+  for (Eigen::Index c = 0; c < control_values.cols(); c += 3) {
+    const Eigen::Index width = std::min<Eigen::Index>(3, control_values.cols() - c);
+    Net three = Net::Zero(control_values.rows(), 3);
+    three.leftCols(width) = control_values.middleCols(c, width);
+    result.middleCols(c, width) = nodes.values(three).leftCols(width);
+  }
+  return result;
+}
+
+Net nodal_normals(const spline::Space& space, const LagrangeMesh& mesh, const Net& net) { return Nodes(space, mesh).normals(net); }
 
 }  // namespace tanktread::output

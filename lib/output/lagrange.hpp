@@ -6,6 +6,8 @@
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
+#include "surface/bezier_points.hpp"
+#include "surface/patch.hpp"
 
 namespace tanktread::output {
 
@@ -22,11 +24,44 @@ struct LagrangeMesh {
 /// `net` decides which nodes coincide; the unstressed surface is the best choice, since it does not change and never touches itself.
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
 
-/// A field with control values (N, k) at the nodes: shape (n_nodes, k).
-Eigen::MatrixXd nodal_values(const spline::Space& space, const LagrangeMesh& mesh, const Eigen::MatrixXd& control_values);
+/// The nodes of a surface's Lagrange mesh and what any number of fields are there, with all that depends on the mesh alone made once.
+class Nodes {
+ public:
+  Nodes(const spline::Space& space, LagrangeMesh mesh);
 
-/// Exact outward unit normals at the nodes, the mean over the elements that meet there. Shape (n_nodes, 3). Where an element
-/// degenerates (a pole) its normal is taken a hair inside.
+  const LagrangeMesh& mesh() const { return mesh_; }
+
+  /// A field with control values (N, 3). Shape (n_nodes, 3).
+  Net values(const Net& control_values) const;
+
+  /// Places and derivatives of a surface, on the first element that has the node.
+  std::vector<surface::Jet> jets(const Net& net) const;
+
+  /// Exact outward unit normals, the mean over the elements that meet there. Shape (n_nodes, 3). Where an element degenerates (a pole) its
+  /// normal is taken a hair inside.
+  Net normals(const Net& net) const;
+
+ private:
+  /// Values and derivatives of the Bernstein polynomials at the nodes of a cell, shape (nodes, polynomials).
+  struct Table {
+    Eigen::MatrixXd value, s, t, ss, st, tt;
+    explicit Table(int degree);
+  };
+  /// Where a node stands on its first element: the element's block and position in it, the node's number in the cell.
+  struct Origin {
+    int block, element, node;
+  };
+  std::vector<Eigen::MatrixXd> at_cells(const Net& net, Eigen::MatrixXd Table::*part) const;
+  Vec3 at_node(const std::vector<Eigen::MatrixXd>& cells, const Origin& origin) const;
+
+  LagrangeMesh mesh_;
+  surface::BezierMap map_;
+  std::vector<Table> tables_;  ///< of the blocks
+  std::vector<Origin> origins_;
+};
+
+/// The same for a single use; control values (N, k) give shape (n_nodes, k).
+Eigen::MatrixXd nodal_values(const spline::Space& space, const LagrangeMesh& mesh, const Eigen::MatrixXd& control_values);
 Net nodal_normals(const spline::Space& space, const LagrangeMesh& mesh, const Net& net);
 
 }  // namespace tanktread::output

@@ -47,6 +47,8 @@ Vec3 place(const Patch& patch, double s, double t) {
   return result;
 }
 
+double jacobian(const Jet& jet) { return jet.s.cross(jet.t).norm(); }
+
 double mean_curvature(const Jet& jet) {
   const Vec3 n = jet.s.cross(jet.t).normalized();
   const double e = jet.s.dot(jet.s), f = jet.s.dot(jet.t), g = jet.t.dot(jet.t);

@@ -23,6 +23,9 @@ struct Jet {
 };
 Jet jet(const Patch& patch, double s, double t);
 
+/// |x_,s x x_,t|.
+double jacobian(const Jet& jet);
+
 /// Place alone.
 Vec3 place(const Patch& patch, double s, double t);
 

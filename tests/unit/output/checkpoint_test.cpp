@@ -21,16 +21,16 @@ namespace {
 struct Scene {
   spline::Space space;
   Net net;
-  LagrangeMesh mesh;
+  std::optional<Nodes> nodes;
   Scene() {
     add_patch(space, net, 3, [](double s, double t) { return Vec3(s, t, s * t); });
     add_patch(space, net, 4, [](double s, double t) { return Vec3(1 + s, t, (1 + s) * t); });
-    mesh = lagrange_mesh(space, net);
+    nodes.emplace(space, lagrange_mesh(space, net));
   }
   Picture picture() const {
-    Picture result = output::picture(space, mesh, net);
-    result.point_fields.push_back({"velocity", nodal_values(space, mesh, net)});
-    result.point_fields.push_back({"height", nodal_values(space, mesh, net.col(2))});
+    Picture result = output::picture(*nodes, net);
+    result.point_fields.push_back({"velocity", nodes->values(net)});
+    result.point_fields.push_back({"height", nodes->values(net).col(2)});
     result.cell_fields.push_back({"element", Eigen::VectorXd::LinSpaced(2, 0, 1)});
     return result;
   }
