@@ -30,8 +30,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       membrane_(space, unstressed, parameters.law, 4, parameters.bending),
       tangent_(membrane_),
       layer_(space, parameters.quadrature),
-      collocation_(parameters.solvers.direct),
-      mass_(parameters.solvers.direct),
+      collocation_(parameters.solvers.direct, parameters.symmetry),
+      mass_(parameters.solvers.direct, parameters.symmetry),
       krylov_(parameters.solvers.krylov, parameters.solvers.belos),
       inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos),
       tube_(std::move(tube)) {
@@ -54,7 +54,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   volume0_ = geometry_.volume(initial);
   if (parameters.interface_motion != "material")
     interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, own_elements_,
-                       collocation_, parameters.solvers.direct, ranks_);
+                       collocation_, parameters.solvers.direct, symmetry, ranks_);
 }
 
 Capsule::~Capsule() = default;

@@ -17,11 +17,11 @@
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
 #include "coupling/tube.hpp"
-#include "membrane/direct_solver.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
 #include "membrane/options.hpp"
+#include "membrane/symmetric_solver.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/ambient_flow.hpp"
@@ -68,7 +68,7 @@ struct CapsuleParameters {
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
 ///
-/// Of a symmetric scene only the rows of fundamental control points are evaluated; the others are their images.
+/// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
 ///
 /// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the
 /// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
@@ -136,7 +136,7 @@ class Capsule : public Dynamics {
   membrane::Tangent tangent_;
   stokes::SingleLayer layer_;
   std::optional<stokes::DoubleLayer> double_layer_;  // lambda != 1
-  membrane::DirectSolver collocation_;
+  membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov krylov_, inner_krylov_;
   NodalOperator nodal_;                     // or frozen_, as the options say

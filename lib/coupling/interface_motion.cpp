@@ -7,7 +7,8 @@ namespace tanktread::coupling {
 
 InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, const std::string& motion, double speed,
                                  stokes::SingleLayer& layer, const std::vector<int>& own_points, const std::vector<int>& own_elements,
-                                 const membrane::DirectSolver& collocation, const membrane::DirectSolverOptions& solver, const Ranks& ranks)
+                                 const membrane::SymmetricSolver& collocation, const membrane::DirectSolverOptions& solver,
+                                 const surface::Symmetry& symmetry, const Ranks& ranks)
     : space_(space),
       relaxed_(motion == "relaxed"),
       speed_(speed),
@@ -18,7 +19,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
       ranks_(ranks),
       mesh_(space, initial, membrane::NeoHookean{1}),
       tangent_(mesh_),
-      mass_(solver) {
+      mass_(solver, symmetry) {
   if (!relaxed_) return;
   mass_.factor(membrane::MassMatrix(space).update(initial));
   layer_.assemble(own_points_, space.n_points, [&](std::span<const int> targets, stokes::Rows<float>& rows) {

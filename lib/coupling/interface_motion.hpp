@@ -9,9 +9,9 @@
 #include "coupling/frozen_operator.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
-#include "membrane/direct_solver.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
+#include "membrane/symmetric_solver.hpp"
 #include "spline/space.hpp"
 #include "stokes/single_layer.hpp"
 
@@ -28,8 +28,8 @@ class InterfaceMotion {
  public:
   /// `initial`: the net that the mesh relaxes towards; `speed`: length/time; `layer` has `initial` as its reference.
   InterfaceMotion(const spline::Space& space, const Net& initial, const std::string& motion, double speed, stokes::SingleLayer& layer,
-                  const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::DirectSolver& collocation,
-                  const membrane::DirectSolverOptions& solver, const Ranks& ranks);
+                  const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::SymmetricSolver& collocation,
+                  const membrane::DirectSolverOptions& solver, const surface::Symmetry& symmetry, const Ranks& ranks);
 
   /// Control-point velocity u at x for the fluid's velocity v (control values). Collective.
   Net velocity(const Net& x, const Net& v);
@@ -49,11 +49,11 @@ class InterfaceMotion {
   double speed_;
   std::vector<int> own_points_, own_elements_;
   Eigen::SparseMatrix<double> sites_;  // R
-  const membrane::DirectSolver& collocation_;
+  const membrane::SymmetricSolver& collocation_;
   const Ranks& ranks_;
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
-  membrane::DirectSolver mass_;
+  membrane::SymmetricSolver mass_;
   FrozenOperator layer_;
   std::vector<Vec3> normals_;
 };

@@ -1,6 +1,7 @@
 #include "membrane/direct_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -58,7 +59,7 @@ struct DirectSolver::Impl {
   RowMajor a;
   Teuchos::RCP<const Map> map;
   Teuchos::RCP<Matrix> matrix;
-  Teuchos::RCP<MultiVector> x, b;
+  std::array<Teuchos::RCP<MultiVector>, 3> x, b;  // of one, two and three columns
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
 
   // Everything that depends on the pattern only.
@@ -72,9 +73,11 @@ struct DirectSolver::Impl {
     const Teuchos::ArrayRCP<double> values(a.nonZeros());
     matrix = Teuchos::rcp(new Matrix(map, map, starts, columns, values));
     refill();
-    x = Teuchos::rcp(new MultiVector(map, 3));
-    b = Teuchos::rcp(new MultiVector(map, 3));
-    solver = Amesos2::create<Matrix, MultiVector>(options.name, matrix, x, b);
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] = Teuchos::rcp(new MultiVector(map, k + 1));
+      b[k] = Teuchos::rcp(new MultiVector(map, k + 1));
+    }
+    solver = Amesos2::create<Matrix, MultiVector>(options.name, matrix, x[2], b[2]);
     const auto list = Teuchos::rcp(options.amesos2 ? new Teuchos::ParameterList(*options.amesos2) : new Teuchos::ParameterList);
     list->setName("Amesos2");
     deck::check_foreign("Solvers/Amesos2", *list, *solver->getValidParameters());
@@ -143,23 +146,25 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   throw RunFailure("A sparse system of " + std::to_string(a.rows()) + " unknowns could not be factored by KLU2: " + trouble + ".");
 }
 
-void DirectSolver::solve(const Net& b, Net& x) const {
-  const auto n = impl_->a.rows();
-  for (int c = 0; c < 3; ++c) {
-    const auto column = impl_->b->getDataNonConst(c);
-    for (Eigen::Index i = 0; i < n; ++i) column[i] = b(i, c);
+void DirectSolver::solve(const Columns& b, Columns& x) const {
+  const Eigen::Index n = b.rows();
+  const auto columns = static_cast<std::size_t>(b.cols());
+  MultiVector &known = *impl_->b[columns - 1], &found = *impl_->x[columns - 1];
+  for (std::size_t c = 0; c < columns; ++c) {
+    const auto column = known.getDataNonConst(c);
+    for (Eigen::Index i = 0; i < n; ++i) column[i] = b(i, static_cast<Eigen::Index>(c));
   }
-  impl_->solver->solve();
-  x.resize(n, 3);
-  for (int c = 0; c < 3; ++c) {
-    const auto column = impl_->x->getData(c);
-    for (Eigen::Index i = 0; i < n; ++i) x(i, c) = column[i];
+  impl_->solver->solve(Teuchos::ptr(&found), Teuchos::ptr(&known));
+  x.resize(n, b.cols());
+  for (std::size_t c = 0; c < columns; ++c) {
+    const auto column = found.getData(c);
+    for (Eigen::Index i = 0; i < n; ++i) x(i, static_cast<Eigen::Index>(c)) = column[i];
   }
 }
 
 Net DirectSolver::solve(const Net& b) const {
-  Net x;
-  solve(b, x);
+  Columns x = b;
+  solve(x, x);
   return x;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Sparse linear systems with the same scalar matrix for the three components of a net.
+// Sparse linear systems with the same scalar matrix for several right-hand sides, as the three components of a net.
 
 #include <memory>
 
@@ -9,6 +9,9 @@
 #include "membrane/options.hpp"
 
 namespace tanktread::membrane {
+
+/// Up to three right-hand sides or solutions, one a column.
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, Eigen::Dynamic, 3>;
 
 /// A direct solver of Amesos2 on a matrix that every rank holds whole. Each rank solves for itself: short vectors are replicated, so
 /// there is no message, nothing depends on the number of ranks, and KLU2's faulty solve on several ranks (Trilinos 13.2) is never used.
@@ -25,8 +28,8 @@ class DirectSolver {
   /// (Tacho is for symmetric positive definite ones).
   void factor(const Eigen::SparseMatrix<double>& a);
 
-  /// x = A^-1 b, shape (N, 3) each.
-  void solve(const Net& b, Net& x) const;
+  /// x = A^-1 b, of one shape; they may be the same object.
+  void solve(const Columns& b, Columns& x) const;
   Net solve(const Net& b) const;
 
  private:

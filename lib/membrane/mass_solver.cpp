@@ -13,7 +13,8 @@ Eigen::Array3d ratio(const Eigen::Array3d& a, const Eigen::Array3d& b) { return 
 
 }  // namespace
 
-MassSolver::MassSolver(const DirectSolverOptions& options) : reference_(options), direct_(options) {}
+MassSolver::MassSolver(const DirectSolverOptions& options, const surface::Symmetry& symmetry)
+    : reference_(options, symmetry), direct_(options, symmetry) {}
 
 void MassSolver::factor(const Eigen::SparseMatrix<double>& m0) {
   reference_.factor(m0);

@@ -4,17 +4,18 @@
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
-#include "membrane/direct_solver.hpp"
+#include "membrane/symmetric_solver.hpp"
 
 namespace tanktread::membrane {
 
 /// Solves with the mass matrix M0 of the unstressed surface, which Amesos2 factors once a mesh (3.7), and with the mass matrix S of any later
 /// configuration (3.6), by conjugate gradients with D M0 D as preconditioner, D_A^2 = S_AA/M0_AA. The two differ by how much the stretch varies
 /// over the support of one function, so a handful of iterations does what a new factorisation would at a tenth of its cost; where it does
-/// not, S is factored. No memory of earlier configurations: the answer depends on S alone.
+/// not, S is factored. No memory of earlier configurations: the answer depends on S alone. Of symmetric surfaces and fields only the fundamental part
+/// is solved for.
 class MassSolver {
  public:
-  explicit MassSolver(const DirectSolverOptions& options = {});
+  explicit MassSolver(const DirectSolverOptions& options = {}, const surface::Symmetry& symmetry = surface::Symmetry());
 
   /// Factors M0. Throws as DirectSolver does.
   void factor(const Eigen::SparseMatrix<double>& m0);
@@ -28,7 +29,7 @@ class MassSolver {
   int iterations() const { return iterations_; }  ///< of the last solve with S; 0 if it was factored
 
  private:
-  DirectSolver reference_, direct_;
+  SymmetricSolver reference_, direct_;
   Eigen::VectorXd diagonal_;  // of M0
   int iterations_ = 0;
 };

@@ -36,6 +36,12 @@ class Symmetry {
   int order() const { return order_; }
   const std::vector<int>& fundamental() const { return fundamental_; }  ///< ascending
 
+  const std::vector<int>& source() const { return source_; }  ///< of each point, the fundamental one that it is an image of
+
+  /// What the vector of a point is multiplied by, component by component, to be that of its source's image, shape (N, 3): 1, -1, or 0 where an image
+  /// of the point onto itself turns the component around.
+  const Net& signs() const { return signs_; }
+
   /// Makes a field of vectors, control values or values at the sites, symmetric from its rows of the fundamental points. A component that an image
   /// of a point onto itself turns around becomes zero.
   void complete(Net& field) const;
@@ -45,8 +51,8 @@ class Symmetry {
 
  private:
   int order_ = 1;
-  std::vector<int> fundamental_, source_;  // source: the fundamental point of each point
-  Net signs_;                              // what its vector is multiplied by
+  std::vector<int> fundamental_, source_;
+  Net signs_;
   std::string description_ = "none";
 };
 

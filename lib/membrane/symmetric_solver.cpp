@@ -1,0 +1,70 @@
+#include "membrane/symmetric_solver.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tanktread::membrane {
+
+SymmetricSolver::SymmetricSolver(const DirectSolverOptions& options, surface::Symmetry symmetry)
+    : symmetry_(std::move(symmetry)), whole_(options) {
+  if (symmetry_.order() == 1) return;
+  const Net& signs = symmetry_.signs();
+  for (int c = 0; c < 3; ++c) {
+    const auto same = std::ranges::find_if(parts_, [&](const Part& p) { return signs.col(p.components.front()) == signs.col(c); });
+    if (same == parts_.end())
+      parts_.push_back(part(options, c));
+    else
+      same->components.push_back(c);
+  }
+}
+
+SymmetricSolver::Part SymmetricSolver::part(const DirectSolverOptions& options, int component) const {
+  Part part{{component}, {}, {}, DirectSolver(options)};
+  std::vector<int> number(symmetry_.source().size(), -1);
+  for (const int a : symmetry_.fundamental())
+    if (symmetry_.signs()(a, component) != 0) {
+      number[static_cast<std::size_t>(a)] = static_cast<int>(part.points.size());
+      part.points.push_back(a);
+    }
+  for (const int a : symmetry_.source()) part.unknown.push_back(number[static_cast<std::size_t>(a)]);
+  return part;
+}
+
+void SymmetricSolver::factor(const Eigen::SparseMatrix<double>& a) {
+  if (parts_.empty()) return whole_.factor(a);
+  for (Part& part : parts_) {
+    const int c = part.components.front(), n = static_cast<int>(part.points.size());
+    std::vector<int> row(part.unknown.size(), -1);
+    for (int i = 0; i < n; ++i) row[static_cast<std::size_t>(part.points[static_cast<std::size_t>(i)])] = i;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int b = 0; b < a.outerSize(); ++b) {
+      const int column = part.unknown[static_cast<std::size_t>(b)];
+      if (column < 0) continue;
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(a, b); entry; ++entry)
+        if (const int i = row[static_cast<std::size_t>(entry.row())]; i >= 0)
+          entries.emplace_back(i, column, symmetry_.signs()(b, c) * entry.value());
+    }
+    Eigen::SparseMatrix<double> reduced(n, n);
+    reduced.setFromTriplets(entries.begin(), entries.end());
+    part.solver.factor(reduced);
+  }
+}
+
+Net SymmetricSolver::solve(const Net& b) const {
+  if (parts_.empty()) return whole_.solve(b);
+  Net x(b.rows(), 3);
+  for (const Part& part : parts_) {
+    Columns some = b(part.points, part.components);
+    part.solver.solve(some, some);
+    for (std::size_t k = 0; k < part.components.size(); ++k) {
+      const int c = part.components[k];
+      for (Eigen::Index a = 0; a < x.rows(); ++a) {
+        const int i = part.unknown[static_cast<std::size_t>(a)];
+        x(a, c) = i < 0 ? 0 : symmetry_.signs()(a, c) * some(i, static_cast<Eigen::Index>(k));
+      }
+    }
+  }
+  return x;
+}
+
+}  // namespace tanktread::membrane
