@@ -33,8 +33,17 @@ std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMes
   return target;
 }
 
+/// A symmetric particle keeps a symmetric mesh: marks stand for all their images.
+spline::RepairRules rules(const Body& body) {
+  spline::RepairRules result;
+  for (const surface::Image& image : body.symmetry.images())
+    if (auto map = spline::lattice_map(body.mesh, body.space, image.element, image.signs.prod() < 0)) result.images.push_back(std::move(*map));
+  return result;
+}
+
 Adapted refined(const Scene& scene, const Body& body, const motion::State& state, const std::vector<spline::Mark>& marks) {
-  spline::Refinement refinement = spline::refine(body.mesh, marks);
+  if (marks.empty()) return {};
+  spline::Refinement refinement = spline::refine(body.mesh, marks, rules(body));
   if (refinement.mesh.edges == body.mesh.edges) {
     Adapted unchanged;
     unchanged.refused = refinement.refused;
@@ -71,7 +80,7 @@ std::vector<bool> elements_over(const Body& body, const std::vector<double>& def
 /// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
 Adapted coarsened(const Scene& scene, const Body& body, const motion::State& state, std::vector<spline::Merge> merges) {
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
-    spline::Coarsening coarsening = spline::coarsen(body.mesh, merges);
+    spline::Coarsening coarsening = spline::coarsen(body.mesh, merges, rules(body));
     auto target = on_mesh(scene, body, std::move(coarsening.mesh));
     if (target->space.n_points >= body.space.n_points) return {};
     const spline::Projection projection(body.space, target->space);

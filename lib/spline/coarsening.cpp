@@ -48,6 +48,7 @@ bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
 struct Remover {
   TMesh mesh;
   std::vector<std::uint8_t> removable;
+  const std::vector<LatticeMap>& images;
   int bays = 0, doublings = 0;
 
   const Lattice& lattice() const { return *mesh.lattice; }
@@ -57,6 +58,12 @@ struct Remover {
     const Lattice& l = lattice();
     mesh.edges[e.vertex] &= std::uint8_t(~(1 << e.slot));
     mesh.edges[l.neighbour[e.vertex][e.slot]] &= std::uint8_t(~(1 << l.back[e.vertex][e.slot]));
+  }
+
+  void set(Ray e) {
+    const Lattice& l = lattice();
+    mesh.edges[e.vertex] |= std::uint8_t(1 << e.slot);
+    mesh.edges[l.neighbour[e.vertex][e.slot]] |= std::uint8_t(1 << l.back[e.vertex][e.slot]);
   }
 
   /// The bay that starts at a vertex with a perpendicular edge; empty if one of its edges must stay or an end would lose its rectangle.
@@ -85,9 +92,25 @@ struct Remover {
       const Ray end = south ? Ray{l.corners[c][3], 3} : Ray{l.corners[c][0], 1};
       clear(end);
       if (!mesh.edge(end.vertex, end.slot ^ 2)) continue;
-      mesh.edges[end.vertex] |= std::uint8_t(1 << end.slot);
-      mesh.edges[l.neighbour[end.vertex][end.slot]] |= std::uint8_t(1 << l.back[end.vertex][end.slot]);
+      set(end);
     }
+  }
+
+  /// Takes out the bay that starts here with all its images, or none of them.
+  bool remove_images(Ray start) {
+    std::vector<Ray> starts{start}, gone;
+    for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
+    for (Ray s : starts) {
+      if (!mesh.edge(s.vertex, s.slot)) continue;  // its own image
+      const auto bay = removable_bay(s);
+      for (Ray e : bay) clear(e);
+      gone.insert(gone.end(), bay.begin(), bay.end());
+      if (!bay.empty()) continue;
+      for (Ray e : gone) set(e);
+      return false;
+    }
+    bays += !gone.empty();
+    return !gone.empty();
   }
 
   /// One pass over all bays, shortest first.
@@ -102,12 +125,7 @@ struct Remover {
       return std::tuple(a.first, a.second.vertex, a.second.slot) < std::tuple(b.first, b.second.vertex, b.second.slot);
     });
     bool any = false;
-    for (const auto& [length, start] : found) {
-      const auto bay = removable_bay(start);
-      for (Ray e : bay) clear(e);
-      bays += !bay.empty();
-      any = any || !bay.empty();
-    }
+    for (const auto& [length, start] : found) any = remove_images(start) || any;
     return any;
   }
 
@@ -170,7 +188,7 @@ struct Remover {
 }  // namespace
 
 Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules) {
-  Remover r{mesh, removable};
+  Remover r{mesh, removable, rules.images};
   bool going = true;
   while (going) {
     going = r.remove_bays();
@@ -192,6 +210,11 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
     auto grown = [&](int size, int doublings) { return std::min(int(std::bit_floor(unsigned(size))) << std::min(doublings, 16), l.base); };
     limit[m.element] = {m.s > 0 ? grown(r.width, m.s) : 1, m.t > 0 ? grown(r.height, m.t) : 1};
   }
+  for (const LatticeMap& map : rules.images)
+    for (int tile = 0; tile < int(tiling.tiles.size()); ++tile) {
+      const auto [other, exchanged] = image(l, map, tiling, tile);
+      for (int a : {0, 1}) limit[tile][a] = std::min(limit[tile][a], limit[other][a != exchanged]);
+    }
   std::vector<std::uint8_t> removable(l.vertices(), 0);
   for (int c = 0; c < l.cells(); ++c)
     for (int k : {1, 2}) {  // right and upper edge of each cell, inside a face

@@ -24,7 +24,8 @@ struct Merge {
 /// mesh stay, and so do the rings at an extraordinary point, which go as a whole.
 ///
 /// All lines that may go are taken out together and the mesh is then repaired (one at a time, each would be held by its neighbours). The splines
-/// of the result need not be contained in the old ones, so fields go over by Projection.
+/// of the result need not be contained in the old ones, so fields go over by Projection. Under the rules' images an element may grow as far as all
+/// its images may, and a line goes with all of its own or not at all.
 Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 
 /// The same for a given set of unit edges (bits as in TMesh::edges): an edge goes if its whole bay may go.

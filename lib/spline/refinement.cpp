@@ -1,6 +1,7 @@
 #include "spline/refinement.hpp"
 
 #include <algorithm>
+#include <set>
 #include <span>
 
 #include "spline/extended_mesh.hpp"
@@ -68,6 +69,33 @@ std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> can
   return best;
 }
 
+/// Puts in a path and its images, and adds all of them to `paths`.
+void insert(ExtendedMesh& extended, std::vector<Ray> path, const RepairRules& rules, std::vector<std::vector<Ray>>& paths) {
+  for (const LatticeMap& map : rules.images) {
+    paths.push_back(image(*extended.mesh().lattice, map, path));
+    extended.insert(paths.back());
+  }
+  extended.insert(path);
+  paths.push_back(std::move(path));
+}
+
+/// A tile to be cut across s or t.
+struct Cut {
+  int tile;
+  bool across_s;
+  auto operator<=>(const Cut&) const = default;
+};
+
+/// The first of the images of a cut, itself included: which one is taken matters where a tile has no middle line.
+Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
+  Cut first = cut;
+  for (const LatticeMap& map : images) {
+    const TileImage to = image(lattice, map, tiling, cut.tile);
+    first = std::min(first, Cut{to.tile, cut.across_s != to.exchanged});
+  }
+  return first;
+}
+
 }  // namespace
 
 std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules) {
@@ -87,9 +115,10 @@ std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules) {
     } else {
       break;
     }
-    extended.insert(bay);
+    std::vector<std::vector<Ray>> paths;
+    insert(extended, std::move(bay), rules, paths);
     ++bays;
-    halvings += restore_zones(extended, {bay}, rules.rings);
+    halvings += restore_zones(extended, std::move(paths), rules.rings);
   }
   return {bays, halvings};
 }
@@ -99,18 +128,18 @@ Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const Repai
   ExtendedMesh extended(mesh);
   if (rules.nested_extensions) extended.keep_extensions();
   const Tiling tiling = elements(mesh);
-  std::vector<std::vector<Ray>> paths;
+  std::set<Cut> cuts;
   for (const Mark& m : marks)
-    for (bool across_s : {true, false}) {
-      if (!(across_s ? m.s : m.t)) continue;
-      const Rectangle& r = tiling.tiles[m.element];
-      if ((across_s ? r.width : r.height) < 2) {
-        ++out.refused;
-        continue;
-      }
-      paths.push_back(mid_line(*mesh.lattice, r, across_s));
-      extended.insert(paths.back());
-    }
+    for (bool across_s : {true, false})
+      if (across_s ? m.s : m.t) cuts.insert(first_image({m.element, across_s}, *mesh.lattice, tiling, rules.images));
+  std::vector<std::vector<Ray>> paths;
+  for (const Cut& cut : cuts) {
+    const Rectangle& r = tiling.tiles[cut.tile];
+    if ((cut.across_s ? r.width : r.height) < 2)
+      ++out.refused;
+    else
+      insert(extended, mid_line(*mesh.lattice, r, cut.across_s), rules, paths);
+  }
   out.halvings = restore_zones(extended, std::move(paths), rules.rings);
   const auto [bays, halvings] = repair(extended, rules);
   out.repairs = bays;

@@ -70,7 +70,7 @@ class Search {
 
   std::optional<Image> image() {
     if (!points() || !elements() || !sites()) return {};
-    return Image{signs_, point_};
+    return Image{signs_, point_, element_};
   }
 
  private:
@@ -158,8 +158,9 @@ class Search {
 };
 
 Image product(const Image& a, const Image& b) {
-  Image result{a.signs.cwiseProduct(b.signs), b.point};
+  Image result{a.signs.cwiseProduct(b.signs), b.point, b.element};
   for (int& p : result.point) p = a.point[p];
+  for (int& e : result.element) e = a.element[e];
   return result;
 }
 
@@ -175,9 +176,10 @@ std::vector<Image> joined(std::vector<Image> group, const Image& more) {
   return group;
 }
 
-std::vector<Image> identity(int n_points) {
-  Image one{Vec3::Ones(), std::vector<int>(n_points)};
+std::vector<Image> identity(std::size_t n_points, std::size_t n_elements) {
+  Image one{Vec3::Ones(), std::vector<int>(n_points), std::vector<int>(n_elements)};
   std::iota(one.point.begin(), one.point.end(), 0);
+  std::iota(one.element.begin(), one.element.end(), 0);
   return {one};
 }
 
@@ -205,7 +207,8 @@ Symmetry::Symmetry(int n_points) : fundamental_(n_points), source_(n_points), si
 }
 
 Symmetry::Symmetry(const std::vector<Image>& generators, const Net& net) : Symmetry(static_cast<int>(net.rows())) {
-  std::vector<Image> group = identity(static_cast<int>(net.rows()));
+  if (generators.empty()) return;
+  std::vector<Image> group = identity(generators[0].point.size(), generators[0].element.size());
   std::vector<std::string> names;
   for (const Image& g : generators) {
     if (!contains(group, g.signs)) names.push_back(name(g.signs));
@@ -213,6 +216,7 @@ Symmetry::Symmetry(const std::vector<Image>& generators, const Net& net) : Symme
   }
   order_ = static_cast<int>(group.size());
   if (order_ == 1) return;
+  images_.assign(group.begin() + 1, group.end());
   const Vec3 centre = middle(net), size = (net.colwise().maxCoeff() - net.colwise().minCoeff()).transpose();
   const auto rank = [&](int a) { return (net.row(a).transpose() - centre).dot(Vec3(1, 1e-3, 1e-6)) / size.maxCoeff(); };
   fundamental_.clear();
@@ -239,7 +243,7 @@ void Symmetry::complete(Net& field) const {
 }
 
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps) {
-  std::vector<Image> generators, group = identity(space.n_points);
+  std::vector<Image> generators, group = identity(space.n_points, space.elements.size());
   for (const Vec3& signs : candidates) {
     if (contains(group, signs)) continue;
     const auto found = image(space, nets, signs);

@@ -13,10 +13,10 @@
 namespace tanktread::surface {
 
 /// x -> c + diag(signs) (x - c) about the middle c of a surface: a mirror plane (one sign is -1), a half turn (two), the point symmetry (three);
-/// and which control point the image of each one is.
+/// and which control point, and which Bezier element, the image of each one is.
 struct Image {
   Vec3 signs = Vec3::Ones();
-  std::vector<int> point;
+  std::vector<int> point, element;
 };
 
 /// The image of the space and of all these nets on it, if it is the same space and nets: places within 1e-10 of the first net's size (what
@@ -34,6 +34,7 @@ class Symmetry {
   Symmetry(const std::vector<Image>& generators, const Net& net);
 
   int order() const { return order_; }
+  const std::vector<Image>& images() const { return images_; }          ///< all but the identity
   const std::vector<int>& fundamental() const { return fundamental_; }  ///< ascending
 
   const std::vector<int>& source() const { return source_; }  ///< of each point, the fundamental one that it is an image of
@@ -51,6 +52,7 @@ class Symmetry {
 
  private:
   int order_ = 1;
+  std::vector<Image> images_;
   std::vector<int> fundamental_, source_;
   Net signs_;
   std::string description_ = "none";

@@ -6,7 +6,7 @@ import shutil
 
 import numpy
 
-from harness import check, deck, main, run, series
+from harness import check, deck, main, run, series, summary
 
 DECK = """
 Tanktread:
@@ -43,6 +43,15 @@ def a_run_taken_up_after_refinements_goes_on_to_the_last_bit():
     run("--resume", "part", "--quiet")
     for name in NAMES:
         check(series("whole", name).tobytes() == series("part", name).tobytes(), f"{name} differs")
+
+
+def a_symmetric_scene_stays_symmetric_on_every_mesh():
+    run(deck(DECK), "--output", "run", "--quiet")
+    plan = summary("run")["plan"]["symmetry"]
+    check(plan.startswith("mirror x1, mirror x2 and mirror x3"), plan)
+    turned = deck(DECK.replace("Surface:", "Particle: { orientation: [20.0, 35.0, 50.0] }\n  Surface:"))
+    run(turned, "--output", "turned", "--quiet")
+    check(summary("turned")["plan"]["symmetry"].startswith("point symmetry"), summary("turned")["plan"]["symmetry"])
 
 
 def the_volume_is_kept_through_every_change_of_the_mesh():
