@@ -4,28 +4,28 @@
 
 namespace tanktread::spline {
 
-Eigen::SparseMatrix<double> assemble(const Space& space, const std::vector<Eigen::MatrixXd>& local) {
-  // Column by column: the elements around a point, then a dense accumulator.
+Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local) {
+  // Column by column: the elements around an unknown, then a dense accumulator.
   struct Place {
     int element, row;
   };
-  std::vector<std::vector<Place>> around(space.n_points);
+  std::vector<std::vector<Place>> around(n);
   for (std::size_t k = 0; k < local.size(); ++k)
-    if (local[k].size() > 0)
-      for (std::size_t i = 0; i < space.elements[k].points.size(); ++i) around[space.elements[k].points[i]].push_back({int(k), int(i)});
+    if (local[k].values.size() > 0)
+      for (std::size_t i = 0; i < local[k].unknowns.size(); ++i) around[local[k].unknowns[i]].push_back({int(k), int(i)});
 
-  Eigen::SparseMatrix<double> out(space.n_points, space.n_points);
-  out.reserve(Eigen::VectorXi::Constant(space.n_points, 40));
-  std::vector<double> sum(space.n_points, 0.0);
-  std::vector<char> seen(space.n_points, 0);
+  Eigen::SparseMatrix<double> out(n, n);
+  out.reserve(Eigen::VectorXi::Constant(n, 40));
+  std::vector<double> sum(n, 0.0);
+  std::vector<char> seen(n, 0);
   std::vector<int> rows;
-  for (int j = 0; j < space.n_points; ++j) {
+  for (int j = 0; j < n; ++j) {
     rows.clear();
     for (const Place& p : around[j]) {
-      const auto& points = space.elements[p.element].points;
-      const double* column = local[p.element].data() + local[p.element].rows() * p.row;
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const int r = points[i];
+      const auto& [unknowns, values] = local[p.element];
+      const double* column = values.data() + values.rows() * p.row;
+      for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        const int r = unknowns[i];
         if (r < j) continue;
         if (!seen[r]) {
           seen[r] = 1;

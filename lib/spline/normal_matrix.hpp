@@ -5,11 +5,15 @@
 
 #include <Eigen/SparseCore>
 
-#include "spline/space.hpp"
-
 namespace tanktread::spline {
 
-/// Lower triangle of sum_e R_e^T local[e] R_e, R_e picking the control points of element e. local[e] has shape (m, m); an empty one adds nothing.
-Eigen::SparseMatrix<double> assemble(const Space& space, const std::vector<Eigen::MatrixXd>& local);
+/// What one element adds: values(i, j) to the entry of unknowns i and j of its own.
+struct LocalMatrix {
+  std::vector<int> unknowns;  ///< m of them
+  Eigen::MatrixXd values;     ///< shape (m, m), symmetric; an empty one adds nothing
+};
+
+/// Lower triangle of the sum, shape (n, n).
+Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local);
 
 }  // namespace tanktread::spline

@@ -41,13 +41,14 @@ Projection::Projection(const Space& from, const Space& to) : state_(new State{fr
   sample(from, in_to, true);
   sample(to, in_from, false);
 
-  std::vector<Eigen::MatrixXd> local(to.elements.size());
+  std::vector<LocalMatrix> local(to.elements.size());
+  for (std::size_t k = 0; k < local.size(); ++k) local[k].unknowns = to.elements[k].points;
   for (const auto& s : state_->samples) {
-    auto& m = local[s.new_element];
+    auto& m = local[s.new_element].values;
     if (m.size() == 0) m = Eigen::MatrixXd::Zero(s.new_basis.size(), s.new_basis.size());
     m.noalias() += s.weight * s.new_basis * s.new_basis.transpose();
   }
-  state_->factor.compute(assemble(to, local));
+  state_->factor.compute(assemble(to.n_points, local));
 }
 
 Projection::~Projection() = default;

@@ -35,6 +35,26 @@ std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::a
   return row;
 }
 
+/// One B-spline on intervals of a ray, each worked out once: the tiles of a quadrant share them.
+class Intervals {
+ public:
+  explicit Intervals(const std::array<double, 5>& knots) : knots_(knots) {}
+  const std::array<double, 4>& on(double a, double b) {
+    for (int i = 0; i < size_; ++i)
+      if (a_[i] == a && b_[i] == b) return value_[i];
+    const int at = size_ < most ? size_++ : most - 1;
+    a_[at] = a, b_[at] = b;
+    return value_[at] = b_spline_on(knots_, a, b);
+  }
+
+ private:
+  static constexpr int most = 8;
+  std::array<double, 5> knots_;
+  int size_ = 0;
+  double a_[most], b_[most];
+  std::array<double, 4> value_[most];
+};
+
 struct Builder {
   const TMesh& mesh;
   const Lattice& l;
@@ -60,7 +80,7 @@ struct Builder {
       return std::array<double, 5>{-double(l.length(v, back, minus[1])), -double(l.length(v, back, minus[0])), 0.0,
                                    double(l.length(v, slot, plus[0])), double(l.length(v, slot, plus[1]))};
     };
-    const auto ka = knots_of(q), kb = knots_of(next);
+    Intervals along_ahead(knots_of(q)), along_aside(knots_of(next));
 
     Walker row{l.cell[v][q], l.corner[v][q]};
     for (int j = 0; j < aside[1];) {
@@ -72,8 +92,8 @@ struct Builder {
         const int along = width_along(r, w.turn), across = width_along(r, w.turn + 1);
         const int below = behind(l, r, w.cell, w.turn + 1), rest = along - behind(l, r, w.cell, w.turn);
         if (below == 0 && rest == along && number >= 0 && out.irregular[number] < 0) {
-          const auto a = b_spline_on(ka, l.length(v, q, i), l.length(v, q, i + along));
-          const auto b = b_spline_on(kb, l.length(v, next, j), l.length(v, next, j + across));
+          const auto& a = along_ahead.on(l.length(v, q, i), l.length(v, q, i + along));
+          const auto& b = along_aside.on(l.length(v, next, j), l.length(v, next, j + across));
           out.entries.push_back({number, A, in_frame(a, b, w.turn)});
         }
         up = std::min(up, across - below);

@@ -1,124 +1,153 @@
 #include "spline/transfer.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/LU>
 
-#include "spline/bernstein.hpp"
-#include "spline/locate.hpp"
-#include "spline/normal_matrix.hpp"
+#include "spline/bezier_fit.hpp"
 
 namespace tanktread::spline {
+
+namespace {
+
+/// Of a field of size 1: far above rounding, far below what spaces that are not nested leave.
+constexpr double nested = 1e-10;
+
+/// A control value from one element: sum of |weights| of its Bezier points above which least squares are more accurate. 9 on a uniform mesh.
+constexpr double most_amplification = 100;
+
+using Sixteen = Eigen::Matrix<double, 16, 1>;
+
+}  // namespace
 
 struct Transfer::State {
   const Space& from;
   const Space& to;
-  struct Part {            // of one element of `to`
-    int coarse;            // the element of `from` around it
-    bool whole;            // which it is, placed and graded alike
-    Eigen::MatrixXd s, t;  // restriction (and elevation) of the coarse Bezier points along s and t
-    Eigen::MatrixXd fine;  // elevation of the fine ones where the coarse degree is higher; empty otherwise
+  std::vector<Embedding> embedding;
+  std::vector<int> copied;   // of a control point: the old one that it is, or -1
+  std::vector<int> changed;  // elements on which anything may have changed
+  struct Combination {       // of the old control values of an element
+    int point, element;
+    Eigen::VectorXd weights;
   };
-  std::vector<Part> parts;
-  int straddling = 0;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+  std::vector<Combination> combined;
+  std::optional<BezierFit> rest;         // of few points
+  mutable std::optional<BezierFit> all;  // made when it is needed
+
+  void copy_what_is_alike();
+  std::vector<int> combine_where_independent();
+  double residual(const Net& field, const Net& net, const std::vector<int>& elements) const;
+  std::vector<int> every(int n) const {
+    std::vector<int> out(n);
+    std::iota(out.begin(), out.end(), 0);
+    return out;
+  }
 };
 
-namespace {
-
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // Bezier points, row n j + i
-
-/// Bezier points of a field on an element, C^T P.
-Points bezier_points(const Element& e, const Net& field) {
-  Points P(Eigen::Index(e.points.size()), 3);
-  for (std::size_t i = 0; i < e.points.size(); ++i) P.row(Eigen::Index(i)) = field.row(e.points[i]);
-  return e.extraction.transpose() * P;
-}
-
-/// (T x S) applied to Bezier points.
-Points along_both(const Eigen::MatrixXd& S, const Eigen::MatrixXd& T, const Points& Q) {
-  Points out(S.rows() * T.rows(), 3);
-  for (int d = 0; d < 3; ++d) {
-    const Eigen::Map<const Eigen::MatrixXd> in(Q.col(d).data(), S.cols(), T.cols());
-    Eigen::Map<Eigen::MatrixXd>(out.col(d).data(), S.rows(), T.rows()) = S * in * T.transpose();
-  }
-  return out;
-}
-
-Eigen::MatrixXd tensor(const Eigen::MatrixXd& S) {
-  const Eigen::Index m = S.rows(), n = S.cols();
-  Eigen::MatrixXd out(m * m, n * n);
-  for (Eigen::Index j = 0; j < m; ++j)
-    for (Eigen::Index l = 0; l < n; ++l) out.block(j * m, l * n, m, n) = S(j, l) * S;
-  return out;
-}
-
-}  // namespace
-
-Transfer::Transfer(const Space& from, const Space& to) : state_(new State{from, to, {}, 0, {}}) {
-  const Locator locate(from);
-  std::vector<Eigen::MatrixXd> normal(to.elements.size());
-  state_->parts.reserve(to.elements.size());
+void Transfer::State::copy_what_is_alike() {
+  copied.assign(to.n_points, -1);
+  std::vector<char> alike(to.elements.size(), 0);
   for (std::size_t k = 0; k < to.elements.size(); ++k) {
-    const Element& e = to.elements[k];
-    State::Part part;
-    part.coarse = locate({e.face, e.origin[0] + e.size[0] / 2, e.origin[1] + e.size[1] / 2}).element;
-    const Element& c = from.elements[part.coarse];
-    part.whole = e.degree == c.degree && e.origin == c.origin && e.size == c.size;
-    if (!part.whole) {
-      double low[2], high[2];
-      for (int d = 0; d < 2; ++d) {
-        low[d] = (e.origin[d] - c.origin[d]) / c.size[d];
-        high[d] = (e.origin[d] + e.size[d] - c.origin[d]) / c.size[d];
-      }
-      const double margin = 1e-9;
-      if (std::min(low[0], low[1]) < -margin || std::max(high[0], high[1]) > 1 + margin) ++state_->straddling;
-      part.s = restriction(c.degree, low[0], high[0]);
-      part.t = restriction(c.degree, low[1], high[1]);
-      if (e.degree > c.degree) {
-        const Eigen::MatrixXd up = elevation(c.degree, e.degree);
-        part.s = up * part.s;
-        part.t = up * part.t;
-      } else if (e.degree < c.degree) {
-        part.fine = tensor(elevation(e.degree, c.degree));
-      }
-    }
-    if (part.fine.size() == 0) {
-      normal[k].noalias() = e.extraction * e.extraction.transpose();
-    } else {
-      const Eigen::MatrixXd rows = part.fine * e.extraction.transpose();
-      normal[k].noalias() = rows.transpose() * rows;
-    }
-    state_->parts.push_back(std::move(part));
+    const Element &e = to.elements[k], &c = from.elements[embedding[k].around];
+    alike[k] = embedding[k].whole && e.extraction.rows() == c.extraction.rows() && e.extraction == c.extraction;
+    if (alike[k])
+      for (std::size_t i = 0; i < e.points.size(); ++i) copied[e.points[i]] = c.points[i];
   }
-  state_->factor.compute(assemble(to, normal));
+  for (int k = 0; k < int(to.elements.size()); ++k) {
+    const Element &e = to.elements[k], &c = from.elements[embedding[k].around];
+    bool same = alike[k];
+    for (std::size_t i = 0; same && i < e.points.size(); ++i) same = copied[e.points[i]] == c.points[i];
+    if (!same) changed.push_back(k);
+  }
+}
+
+/// Points that one element determines, on the one where their function is largest; returns those that none does.
+std::vector<int> Transfer::State::combine_where_independent() {
+  struct Best {
+    double mean = 0;
+    int element = -1;
+  };
+  std::vector<Best> best(to.n_points);
+  for (int k : changed) {
+    const Element& e = to.elements[k];
+    const bool independent = e.degree == 3 && e.points.size() == 16 && from.elements[embedding[k].around].degree == 3;
+    if (!independent) continue;
+    for (int i = 0; i < 16; ++i) {
+      Best& b = best[e.points[i]];
+      const double mean = copied[e.points[i]] < 0 ? e.extraction.row(i).sum() : 0;
+      if (mean > b.mean) b = {mean, k};
+    }
+  }
+  std::vector<int> left;
+  std::vector<char> seen(to.n_points, 0);
+  for (int k : changed) {
+    const Element& e = to.elements[k];
+    std::vector<int> here;
+    for (int i = 0; i < int(e.points.size()); ++i) {
+      const int p = e.points[i];
+      if (copied[p] < 0 && best[p].element == k) here.push_back(i);
+      if (copied[p] < 0 && best[p].element < 0 && !seen[p]) seen[p] = 1, left.push_back(p);
+    }
+    if (here.empty()) continue;
+    const Element& c = from.elements[embedding[k].around];
+    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(e.extraction);
+    for (int i : here) {
+      Sixteen w = lu.solve(Sixteen(Sixteen::Unit(i)));
+      if (!(w.cwiseAbs().sum() <= most_amplification)) {
+        left.push_back(e.points[i]);
+        continue;
+      }
+      if (!embedding[k].whole) {
+        const Eigen::Matrix4d S = embedding[k].s, T = embedding[k].t;
+        Eigen::Map<Eigen::Matrix4d> W(w.data());
+        W = (S.transpose() * W * T).eval();
+      }
+      combined.push_back({e.points[i], embedding[k].around, c.extraction.lazyProduct(w)});
+    }
+  }
+  std::sort(left.begin(), left.end());
+  return left;
+}
+
+double Transfer::State::residual(const Net& field, const Net& net, const std::vector<int>& elements) const {
+  double largest = 0;
+  for (int k : elements)
+    largest = std::max(largest, (own_points(to.elements[k], embedding[k], net) - restricted(from, embedding[k], field)).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+Transfer::Transfer(const Space& from, const Space& to) : state_(new State{from, to, embeddings(from, to), {}, {}, {}, {}, {}}) {
+  state_->copy_what_is_alike();
+  const auto left = state_->combine_where_independent();
+  if (!left.empty()) state_->rest.emplace(from, to, state_->embedding, left);
 }
 
 Transfer::~Transfer() = default;
 Transfer::Transfer(Transfer&&) noexcept = default;
 
-int Transfer::straddling() const { return state_->straddling; }
+int Transfer::straddling() const {
+  return int(std::count_if(state_->embedding.begin(), state_->embedding.end(), [](const Embedding& e) { return e.straddles; }));
+}
 
 Transfer::Result Transfer::operator()(const Net& field) const {
-  const Space &from = state_->from, &to = state_->to;
-  std::vector<Points> target(to.elements.size());
-  Net right = Net::Zero(to.n_points, 3);
-  for (std::size_t k = 0; k < to.elements.size(); ++k) {
-    const auto& part = state_->parts[k];
-    const Element& e = to.elements[k];
-    target[k] = bezier_points(from.elements[part.coarse], field);
-    if (!part.whole) target[k] = along_both(part.s, part.t, target[k]);
-    const Points r = part.fine.size() == 0 ? Points(e.extraction * target[k]) : Points(e.extraction * (part.fine.transpose() * target[k]));
-    for (std::size_t i = 0; i < e.points.size(); ++i) right.row(e.points[i]) += r.row(Eigen::Index(i));
+  const State& s = *state_;
+  Result out{Net::Zero(s.to.n_points, 3), 0};
+  for (int p = 0; p < s.to.n_points; ++p)
+    if (s.copied[p] >= 0) out.net.row(p) = field.row(s.copied[p]);
+  for (const auto& c : s.combined) {
+    const auto& points = s.from.elements[c.element].points;
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (std::size_t a = 0; a < points.size(); ++a) sum += c.weights[Eigen::Index(a)] * field.row(points[a]);
+    out.net.row(c.point) = sum;
   }
-  Result out{Net(to.n_points, 3), 0};
-  for (int d = 0; d < 3; ++d) out.net.col(d) = state_->factor.solve(Eigen::VectorXd(right.col(d)));
-  for (std::size_t k = 0; k < to.elements.size(); ++k) {
-    const auto& part = state_->parts[k];
-    Points now = bezier_points(to.elements[k], out.net);
-    if (part.fine.size() > 0) now = Points(part.fine * now);
-    out.residual = std::max(out.residual, (now - target[k]).cwiseAbs().maxCoeff());
-  }
+  if (s.rest) s.rest->solve(field, out.net);
+  out.residual = s.residual(field, out.net, s.changed);
+  if (out.residual <= nested * field.cwiseAbs().maxCoeff()) return out;
+  if (!s.all) s.all.emplace(s.from, s.to, s.embedding, s.every(s.to.n_points));
+  s.all->solve(field, out.net);
+  out.residual = s.residual(field, out.net, s.every(int(s.to.elements.size())));
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Fields from one spline space to another on the same macro faces.
+// Fields from one spline space to another that contains it.
 
 #include <memory>
 
@@ -8,12 +8,15 @@
 
 namespace tanktread::spline {
 
-/// Least squares on Bezier coefficients: control values P of `to` that minimise
+/// The same field in a space that contains the old one. Every element of `to` must lie in one element of `from` (refinement; `straddling` counts
+/// those that do not).
 ///
-///   sum_e |C_e^T P - Q_e|^2,   Q_e: the field of `from` restricted to element e of `to` by de Casteljau.
+/// Where both spaces have an element and its functions in common, control values are copied, to the last bit. Any other control value belongs to
+/// the field on a single element: the sixteen functions there are independent, so C_e^T P = Q_e gives it, Q_e being the Bezier points of the
+/// field, restricted by de Casteljau; the element is the one on which its function is largest. Where no such element determines a value well
+/// (at extraordinary points and poles) it is found by least squares on the Bezier points around (BezierFit). So the work is that of what has
+/// changed. When the residual tells that the spaces are not nested, all values are found anew by least squares.
 ///
-/// Exact when the spaces are nested; the residual tells. Every element of `to` must lie in one element of `from` (refinement; `straddling`
-/// counts those that do not). One sparse Cholesky factorisation serves all fields.
 /// Both spaces must outlive it.
 class Transfer {
  public:

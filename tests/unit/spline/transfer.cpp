@@ -26,6 +26,19 @@ TEST(Transfer, ARefinedFieldIsTheSameFieldEverywhere) {
   }
 }
 
+TEST(Transfer, WhatIsFarFromACutIsCopiedToTheLastBit) {
+  const TMesh mesh = cube(12, 1);
+  const TMesh cut = refine(mesh, {{elements(mesh).tile_of_cell[mesh.lattice->cell_at(0, 12, 12)]}}).mesh;
+  const Space coarse = space(mesh, ExtraordinaryRule::catmull_clark), fine = space(cut, ExtraordinaryRule::catmull_clark);
+  const Net net = random_net(coarse.n_points, 1), moved = Transfer(coarse, fine)(net).net;
+  const auto old_point = control_points(mesh);
+  const auto at = anchors(cut);
+  int copied = 0;
+  for (int i = 0; i < fine.n_points; ++i) copied += old_point[at[i]] >= 0 && moved.row(i) == net.row(old_point[at[i]]);
+  EXPECT_LT(copied, coarse.n_points);
+  EXPECT_GT(copied, coarse.n_points - 49);  // a cut reaches three elements far each way
+}
+
 TEST(Transfer, ResidualTellsWhenSpacesAreNotNested) {
   const Space fine = space(cube(6), ExtraordinaryRule::g1), coarse = space(cube(3), ExtraordinaryRule::g1);
   EXPECT_GT(Transfer(coarse, fine)(random_net(coarse.n_points, 1)).residual, 1e-3);

@@ -1,0 +1,122 @@
+// One refinement of a surface of about 1,500 control points, all fields carried over, relative to one velocity evaluation on the same surface.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <ctime>
+#include <random>
+#include <vector>
+
+#include "base/timing.hpp"
+#include "coupling/capsule.hpp"
+#include "coupling/ranks.hpp"
+#include "membrane/laws.hpp"
+#include "spline/extraction.hpp"
+#include "spline/refinement.hpp"
+#include "spline/transfer.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "surface/shapes.hpp"
+
+namespace {
+
+using namespace tanktread;
+
+/// Seconds of processor time: a busy machine does not count.
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+constexpr auto rule = spline::ExtraordinaryRule::catmull_clark;
+
+/// Distinct elements anywhere, cut both ways (1/2), across s (1/4), across t (1/4).
+std::vector<spline::Mark> random_marks(const spline::TMesh& mesh, int count, std::mt19937& generator) {
+  const unsigned elements = static_cast<unsigned>(spline::elements(mesh).tiles.size());
+  std::vector<spline::Mark> marks;
+  for (int k = 0; k < count; ++k) {
+    const unsigned way = generator() % 4;
+    marks.push_back({static_cast<int>(generator() % elements), way != 3, way != 2});
+  }
+  return marks;
+}
+
+/// A cube of 10 elements a side, cut at random until it has 1,500 control points.
+struct Surface {
+  std::mt19937 generator{7};
+  spline::TMesh mesh;
+  spline::Space space;
+  Net unstressed, x;
+
+  Surface() {
+    const spline::TMesh first = spline::cube(10, 4);
+    mesh = first;
+    space = spline::space(mesh, rule);
+    const surface::LeastSquaresFit fit(space);
+    unstressed = surface::unit_sphere(first, fit);
+    x = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1], 0.75 * p[2]); });
+    while (space.n_points < 1500) {
+      mesh = spline::refine(mesh, random_marks(mesh, 10, generator)).mesh;
+      spline::Space next = spline::space(mesh, rule);
+      const spline::Transfer transfer(space, next);
+      unstressed = transfer(unstressed).net;
+      x = transfer(x).net;
+      space = std::move(next);
+    }
+  }
+};
+
+/// Milliseconds of the parts, each the best of the repetitions. What refinement is: cuts and repair of the mesh, the new space, and the
+/// transfer of both surfaces and of three more fields. What the run then sets up anew is not part of it, and shown beside it.
+void refinement(benchmark::State& state) {
+  Surface surface;
+  const auto marks = random_marks(surface.mesh, static_cast<int>(state.range(0)), surface.generator);
+  coupling::Ranks ranks;
+  Phases phases;
+  coupling::CapsuleParameters parameters;
+  parameters.law = membrane::NeoHookean{1 / 0.3};
+  const stokes::AmbientFlow flow{stokes::FlowOptions()};
+  coupling::Capsule capsule(surface.space, surface.unstressed, surface.unstressed, flow, parameters, ranks, phases);
+  const std::vector<const Net*> fields = {&surface.unstressed, &surface.x, &surface.x, &surface.x, &surface.x};
+  double mesh = 1e9, space = 1e9, transfer = 1e9, all = 1e9, evaluation = 1e9, setup = 1e9, residual = 0;
+  int points = 0, elements = 0;
+  for (auto _ : state) {
+    const double start = now();
+    const spline::Refinement finer = spline::refine(surface.mesh, marks);
+    const double cut = now();
+    const spline::Space next = spline::space(finer.mesh, rule);
+    const double made = now();
+    std::vector<Net> carried;
+    {
+      const spline::Transfer move(surface.space, next);
+      for (const Net* field : fields) {
+        auto moved = move(*field);
+        residual = std::max(residual, moved.residual);
+        carried.push_back(std::move(moved.net));
+      }
+    }
+    const double done = now();
+    mesh = std::min(mesh, cut - start), space = std::min(space, made - cut), transfer = std::min(transfer, done - made);
+    all = std::min(all, done - start);
+    points = next.n_points;
+    elements = static_cast<int>(next.elements.size());
+
+    const double before = now();
+    const coupling::Capsule finer_capsule(next, carried[0], carried[0], flow, parameters, ranks, phases);
+    setup = std::min(setup, now() - before);
+    const double begin = now();
+    benchmark::DoNotOptimize(capsule.velocity(surface.x));
+    evaluation = std::min(evaluation, now() - begin);
+  }
+  const auto counter = [&](const char* name, double value) { state.counters[name] = value; };
+  counter("points before", surface.space.n_points);
+  counter("points", points);
+  counter("elements", elements);
+  counter("mesh ms", 1e3 * mesh);
+  counter("space ms", 1e3 * space);
+  counter("transfer ms", 1e3 * transfer);
+  counter("refinement ms", 1e3 * all);
+  counter("residual", residual);
+  counter("evaluation ms", 1e3 * evaluation);
+  counter("set-up of operators ms", 1e3 * setup);
+  counter("refinement / evaluation", all / evaluation);
+}
+BENCHMARK(refinement)->ArgName("marks")->Arg(1)->Arg(10)->Arg(50)->Unit(benchmark::kMillisecond)->Iterations(15);
+
+}  // namespace
