@@ -51,18 +51,20 @@ Id::Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.cl
 
 Id new_file() {
   silence();
-  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
-  check(H5Pset_fapl_core(access, 1 << 20, false), "no file in memory");
-  return {H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory"};
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list"), layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "no creation list");
+  check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
+  check(H5Pset_istore_k(layout, 1), "no short index");  // a column is one chunk
+  static int files = 0;  // HDF5 tells open files apart by their names, in memory too
+  const std::string name = "memory " + std::to_string(++files);
+  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, layout, access), H5Fclose, "no file in memory"};
 }
 
-std::string image(const Id& file) {
+std::string_view image(const Id& file) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot flush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  if (size < 0) throw std::runtime_error("HDF5: no image");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) throw std::runtime_error("HDF5: no image");
-  return bytes;
+  void* handle = nullptr;  // of the driver: where its memory begins
+  if (size < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
+  return {*static_cast<const char**>(handle), static_cast<std::size_t>(size)};
 }
 
 Id open(const std::filesystem::path& path) {
@@ -98,6 +100,23 @@ void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> 
   write_any(parent, name, H5T_NATIVE_UINT8, {values.size()}, values.data());
 }
 void write(hid_t parent, const std::string& name, const std::string& text) { write_any(parent, name, text_type(text), {}, text.c_str()); }
+
+Id new_column(hid_t parent, const std::string& name, std::span<const double> values, std::size_t capacity) {
+  const hsize_t rows = values.size(), most = capacity;
+  const Id space(H5Screate_simple(1, &rows, &most), H5Sclose, "no data space"), how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "no creation list");
+  check(H5Pset_chunk(how, 1, &most), "no chunk");
+  Id set(H5Dcreate2(parent, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, "cannot create " + name);
+  check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "cannot write " + name);
+  return set;
+}
+
+void append(const Id& column, std::size_t rows, double value) {
+  const hsize_t last = rows, size = rows + 1, one = 1;
+  const Id from(H5Screate(H5S_SCALAR), H5Sclose, "no data space"), to(H5Screate_simple(1, &size, nullptr), H5Sclose, "no data space");
+  check(H5Sselect_hyperslab(to, H5S_SELECT_SET, &last, nullptr, &one, nullptr), "no last place");
+  check(H5Dset_extent(column, &size), "cannot extend a column");
+  check(H5Dwrite(column, H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, &value), "cannot write to a column");
+}
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape) {
   const Id set = dataset(parent, name);

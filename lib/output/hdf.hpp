@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <hdf5.h>
@@ -26,9 +27,9 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// A new file that lives in memory only, and its bytes as they would stand on disk.
+/// A new file that lives in memory only, and its bytes as they would stand on disk: valid until the file changes or is closed.
 Id new_file();
-std::string image(const Id& file);
+std::string_view image(const Id& file);
 
 /// An existing file, for reading. Throws std::runtime_error when it is missing, damaged or no HDF5 file.
 Id open(const std::filesystem::path& path);
@@ -45,6 +46,11 @@ void write(hid_t parent, const std::string& name, std::span<const double> values
 void write(hid_t parent, const std::string& name, std::span<const std::int64_t> values);
 void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values);
 void write(hid_t parent, const std::string& name, const std::string& text);
+
+/// A one-dimensional dataset of doubles that holds `values` and can grow to `capacity` of them; and its growth by one.
+Id new_column(hid_t parent, const std::string& name, std::span<const double> values, std::size_t capacity);
+void append(const Id& column, std::size_t rows, double value);  ///< `rows`: that it has so far
+
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape);
 std::string read_text(hid_t parent, const std::string& name);
 

@@ -1,6 +1,7 @@
 #include "output/run_record.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <stdexcept>
 
@@ -10,8 +11,16 @@
 
 namespace tanktread::output {
 
+struct RunRecord::Image {
+  hdf::Id file;
+  std::vector<hdf::Id> columns;
+  std::size_t capacity;
+};
+
 RunRecord::RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance)
     : path_(std::move(path)), deck_(std::move(deck)), provenance_(std::move(provenance)) {}
+RunRecord::~RunRecord() = default;
+RunRecord::RunRecord(RunRecord&&) noexcept = default;
 
 RunRecord RunRecord::load(const std::filesystem::path& path) try {
   const hdf::Id file = hdf::open(path);
@@ -30,6 +39,7 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
 }
 
 void RunRecord::declare(std::string name, std::string unit, std::string description) {
+  image_.reset();
   const auto old = std::ranges::find(series_, name, &Series::name);
   if (old == series_.end()) {
     const std::vector<double> unknown(rows(), std::numeric_limits<double>::quiet_NaN());
@@ -46,15 +56,22 @@ void RunRecord::declare(std::string name, std::string unit, std::string descript
 
 void RunRecord::append(std::span<const double> row) {
   if (row.size() != series_.size()) throw std::logic_error("a row needs one value for every series");
+  const std::size_t before = rows();
   for (std::size_t i = 0; i < row.size(); ++i) series_[i].values.push_back(row[i]);
-  write();
+  if (!image_ || rows() > image_->capacity)
+    lay_out();
+  else
+    for (std::size_t i = 0; i < row.size(); ++i) hdf::append(image_->columns[i], before, row[i]);
+  write_whole(path_, hdf::image(image_->file));
 }
 
 void RunRecord::truncate(std::size_t rows) {
+  image_.reset();
   for (Series& one : series_) one.values.resize(std::min(rows, one.values.size()));
 }
 
 void RunRecord::describe(std::string deck, std::map<std::string, std::string> provenance) {
+  image_.reset();
   deck_ = std::move(deck);
   provenance_ = std::move(provenance);
 }
@@ -65,20 +82,18 @@ const std::vector<double>& RunRecord::values(std::string_view name) const {
   return it->values;
 }
 
-void RunRecord::write() const {
-  const hdf::Id file = hdf::new_file();
-  hdf::write(file, "deck", deck_);
-  {
-    const hdf::Id provenance = hdf::new_group(file, "provenance");
-    for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
-    const hdf::Id series = hdf::new_group(file, "series");
-    for (const Series& one : series_) {
-      hdf::write(series, one.name, one.values, {one.values.size()});
-      hdf::attribute(series, one.name, "unit", one.unit);
-      hdf::attribute(series, one.name, "description", one.description);
-    }
+void RunRecord::lay_out() {
+  image_.reset();
+  Image image{hdf::new_file(), {}, std::max<std::size_t>(64, std::bit_ceil(2 * rows()))};
+  hdf::write(image.file, "deck", deck_);
+  const hdf::Id provenance = hdf::new_group(image.file, "provenance"), series = hdf::new_group(image.file, "series");
+  for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
+  for (const Series& one : series_) {
+    image.columns.push_back(hdf::new_column(series, one.name, one.values, image.capacity));
+    hdf::attribute(series, one.name, "unit", one.unit);
+    hdf::attribute(series, one.name, "description", one.description);
   }
-  write_whole(path_, hdf::image(file));
+  image_ = std::make_unique<Image>(std::move(image));
 }
 
 }  // namespace tanktread::output

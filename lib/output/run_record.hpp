@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,13 +20,16 @@ struct Series {
 /// `/series/<name>`, 1-D doubles of equal length with attributes `unit` and `description`; `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks).
 ///
-/// The columns live here; each `append` writes the whole file anew beside the old one and renames it, about half a millisecond for
-/// 35 series of some hundred rows. A process killed at any moment leaves a file with every row whose `append` returned. Serial:
-/// on several ranks only the first holds one.
+/// The columns live here, and so does an image of the file, which every `append` extends and writes beside the file on disk, to be renamed
+/// to it: some tenth of a millisecond. A process killed at any moment leaves a file with every row whose `append` returned. Columns are one
+/// chunk each, with room for twice the rows at least when they are made; a record that is longer is laid out anew. Serial: on several ranks
+/// only the first holds one.
 class RunRecord {
  public:
   /// A record without rows. Nothing is written before the first `append`.
   RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance);
+  ~RunRecord();
+  RunRecord(RunRecord&&) noexcept;
 
   /// The record that stands at `path`. Throws UserError when it is missing or damaged.
   static RunRecord load(const std::filesystem::path& path);
@@ -50,12 +54,14 @@ class RunRecord {
   const std::map<std::string, std::string>& provenance() const { return provenance_; }
 
  private:
-  void write() const;
+  struct Image;
+  void lay_out();
 
   std::filesystem::path path_;
   std::string deck_;
   std::map<std::string, std::string> provenance_;
   std::vector<Series> series_;
+  std::unique_ptr<Image> image_;  // of the file; none when it must be laid out anew
 };
 
 }  // namespace tanktread::output
