@@ -67,6 +67,12 @@ std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   return first;
 }
 
+/// The three components at a node of a cell.
+Vec3 three(const MatrixXd& cells, Eigen::Index element, Eigen::Index node) {
+  const Eigen::Index n_e = cells.cols() / 3;
+  return {cells(node, element), cells(node, n_e + element), cells(node, 2 * n_e + element)};
+}
+
 /// The normal of an element at node (i, j), moved by `inset` of the way to the middle.
 Vec3 normal_inside(const surface::BezierMap& map, const Net& net, int element, const std::array<int, 2>& node, double inset) {
   const int p = map.degree(element);
@@ -132,57 +138,64 @@ Nodes::Nodes(const spline::Space& space, LagrangeMesh mesh) : mesh_(std::move(me
   }
 }
 
-/// For each block one number a node, component and element: shape (nodes of a cell, 3 n_e), component c of element k in column c n_e + k.
-std::vector<MatrixXd> Nodes::at_cells(const Net& net, MatrixXd Table::*part) const {
-  std::vector<MatrixXd> result;
-  MatrixXd bezier;
-  for (const surface::Block& block : map_.blocks().blocks) {
-    map_.points(block, net, bezier);
-    result.emplace_back(tables_[result.size()].*part * bezier);
+/// Shape (Bezier points, 3 n_e), component c of element k in column c n_e + k.
+Nodes::Cells Nodes::bezier(const Net& net) const {
+  Cells result(tables_.size());
+  for (std::size_t b = 0; b < result.size(); ++b) map_.points(map_.blocks().blocks[b], net, result[b]);
+  return result;
+}
+
+/// The same at the nodes of the cells.
+Nodes::Cells Nodes::at_cells(const Cells& bezier, MatrixXd Table::*part) const {
+  Cells result;
+  for (std::size_t b = 0; b < bezier.size(); ++b) result.emplace_back(tables_[b].*part * bezier[b]);
+  return result;
+}
+
+Net Nodes::values(const Net& control_values) const {
+  const Cells cells = at_cells(bezier(control_values), &Table::value);
+  Net result(static_cast<Eigen::Index>(origins_.size()), 3);
+  for (std::size_t i = 0; i < origins_.size(); ++i) {
+    const auto [block, element, node] = origins_[i];
+    result.row(static_cast<Eigen::Index>(i)) = three(cells[static_cast<std::size_t>(block)], element, node).transpose();
   }
   return result;
 }
 
-Vec3 Nodes::at_node(const std::vector<MatrixXd>& cells, const Origin& origin) const {
-  const MatrixXd& cell = cells[static_cast<std::size_t>(origin.block)];
-  const Eigen::Index n_e = cell.cols() / 3;
-  return {cell(origin.node, origin.element), cell(origin.node, n_e + origin.element), cell(origin.node, 2 * n_e + origin.element)};
-}
-
-Net Nodes::values(const Net& control_values) const {
-  const std::vector<MatrixXd> cells = at_cells(control_values, &Table::value);
-  Net result(static_cast<Eigen::Index>(origins_.size()), 3);
-  for (std::size_t i = 0; i < origins_.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = at_node(cells, origins_[i]).transpose();
-  return result;
-}
-
 std::vector<surface::Jet> Nodes::jets(const Net& net) const {
-  const auto x = at_cells(net, &Table::value), s = at_cells(net, &Table::s), t = at_cells(net, &Table::t), ss = at_cells(net, &Table::ss),
-             st = at_cells(net, &Table::st), tt = at_cells(net, &Table::tt);
-  std::vector<surface::Jet> result;
-  result.reserve(origins_.size());
-  for (const Origin& at : origins_)
-    result.push_back({at_node(x, at), at_node(s, at), at_node(t, at), at_node(ss, at), at_node(st, at), at_node(tt, at)});
+  std::vector<surface::Jet> result(origins_.size());
+  const Cells points = bezier(net);
+  const std::pair<MatrixXd Table::*, Vec3 surface::Jet::*> parts[] = {{&Table::value, &surface::Jet::x}, {&Table::s, &surface::Jet::s},
+                                                                      {&Table::t, &surface::Jet::t},     {&Table::ss, &surface::Jet::ss},
+                                                                      {&Table::st, &surface::Jet::st},   {&Table::tt, &surface::Jet::tt}};
+  for (const auto& [part, of_jet] : parts) {
+    const Cells cells = at_cells(points, part);
+    for (std::size_t i = 0; i < origins_.size(); ++i) {
+      const auto [block, element, node] = origins_[i];
+      result[i].*of_jet = three(cells[static_cast<std::size_t>(block)], element, node);
+    }
+  }
   return result;
 }
 
 Net Nodes::normals(const Net& net) const {
   constexpr double kDegenerate = 1e-6;  // |a1 x a2| over |a1|_max |a2|_max of the element
   constexpr double kInset = 1e-4;
-  const auto a1 = at_cells(net, &Table::s), a2 = at_cells(net, &Table::t);
+  const Cells points = bezier(net), along_s = at_cells(points, &Table::s), along_t = at_cells(points, &Table::t);
   Net sum = Net::Zero(static_cast<Eigen::Index>(mesh_.sites.size()), 3);
   for (int e = 0; e < map_.n_elements(); ++e) {
     const auto [block, element] = map_.blocks().place[static_cast<std::size_t>(e)];
+    const MatrixXd &a1 = along_s[static_cast<std::size_t>(block)], &a2 = along_t[static_cast<std::size_t>(block)];
     const int n = map_.n_bezier(e);
     double longest_s = 0, longest_t = 0;
     for (int k = 0; k < n; ++k) {
-      longest_s = std::max(longest_s, at_node(a1, {block, element, k}).squaredNorm());
-      longest_t = std::max(longest_t, at_node(a2, {block, element, k}).squaredNorm());
+      longest_s = std::max(longest_s, three(a1, element, k).squaredNorm());
+      longest_t = std::max(longest_t, three(a2, element, k).squaredNorm());
     }
     const double least = kDegenerate * std::sqrt(longest_s * longest_t);
     const std::int64_t* node = mesh_.connectivity.data() + mesh_.offsets[static_cast<std::size_t>(e)];
     for (int k = 0; k < n; ++k) {
-      Vec3 normal = at_node(a1, {block, element, k}).cross(at_node(a2, {block, element, k}));
+      Vec3 normal = three(a1, element, k).cross(three(a2, element, k));
       if (normal.norm() < least) normal = normal_inside(map_, net, e, node_order(map_.degree(e))[static_cast<std::size_t>(k)], kInset);
       sum.row(node[k]) += normal.normalized();
     }

@@ -51,8 +51,9 @@ class Nodes {
   struct Origin {
     int block, element, node;
   };
-  std::vector<Eigen::MatrixXd> at_cells(const Net& net, Eigen::MatrixXd Table::*part) const;
-  Vec3 at_node(const std::vector<Eigen::MatrixXd>& cells, const Origin& origin) const;
+  using Cells = std::vector<Eigen::MatrixXd>;  ///< a number a node (or Bezier point), component and element of each block
+  Cells bezier(const Net& net) const;
+  Cells at_cells(const Cells& bezier, Eigen::MatrixXd Table::*part) const;
 
   LagrangeMesh mesh_;
   surface::BezierMap map_;
