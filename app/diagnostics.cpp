@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
+#include "spline/bernstein.hpp"
 #include "surface/geometry.hpp"
+#include "surface/patch.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {
@@ -89,9 +93,16 @@ double normal_velocity(const Scene& scene, const Body& body, const surface::Geom
   double largest = 0;
   Vec3 frame = Vec3::Zero();
   if (scene.tube.present) frame[0] = surface::centroid_velocity(geometry, state.x, state.history.front())[0];
-  for (const auto& sites : body.space.collocation) {
-    const Vec3 v = surface::value(body.space, state.history.front(), sites.front()) - frame;
-    largest = std::max(largest, std::abs(v.dot(surface::point(body.space, state.x, sites.front()).n)));
+  const surface::BezierMap& map = geometry.bezier();
+  constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
+  double points[most], velocities[most];
+  for (const int i : body.symmetry.fundamental()) {  // the other sites are images of these
+    const auto& [element, s, t] = body.space.collocation[static_cast<size_t>(i)].front();
+    map.points(element, state.x, points);
+    map.points(element, state.history.front(), velocities);
+    const surface::Jet at = surface::jet({map.degree(element), points}, s, t);
+    const Vec3 v = surface::place({map.degree(element), velocities}, s, t) - frame;
+    largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));
   }
   const double speed = scene.speed();
   return largest / (speed > 0 ? speed : body.radius);

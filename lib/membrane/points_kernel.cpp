@@ -56,6 +56,23 @@ void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack
   });
 }
 
+// The stretch tensor h in the orthonormal frame that starts with X_,s: so written, equal stretches stay equal to round-off. Its eigenvalues are
+// the squares of the principal stretches.
+void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* tension, Pack* area) {
+  visit_points(law, n, reference, a, [&](const auto& l, int q, const ReferencePoint& r, const Metric& m) {
+    const Pack det = 1.0 / r.inverse_det, before = r.g22 * det, turn = -r.g12 / r.g22;  // X_,s.X_,s, and X_,s.X_,t over it
+    const Pack h11 = m.g11 / before, h12 = (m.g12 - turn * m.g11) / sqrt(det);
+    const Pack h22 = (m.g22 - 2.0 * turn * m.g12 + turn * turn * m.g11) * before * r.inverse_det;
+    const Pack apart = 0.5 * (h11 - h22), larger = 0.5 * (h11 + h22) + sqrt(apart * apart + h12 * h12);
+    const Pack squared_ratio = h11 * h22 - h12 * h12, ratio = sqrt(squared_ratio), smaller = squared_ratio / larger;
+    const auto psi = l.response(larger + smaller - 2.0, squared_ratio - 1.0);
+    const Pack along = 2.0 * psi.psi1 / ratio, around = 2.0 * ratio * psi.psi2;
+    const Pack of_larger = along * larger + around, of_smaller = along * smaller + around;
+    tension[q] = of_larger < of_smaller ? of_larger : of_smaller;
+    area[q] = r.area * ratio;
+  });
+}
+
 // dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22); S = 2 area (Psi_1 G + Psi_2 K).
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent) {
   visit_points(law, n, reference, a, [&](const auto& l, int q, const ReferencePoint& r, const Metric& m) {

@@ -31,6 +31,9 @@ Pack energy(const Law& law, int n, const ReferencePoint* reference, const Pack* 
 ///   S^ab = 2 area (Psi_1 G^ab + Psi_2 J_s^2 g^ab) = area J_s tau^ab                    (3.2), (3.6)
 void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* p);
 
+/// At every Gauss point the smaller principal tension, and the present area that stands for the point.
+void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* tension, Pack* area);
+
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
 /// p = d^2E/da^2 u, for displacement gradients u in the layout of a.

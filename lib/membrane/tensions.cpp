@@ -31,26 +31,27 @@ std::array<double, 2> tensions_of(const Law& law, const Metric& before, const Me
 }  // namespace
 
 TensionSummary Membrane::tension_summary(const Net& x) const {
-  double smallest = std::numeric_limits<double>::infinity(), area = 0, compressed = 0;
   const double unit = modulus(law_);
+  Pack smallest = Pack{} + std::numeric_limits<double>::infinity(), area{}, compressed{};
   part(all_)->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
-    Pack a[6 * max_order * max_order];
+    Pack a[6 * max_order * max_order], tension[max_order * max_order], share[max_order * max_order];
     tangents(group, batch, x, a);
-    for (int q = 0; q < group.n_gauss(); ++q)
-      for (int l = 0; l < batch.used; ++l) {
-        Vec3 a1, a2;
-        for (int c = 0; c < 3; ++c) a1[c] = a[6 * q + c][l], a2[c] = a[6 * q + 3 + c][l];
-        const ReferencePoint& r = reference[q];
-        const double det = 1 / r.inverse_det[l];
-        const Metric before{r.g22[l] * det, -r.g12[l] * det, r.g11[l] * det}, now{a1.dot(a1), a1.dot(a2), a2.dot(a2)};
-        const double tension = tensions_of(law_, before, now)[0] / unit;
-        const double share = r.area[l] * a1.cross(a2).norm() * std::sqrt(r.inverse_det[l]);
-        smallest = std::min(smallest, tension);
-        area += share;
-        if (tension < compressed_below) compressed += share;
-      }
+    smaller_tensions(law_, group.n_gauss(), reference, a, tension, share);
+    for (int q = 0; q < group.n_gauss(); ++q) {
+      smallest = tension[q] < smallest ? tension[q] : smallest;
+      area += share[q];
+      compressed += tension[q] < compressed_below * unit ? share[q] : Pack{};
+    }
   });
-  return {smallest, compressed / area};
+  TensionSummary result{smallest[0] / unit, 0};
+  double all = 0;
+  for (int l = 0; l < lanes; ++l) {
+    result.smallest = std::min(result.smallest, smallest[l] / unit);
+    all += area[l];
+    result.compressed_area += compressed[l];
+  }
+  result.compressed_area /= all;
+  return result;
 }
 
 Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstressed, std::span<const surface::Jet> now) {

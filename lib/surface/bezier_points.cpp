@@ -14,42 +14,34 @@ std::string bytes(const Eigen::MatrixXd& matrix) {
   return key;
 }
 
-template <int n_b>
-void bezier_points(int m, const double* extraction, const int* ids, const Net& net, double* out) {
-  double sum[3][n_b] = {};
-  for (int a = 0; a < m; ++a) {
-    const double* row = extraction + a * n_b;
-    const double* p = net.data() + 3 * ids[a];
-    for (int b = 0; b < n_b; ++b) {
-      sum[0][b] += row[b] * p[0];
-      sum[1][b] += row[b] * p[1];
-      sum[2][b] += row[b] * p[2];
+using Eight [[gnu::vector_size(8 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;  // at any address
+
+/// Three sums of rows of n numbers, out[c n + k] = sum_r factor(r, c) rows[r n + k].
+template <int n, class Factor>
+void three_sums(int n_rows, const double* rows, const Factor& factor, double* out) {
+  constexpr int wide = n / 8, rest = n % 8;
+  Eight sum[3][wide] = {};
+  double tail[3][rest + 1] = {};
+  for (int r = 0; r < n_rows; ++r, rows += n)
+    for (int c = 0; c < 3; ++c) {
+      const double f = factor(r, c);
+      for (int k = 0; k < wide; ++k) sum[c][k] += f * reinterpret_cast<const Eight*>(rows)[k];
+      for (int k = 0; k < rest; ++k) tail[c][k] += f * rows[8 * wide + k];
     }
+  for (int c = 0; c < 3; ++c, out += n) {
+    for (int k = 0; k < wide; ++k) reinterpret_cast<Eight*>(out)[k] = sum[c][k];
+    std::copy_n(tail[c], rest, out + 8 * wide);
   }
-  std::copy_n(&sum[0][0], 3 * n_b, out);
 }
 
-void bezier_points(int m, int n_b, const double* extraction, const int* ids, const Net& net, double* out) {
-  std::fill_n(out, 3 * n_b, 0.);
-  for (int a = 0; a < m; ++a)
+template <class Factor>
+void three_sums(int n, int n_rows, const double* rows, const Factor& factor, double* out) {
+  if (n == 16) return three_sums<16>(n_rows, rows, factor, out);  // a bicubic element
+  if (n == 25) return three_sums<25>(n_rows, rows, factor, out);
+  std::fill_n(out, 3 * n, 0.);
+  for (int r = 0; r < n_rows; ++r)
     for (int c = 0; c < 3; ++c)
-      for (int b = 0; b < n_b; ++b) out[c * n_b + b] += extraction[a * n_b + b] * net(ids[a], c);
-}
-
-template <int m>
-void function_values(int n_b, const double* extraction, const double* in, double* out) {
-  double sum[m] = {};
-  for (int b = 0; b < n_b; ++b)
-    for (int a = 0; a < m; ++a) sum[a] += extraction[b * m + a] * in[b];
-  std::copy_n(sum, m, out);
-}
-
-/// out_A = sum_b extraction(A, b) in_b
-void function_values(int m, int n_b, const double* extraction, const double* in, double* out) {
-  if (m == 16) return function_values<16>(n_b, extraction, in, out);
-  std::fill_n(out, m, 0.);
-  for (int b = 0; b < n_b; ++b)
-    for (int a = 0; a < m; ++a) out[a] += extraction[b * m + a] * in[b];
+      for (int k = 0; k < n; ++k) out[c * n + k] += factor(r, c) * rows[r * n + k];
 }
 
 }  // namespace
@@ -103,9 +95,7 @@ BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), bl
 void BezierMap::points(int element, const Net& net, double* out) const {
   const Operator& c = operators_[elements_[element].operation];
   const int* ids = points_.data() + elements_[element].first;
-  if (c.n_b == 16) return bezier_points<16>(c.m, c.by_function.data(), ids, net, out);
-  if (c.n_b == 25) return bezier_points<25>(c.m, c.by_function.data(), ids, net, out);
-  bezier_points(c.m, c.n_b, c.by_function.data(), ids, net, out);
+  three_sums(c.n_b, c.m, c.by_function.data(), [&](int a, int k) { return net.data()[3 * ids[a] + k]; }, out);
 }
 
 void BezierMap::points(const Block& block, const Net& net, Eigen::MatrixXd& out) const {
@@ -123,23 +113,24 @@ void BezierMap::add_transposed(int element, const double* in, Net& net) const {
   const Operator& operation = operators_[elements_[element].operation];
   const int* ids = points_.data() + elements_[element].first;
   constexpr int most = 64;
-  double values[3][most];
+  double values[3 * most];
   std::vector<double> larger;
-  double* out[3] = {values[0], values[1], values[2]};
+  double* out = values;
   if (operation.m > most) {
     larger.resize(3 * operation.m);
-    for (int c = 0; c < 3; ++c) out[c] = larger.data() + c * operation.m;
+    out = larger.data();
   }
-  for (int c = 0; c < 3; ++c) function_values(operation.m, operation.n_b, operation.by_bezier.data(), in + c * operation.n_b, out[c]);
+  three_sums(operation.m, operation.n_b, operation.by_bezier.data(), [&](int b, int c) { return in[c * operation.n_b + b]; }, out);
   for (int a = 0; a < operation.m; ++a)
-    for (int c = 0; c < 3; ++c) net(ids[a], c) += out[c][a];
+    for (int c = 0; c < 3; ++c) net(ids[a], c) += out[c * operation.m + a];
 }
 
 void BezierMap::add_transposed(int element, const double* in, Eigen::VectorXd& field) const {
   const Operator& operation = operators_[elements_[element].operation];
   const int* ids = points_.data() + elements_[element].first;
   std::vector<double> values(operation.m);
-  function_values(operation.m, operation.n_b, operation.by_bezier.data(), in, values.data());
+  for (int b = 0; b < operation.n_b; ++b)
+    for (int a = 0; a < operation.m; ++a) values[a] += operation.by_bezier[b * operation.m + a] * in[b];
   for (int a = 0; a < operation.m; ++a) field[ids[a]] += values[a];
 }
 

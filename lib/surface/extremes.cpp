@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "base/errors.hpp"
+#include "spline/bernstein.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -66,34 +68,39 @@ double summit(const Patch& patch, int c, double sign, Vec2 at) {
   return here.value;
 }
 
-double largest_coordinate(const Patches& surface, int c, double sign) {
-  double best = -infinity;
-  for (int e = 0; e < surface.size(); ++e) {
-    const Patch& patch = surface[e];
-    for (const int corner : {0, patch.degree, patch.n_bezier() - 1 - patch.degree, patch.n_bezier() - 1})
-      best = std::max(best, sign * patch.coordinate(c, corner));
-  }
-  // A Bezier patch stays below its highest point, so all but a few elements drop out.
-  struct Candidate {
-    double bound;
-    int element, point;
-  };
-  std::vector<Candidate> candidates;
-  for (int e = 0; e < surface.size(); ++e) {
-    Candidate candidate{-infinity, e, 0};
-    for (int b = 0; b < surface[e].n_bezier(); ++b) {
-      const double bound = sign * surface[e].coordinate(c, b);
-      if (bound > candidate.bound) candidate = {bound, e, b};
+/// Smallest and largest coordinate of the Bezier points, between which the patch stays.
+Range hull(const Patch& patch, int c) {
+  const double* x = patch.points + c * patch.n_bezier();
+  double low[4], high[4];  // four chains of comparisons side by side
+  std::copy_n(x, 4, low);
+  std::copy_n(x, 4, high);
+  for (int b = 4; b + 4 <= patch.n_bezier(); b += 4)
+    for (int k = 0; k < 4; ++k) {
+      low[k] = std::min(low[k], x[b + k]);
+      high[k] = std::max(high[k], x[b + k]);
     }
-    if (candidate.bound > best) candidates.push_back(candidate);
+  for (int b = patch.n_bezier() / 4 * 4; b < patch.n_bezier(); ++b) {
+    low[0] = std::min(low[0], x[b]);
+    high[0] = std::max(high[0], x[b]);
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.bound > b.bound; });
-  for (const Candidate& candidate : candidates) {
-    if (candidate.bound <= best) break;
-    const Patch& patch = surface[candidate.element];
+  return {std::min(std::min(low[0], low[1]), std::min(low[2], low[3])), std::max(std::max(high[0], high[1]), std::max(high[2], high[3]))};
+}
+
+/// The largest of sign * x_c, which is `reached` at least, where sign * x_c stays below bounds[e] on element e.
+double largest_coordinate(const Patches& surface, int c, double sign, double reached, const std::vector<double>& bounds) {
+  double best = reached;
+  std::vector<int> candidates;  // all but a few elements drop out
+  for (int e = 0; e < surface.size(); ++e)
+    if (bounds[e] > best) candidates.push_back(e);
+  std::ranges::sort(candidates, std::ranges::greater(), [&](int e) { return bounds[e]; });
+  for (const int e : candidates) {
+    if (bounds[e] <= best) break;
+    const Patch& patch = surface[e];
     const int p = patch.degree;
-    const Vec2 start(double(candidate.point % (p + 1)) / p, double(candidate.point / (p + 1)) / p);
-    best = std::max(best, summit(patch, c, sign, start));
+    int highest = 0;
+    for (int b = 0; b < patch.n_bezier(); ++b)
+      if (sign * patch.coordinate(c, b) > sign * patch.coordinate(c, highest)) highest = b;
+    best = std::max(best, summit(patch, c, sign, Vec2(double(highest % (p + 1)) / p, double(highest / (p + 1)) / p)));
   }
   return best;
 }
@@ -106,14 +113,35 @@ struct Crossing {
 
 constexpr int cells = 6;  ///< sampling intervals an element and direction
 
+/// Places of the sampling grid, [t][s].
+void sample(const Patch& patch, Vec3 (&x)[cells + 1][cells + 1]) {
+  const int p = patch.degree;
+  double at[cells + 1][spline::max_degree + 1];
+  for (int i = 0; i <= cells; ++i) spline::bernstein(p, double(i) / cells, at[i]);
+  for (int c = 0; c < 3; ++c) {
+    double along_s[spline::max_degree + 1][cells + 1];
+    for (int j = 0; j <= p; ++j)
+      for (int i = 0; i <= cells; ++i) {
+        along_s[j][i] = 0;
+        for (int k = 0; k <= p; ++k) along_s[j][i] += at[i][k] * patch.coordinate(c, j * (p + 1) + k);
+      }
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i) {
+        x[j][i][c] = 0;
+        for (int k = 0; k <= p; ++k) x[j][i][c] += at[j][k] * along_s[k][i];
+      }
+  }
+}
+
 /// Where the plane x2 = centre_2 cuts the lines of a sampling grid, by linear interpolation.
 void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
   result.clear();
   double above[cells + 1][cells + 1];
   Vec3 y[cells + 1][cells + 1];
+  sample(patch, y);
   for (int j = 0; j <= cells; ++j) {
     for (int i = 0; i <= cells; ++i) {
-      y[j][i] = place(patch, double(i) / cells, double(j) / cells) - centre;
+      y[j][i] -= centre;
       above[j][i] = std::abs(y[j][i][1]) < 1e-13 * y[j][i].norm() ? 0. : y[j][i][1];
     }
   }
@@ -200,16 +228,30 @@ double best_distance(const Patches& surface, const Vec3& centre, const std::vect
 
 }  // namespace
 
-Range coordinate_range(const Patches& surface, int c) { return {-largest_coordinate(surface, c, -1), largest_coordinate(surface, c, 1)}; }
+Range coordinate_range(const Patches& surface, int c) {
+  Range reached{infinity, -infinity};  // at the corners
+  std::vector<double> below(surface.size()), above(surface.size());
+  for (int e = 0; e < surface.size(); ++e) {
+    const Patch& patch = surface[e];
+    for (const int corner : {0, patch.degree, patch.n_bezier() - 1 - patch.degree, patch.n_bezier() - 1}) {
+      reached.smallest = std::min(reached.smallest, patch.coordinate(c, corner));
+      reached.largest = std::max(reached.largest, patch.coordinate(c, corner));
+    }
+    const Range bounds = hull(patch, c);
+    below[e] = -bounds.smallest;
+    above[e] = bounds.largest;
+  }
+  return {-largest_coordinate(surface, c, -1, -reached.smallest, below), largest_coordinate(surface, c, 1, reached.largest, above)};
+}
 
 Range section_distances(const Patches& surface, const Vec3& centre) {
   std::vector<Candidate> longest, shortest;
   std::vector<Crossing> found;
   for (int e = 0; e < surface.size(); ++e) {
     const Patch& patch = surface[e];
-    const auto [low, high] = std::minmax_element(patch.points + patch.n_bezier(), patch.points + 2 * patch.n_bezier());
-    const double slack = 1e-12 * (std::abs(centre[1]) + *high - *low);
-    if (*low > centre[1] + slack || *high < centre[1] - slack) continue;
+    const auto [low, high] = hull(patch, 1);
+    const double slack = 1e-12 * (std::abs(centre[1]) + high - low);
+    if (low > centre[1] + slack || high < centre[1] - slack) continue;
     crossings(patch, centre, found);
     if (found.empty()) continue;
     const auto [nearest, farthest] =
