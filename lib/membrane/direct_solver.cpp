@@ -26,6 +26,10 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double residual_allowed = 1e-8;
 
+// Rows from which columns are solved for together. One by one they read the factors again, but for several Amesos2 makes maps and an import in every
+// solve, which takes longer than a small system itself. Measured with the mass and collocation matrices of spheres.
+constexpr Eigen::Index worth_sharing = 200;
+
 std::string solvers_of_this_build() {
   std::string names;
   for (const char* name : {"KLU2", "Tacho", "Basker", "ShyLUBasker", "SuperLU", "SuperLU_MT", "SuperLU_DIST", "MUMPS", "UMFPACK", "Cholmod",
@@ -98,6 +102,17 @@ struct DirectSolver::Impl {
     matrix->fillComplete(map, map);
   }
 
+  // Up to three columns.
+  void solve(const Eigen::Ref<const Columns>& right, Eigen::Ref<Columns> left) const {
+    const auto columns = static_cast<std::size_t>(right.cols());
+    MultiVector &known = *b[columns - 1], &found = *x[columns - 1];
+    for (std::size_t c = 0; c < columns; ++c)
+      Eigen::Map<Eigen::VectorXd>(known.getDataNonConst(c).getRawPtr(), right.rows()) = right.col(static_cast<Eigen::Index>(c));
+    solver->solve(Teuchos::ptr(&found), Teuchos::ptr(&known));
+    for (std::size_t c = 0; c < columns; ++c)
+      left.col(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::VectorXd>(found.getData(c).getRawPtr(), right.rows());
+  }
+
   // Solves for a net without small or repeated entries and looks at what is left.
   double residual(const DirectSolver& self) const {
     Net known(a.rows(), 3);
@@ -147,19 +162,9 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
 }
 
 void DirectSolver::solve(const Columns& b, Columns& x) const {
-  const Eigen::Index n = b.rows();
-  const auto columns = static_cast<std::size_t>(b.cols());
-  MultiVector &known = *impl_->b[columns - 1], &found = *impl_->x[columns - 1];
-  for (std::size_t c = 0; c < columns; ++c) {
-    const auto column = known.getDataNonConst(c);
-    for (Eigen::Index i = 0; i < n; ++i) column[i] = b(i, static_cast<Eigen::Index>(c));
-  }
-  impl_->solver->solve(Teuchos::ptr(&found), Teuchos::ptr(&known));
-  x.resize(n, b.cols());
-  for (std::size_t c = 0; c < columns; ++c) {
-    const auto column = found.getData(c);
-    for (Eigen::Index i = 0; i < n; ++i) x(i, static_cast<Eigen::Index>(c)) = column[i];
-  }
+  x.resize(b.rows(), b.cols());
+  const Eigen::Index at_once = b.rows() < worth_sharing ? 1 : b.cols();
+  for (Eigen::Index first = 0; first < b.cols(); first += at_once) impl_->solve(b.middleCols(first, at_once), x.middleCols(first, at_once));
 }
 
 Net DirectSolver::solve(const Net& b) const {

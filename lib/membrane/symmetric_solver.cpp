@@ -19,14 +19,18 @@ SymmetricSolver::SymmetricSolver(const DirectSolverOptions& options, surface::Sy
 }
 
 SymmetricSolver::Part SymmetricSolver::part(const DirectSolverOptions& options, int component) const {
-  Part part{{component}, {}, {}, DirectSolver(options)};
+  Part part{{component}, {}, {}, {}, DirectSolver(options)};
   std::vector<int> number(symmetry_.source().size(), -1);
   for (const int a : symmetry_.fundamental())
     if (symmetry_.signs()(a, component) != 0) {
       number[static_cast<std::size_t>(a)] = static_cast<int>(part.points.size());
       part.points.push_back(a);
     }
-  for (const int a : symmetry_.source()) part.unknown.push_back(number[static_cast<std::size_t>(a)]);
+  part.images.setZero(static_cast<Eigen::Index>(part.points.size()));
+  for (const int a : symmetry_.source()) {
+    part.unknown.push_back(number[static_cast<std::size_t>(a)]);
+    if (part.unknown.back() >= 0) ++part.images[part.unknown.back()];
+  }
   return part;
 }
 
@@ -42,7 +46,7 @@ void SymmetricSolver::factor(const Eigen::SparseMatrix<double>& a) {
       if (column < 0) continue;
       for (Eigen::SparseMatrix<double>::InnerIterator entry(a, b); entry; ++entry)
         if (const int i = row[static_cast<std::size_t>(entry.row())]; i >= 0)
-          entries.emplace_back(i, column, symmetry_.signs()(b, c) * entry.value());
+          entries.emplace_back(i, column, part.images[i] * symmetry_.signs()(b, c) * entry.value());
     }
     Eigen::SparseMatrix<double> reduced(n, n);
     reduced.setFromTriplets(entries.begin(), entries.end());
@@ -54,7 +58,7 @@ Net SymmetricSolver::solve(const Net& b) const {
   if (parts_.empty()) return whole_.solve(b);
   Net x(b.rows(), 3);
   for (const Part& part : parts_) {
-    Columns some = b(part.points, part.components);
+    Columns some = part.images.asDiagonal() * b(part.points, part.components);
     part.solver.solve(some, some);
     for (std::size_t k = 0; k < part.components.size(); ++k) {
       const int c = part.components[k];

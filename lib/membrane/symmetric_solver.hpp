@@ -14,10 +14,11 @@ namespace tanktread::membrane {
 /// Solves A x = b for symmetric fields with a scalar matrix A of a symmetric space (a mass matrix, the collocation matrix), A_{ga,gb} = A_ab for
 /// every image g. Component c of such a field is told by the fundamental points a, b, and those obey
 ///
-///   sum_b A^c_ab x_bc = b_ac,   A^c_ab = sum over images gb of b of s_c(g) A_{a,gb}                                          (4.12)
+///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///
-/// with s_c(g) the sign that g gives to the component. A point that an image leaves in place and turns c around at drops out, for c vanishes
-/// there. Components of equal signs share a factor. Without symmetry this is DirectSolver.
+/// with m_a the number of images of a, which keeps a symmetric matrix symmetric, and s_c(g) the sign that g gives to the component. A point that an
+/// image leaves in place and turns c around at drops out, for c vanishes there. Components of equal signs share a factor. Without symmetry this is
+/// DirectSolver.
 class SymmetricSolver {
  public:
   /// Throws as DirectSolver does.
@@ -34,6 +35,7 @@ class SymmetricSolver {
   struct Part {
     std::vector<int> components, points;  // fundamental points where these components need not vanish
     std::vector<int> unknown;             // of each point of the surface: that of its fundamental point, or -1
+    Eigen::VectorXd images;               // m
     DirectSolver solver;
   };
   Part part(const DirectSolverOptions& options, int component) const;
