@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -26,30 +27,69 @@ using Operator = Tpetra::Operator<>;
 using Problem = Belos::LinearProblem<double, MultiVector, Operator>;
 using Solver = Belos::SolverManager<double, MultiVector, Operator>;
 
-/// A Tpetra operator made of a function on flat arrays.
+using Vector = Eigen::Map<const Eigen::VectorXd>;
+
+/// Products of a linear operator with orthonormal vectors, as Krylov methods without preconditioner ask for them.
+class KnownProducts {
+ public:
+  void keep(const Vector& v, const Vector& av) {
+    if (inputs_.size() == most) return;
+    inputs_.emplace_back(v);
+    outputs_.emplace_back(av);
+  }
+
+  /// A x, if x is a sum of the inputs to round-off.
+  std::optional<Eigen::VectorXd> of(const Vector& x) const {
+    const double size = x.norm();
+    Eigen::VectorXd shares(inputs_.size());
+    for (std::size_t k = 0; k < inputs_.size(); ++k) shares[static_cast<Eigen::Index>(k)] = inputs_[k].dot(x);
+    if (shares.norm() < (1 - 1e-8) * size) return {};
+    Eigen::VectorXd rest = x, product = Eigen::VectorXd::Zero(x.size());
+    for (std::size_t k = 0; k < inputs_.size(); ++k) {
+      rest -= shares[static_cast<Eigen::Index>(k)] * inputs_[k];
+      product += shares[static_cast<Eigen::Index>(k)] * outputs_[k];
+    }
+    if (!(rest.norm() <= 1e-12 * size)) return {};
+    return product;
+  }
+
+ private:
+  static constexpr std::size_t most = 32;
+  std::vector<Eigen::VectorXd> inputs_, outputs_;
+};
+
+/// A Tpetra operator made of a function on flat arrays. Belos multiplies a start of zeros too, and its solution to see the true residual: these
+/// products are known.
 class FunctionOperator : public Operator {
  public:
   FunctionOperator(Teuchos::RCP<const Map> map, const Krylov::Apply& apply) : map_(std::move(map)), apply_(apply) {}
   Teuchos::RCP<const Map> getDomainMap() const override { return map_; }
   Teuchos::RCP<const Map> getRangeMap() const override { return map_; }
   void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha, double beta) const override {
-    buffer_.resize(map_->getGlobalNumElements());
+    const auto n = static_cast<Eigen::Index>(map_->getGlobalNumElements());
     for (size_t c = 0; c < x.getNumVectors(); ++c) {
-      const double* in = x.getData(c).getRawPtr();
-      // Belos multiplies a start of zeros too; that product is known.
-      if (std::all_of(in, in + buffer_.size(), [](double value) { return value == 0; }))
-        std::fill(buffer_.begin(), buffer_.end(), 0.0);
+      const Vector in(x.getData(c).getRawPtr(), n);
+      const Eigen::VectorXd product = times(in);
+      Eigen::Map<Eigen::VectorXd> out(y.getDataNonConst(c).getRawPtr(), n);
+      if (beta == 0)
+        out = alpha * product;
       else
-        apply_(in, buffer_.data());
-      const auto out = y.getDataNonConst(c);
-      for (size_t i = 0; i < buffer_.size(); ++i) out[i] = alpha * buffer_[i] + (beta == 0 ? 0.0 : beta * out[i]);
+        out = alpha * product + beta * out;
     }
   }
 
  private:
+  Eigen::VectorXd times(const Vector& in) const {
+    if (const auto known = known_.of(in)) return *known;
+    Eigen::VectorXd out(in.size());
+    apply_(in.data(), out.data());
+    known_.keep(in, Vector(out.data(), out.size()));
+    return out;
+  }
+
   Teuchos::RCP<const Map> map_;
   const Krylov::Apply& apply_;
-  mutable std::vector<double> buffer_;
+  mutable KnownProducts known_;
 };
 
 /// Numbers at the ends of the lines "Iter 3, [ 1] : 1.2e-04" that Belos writes.
@@ -72,6 +112,22 @@ struct Krylov::Impl {
   Teuchos::RCP<Solver> solver;
   std::string name;
   std::ostringstream log;
+  double tolerance = -1;                  // as the solver knows it
+  Teuchos::RCP<const Map> map;            // of the latest system, as are
+  Teuchos::RCP<MultiVector> left, right;  // its solution and right-hand side
+
+  void resize(Eigen::Index n) {
+    if (map != Teuchos::null && static_cast<Eigen::Index>(map->getGlobalNumElements()) == n) return;
+    map = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(n), 0, Tpetra::getDefaultComm(), Tpetra::LocallyReplicated));
+    left = Teuchos::rcp(new MultiVector(map, 1)), right = Teuchos::rcp(new MultiVector(map, 1));
+  }
+
+  void ask(double wanted) {
+    if (tolerance == wanted) return;
+    const auto now = Teuchos::rcp(new Teuchos::ParameterList(*list));
+    now->set("Convergence Tolerance", tolerance = wanted);
+    solver->setParameters(now);
+  }
 };
 
 Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list) : impl_(std::make_unique<Impl>()) {
@@ -107,23 +163,19 @@ SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::V
     x.setZero();
     return {0, true, 0, {}};
   }
-  const auto comm = Tpetra::getDefaultComm();
-  const auto map = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(b.size()), 0, comm, Tpetra::LocallyReplicated));
-  const auto op = Teuchos::rcp(new FunctionOperator(map, apply));
-  const auto lhs = Teuchos::rcp(new MultiVector(map, 1)), rhs = Teuchos::rcp(new MultiVector(map, 1));
-  std::copy_n(x.data(), x.size(), lhs->getDataNonConst(0).getRawPtr());
-  std::copy_n(b.data(), b.size(), rhs->getDataNonConst(0).getRawPtr());
+  impl_->resize(b.size());
+  const auto op = Teuchos::rcp(new FunctionOperator(impl_->map, apply));
+  std::copy_n(x.data(), x.size(), impl_->left->getDataNonConst(0).getRawPtr());
+  std::copy_n(b.data(), b.size(), impl_->right->getDataNonConst(0).getRawPtr());
 
-  const auto problem = Teuchos::rcp(new Problem(op, lhs, rhs));
-  if (precondition) problem->setRightPrec(Teuchos::rcp(new FunctionOperator(map, precondition)));
+  const auto problem = Teuchos::rcp(new Problem(op, impl_->left, impl_->right));
+  if (precondition) problem->setRightPrec(Teuchos::rcp(new FunctionOperator(impl_->map, precondition)));
   problem->setProblem();
-  const auto now = Teuchos::rcp(new Teuchos::ParameterList(*impl_->list));
-  now->set("Convergence Tolerance", tolerance);
   impl_->log.str({});
-  impl_->solver->setParameters(now);
+  impl_->ask(tolerance);
   impl_->solver->setProblem(problem);
   const bool converged = impl_->solver->solve() == Belos::Converged;
-  std::copy_n(lhs->getData(0).getRawPtr(), x.size(), x.data());
+  std::copy_n(impl_->left->getData(0).getRawPtr(), x.size(), x.data());
   return {impl_->solver->getNumIters(), converged, impl_->solver->achievedTol(), residuals(impl_->log.str())};
 }
 

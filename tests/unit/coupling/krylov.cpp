@@ -52,6 +52,22 @@ TEST(Krylov, TheInverseAsPreconditionerLeavesOneIteration) {
   }
 }
 
+TEST(Krylov, MultipliesOnceAnIteration) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  int products = 0;
+  const Krylov::Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+    ++products;
+  };
+  const Krylov krylov("GMRES", nullptr);
+  for (const double tolerance : {1e-3, 1e-8}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    products = 0;
+    EXPECT_EQ(krylov.solve(apply, Eigen::VectorXd::LinSpaced(n, -1, 2), x, tolerance).iterations, products);
+  }
+}
+
 TEST(Krylov, TellsWhenItStopsShort) {
   const int n = 40;
   const Krylov::Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before step n
