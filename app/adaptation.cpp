@@ -4,6 +4,7 @@
 
 #include "motion/adaptation.hpp"
 #include "spline/coarsening.hpp"
+#include "spline/locate.hpp"
 #include "spline/projection.hpp"
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
@@ -28,8 +29,7 @@ Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::St
 
 std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMesh mesh) {
   auto target = std::make_unique<Body>(body);
-  target->mesh = std::move(mesh);
-  target->space = space(scene, target->mesh);
+  lay_out(scene, std::move(mesh), *target);
   return target;
 }
 
@@ -50,7 +50,7 @@ Adapted refined(const Scene& scene, const Body& body, const motion::State& state
     return unchanged;
   }
   auto target = on_mesh(scene, body, std::move(refinement.mesh));
-  const spline::Transfer transfer(body.space, target->space);
+  const spline::Transfer transfer(body.nested(), target->nested());
   double residual = 0;
   Adapted result = carried(body, std::move(target), state, [&](const Net& field) {
     const auto moved = transfer(field);
@@ -64,16 +64,10 @@ Adapted refined(const Scene& scene, const Body& body, const motion::State& state
 
 /// Elements of the T-mesh in which some Bezier element's defect is above the tolerance.
 std::vector<bool> elements_over(const Body& body, const std::vector<double>& defect, double tolerance) {
-  const spline::Tiling tiling = spline::elements(body.mesh);
-  const spline::Lattice& lattice = *body.mesh.lattice;
-  std::vector<bool> over(tiling.tiles.size(), false);
-  for (size_t e = 0; e < defect.size(); ++e) {
-    if (defect[e] <= tolerance) continue;
-    const spline::Element& element = body.space.elements[e];
-    const int x = static_cast<int>((element.origin[0] + element.size[0] / 2) * lattice.units);
-    const int y = static_cast<int>((element.origin[1] + element.size[1] / 2) * lattice.units);
-    over[static_cast<size_t>(tiling.tile_of_cell[static_cast<size_t>(lattice.cell_at(element.face, x, y))])] = true;
-  }
+  const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
+  std::vector<bool> over(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, false);
+  for (size_t e = 0; e < defect.size(); ++e)
+    if (defect[e] > tolerance) over[static_cast<size_t>(tile[e])] = true;
   return over;
 }
 
@@ -83,8 +77,8 @@ Adapted coarsened(const Scene& scene, const Body& body, const motion::State& sta
     spline::Coarsening coarsening = spline::coarsen(body.mesh, merges, rules(body));
     auto target = on_mesh(scene, body, std::move(coarsening.mesh));
     if (target->space.n_points >= body.space.n_points) return {};
-    const spline::Projection projection(body.space, target->space);
-    std::vector<double> defect(body.space.elements.size(), 0.0);
+    const spline::Projection projection(body.nested(), target->nested());
+    std::vector<double> defect(body.nested().elements.size(), 0.0);
     for (const Net* net : {&body.unstressed, &state.x}) {
       const std::vector<double> found = projection(*net).defect;
       for (size_t e = 0; e < defect.size(); ++e) defect[e] = std::max(defect[e], found[e]);
@@ -102,28 +96,39 @@ Adapted coarsened(const Scene& scene, const Body& body, const motion::State& sta
   return {};
 }
 
+/// Of elements of the T-mesh that have no side at a pole. The paper cuts no others; what they are cut by comes from their neighbours.
+void leave_poles(const Body& body, std::vector<spline::Mark>& marks) {
+  if (body.mesh.lattice->pad == 0 || marks.empty()) return;
+  const spline::Tiling tiling = spline::elements(body.mesh);
+  const auto degenerate = [&](const spline::Mark& mark) {
+    return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);
+  };
+  std::erase_if(marks, degenerate);
+}
+
 }  // namespace
 
 Adapted adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
   const motion::AdaptationOptions& options = scene.adaptation;
-  const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.space, body.unstressed, state.x, load)
-                                                        : surface::field_of_net(body.space, load);
+  const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, state.x, load)
+                                                        : surface::field_of_net(body.nested(), load);
   std::vector<spline::Mark> marks;
   std::vector<spline::Merge> merges;
   if (options.indicator == "error") {
     const auto resolution =
-        surface::resolution(body.mesh, body.space, body.unstressed, state.x, options.load_tolerance ? traction : surface::FieldAt());
+        surface::resolution(body.mesh, body.nested(), body.unstressed, state.x, options.load_tolerance ? traction : surface::FieldAt());
     marks = motion::marks(resolution, options);
     merges = motion::merges(resolution, options);
   } else {
     surface::MetricFields fields;
     if (options.reference_traction_variation) fields.traction = traction;
     if (options.reference_velocity_variation && !state.history.empty())
-      fields.velocity = surface::field_of_net(body.space, state.history.front());
-    const auto metrics = surface::element_metrics(body.mesh, body.space, state.x, fields);
+      fields.velocity = surface::field_of_net(body.nested(), state.history.front());
+    const auto metrics = surface::element_metrics(body.mesh, body.nested(), state.x, fields);
     marks = motion::marks(metrics, options);
     merges = motion::merges(metrics, options);
   }
+  leave_poles(body, marks);
   Adapted finer;
   if (body.space.n_points < options.largest_number_of_points) finer = refined(scene, body, state, marks);
   if (finer.body || !options.coarsen) return finer;

@@ -26,23 +26,31 @@ std::string text(const char* format, auto... values) {
 
 }  // namespace
 
-spline::Space space(const Scene& scene, const spline::TMesh& mesh) {
-  const bool g1 = scene.surface.extraordinary_points == "g1";
-  return spline::space(mesh, g1 ? spline::ExtraordinaryRule::g1 : spline::ExtraordinaryRule::catmull_clark);
+void lay_out(const Scene& scene, spline::TMesh mesh, Body& body) {
+  body.mesh = std::move(mesh);
+  if (scene.surface.polar()) {
+    const spline::PolarMesh polar = scene.surface.polar_mesh();
+    body.space = spline::space(body.mesh, polar.poles, polar.subdivisions);
+    if (scene.adaptation.enabled && polar.poles == spline::PoleRule::bezier_transform)
+      body.plain = std::make_shared<const spline::Space>(spline::space(body.mesh, spline::PoleRule::plain));
+  } else {
+    const bool g1 = scene.surface.extraordinary_points == "g1";
+    body.space = spline::space(body.mesh, g1 ? spline::ExtraordinaryRule::g1 : spline::ExtraordinaryRule::catmull_clark);
+  }
 }
 
 Body body(const Scene& scene) {
   Body b;
+  const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
   if (const auto& imported = scene.particle.shape.imported) {
     b.space = imported->space;
     b.rest = surface::imported_shape(scene.particle.shape);
   } else if (scene.surface.polar()) {
     const spline::PolarMesh mesh = scene.surface.polar_mesh();
-    b.space = spline::space(mesh);
+    lay_out(scene, spline::polar(mesh.azimuthal, mesh.meridional, levels), b);
     b.rest = surface::initial_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
   } else {
-    b.mesh = spline::cube(scene.surface.elements_per_side.value(), scene.adaptation.enabled ? scene.adaptation.levels : 0);
-    b.space = space(scene, b.mesh);
+    lay_out(scene, spline::cube(scene.surface.elements_per_side.value(), levels), b);
     b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
   }
   b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);

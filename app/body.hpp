@@ -19,8 +19,9 @@ namespace tanktread {
 
 /// What the deck describes, before anything moves.
 struct Body {
-  spline::TMesh mesh;  ///< empty for the polar mesh and for one from a file
+  spline::TMesh mesh;  ///< empty for one from a file
   spline::Space space;
+  std::shared_ptr<const spline::Space> plain;  ///< with the same control points and poles as they are, for poles by the Bezier transform
   Net rest;        ///< control net of the resting shape, where the run starts
   Net unstressed;  ///< smaller by the pre-inflation
   stokes::AmbientFlow flow;
@@ -30,11 +31,14 @@ struct Body {
   surface::Symmetry symmetry;                       ///< of all this, and of the shapes that it takes
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
+
+  /// The space whose refinements contain it: fields go over from mesh to mesh in it.
+  const spline::Space& nested() const { return plain ? *plain : space; }
 };
 Body body(const Scene& scene);
 
-/// The spline space that the deck wants on a mesh.
-spline::Space space(const Scene& scene, const spline::TMesh& mesh);
+/// Gives the body a mesh, and the spline space that the deck wants on it.
+void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 
 /// The symmetry of the scene, as far as the deck wants it to be used, and of the shape x that the particle has by now.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);

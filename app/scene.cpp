@@ -118,12 +118,10 @@ namespace {
 void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;
   if (scene.particle.shape.imported)
-    throw UserError("Adaptation/enabled and Particle/shape `file` contradict each other: only the mesh `cube` can be refined.");
-  if (scene.surface.polar())
-    throw UserError("Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
-  const double n = scene.surface.elements_per_side.value();
-  // The side of a square that is 1/(6 n^2) of the sphere of equal volume.
-  scene.adaptation.check(static_cast<int>(scene.surface.n_points()), scene.radius() / n * std::sqrt(4 * std::numbers::pi / 6));
+    throw UserError("Adaptation/enabled and Particle/shape `file` contradict each other: a spline space from a file has no mesh to refine.");
+  // The side of a square that is one element's share of the sphere of equal volume.
+  const double area = 4 * std::numbers::pi * scene.radius() * scene.radius();
+  scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
 }
 
 }  // namespace

@@ -34,6 +34,11 @@ double wave_number(double h) { return std::numbers::pi / h; }
 /// Mean viscosity of what is on either side.
 double mean_viscosity(const Scene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
 
+/// What to do about elements that are too coarse.
+std::string finer_mesh(const Scene& scene) {
+  return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
+}
+
 }  // namespace
 
 double stiffness(const Scene& scene, double h) {
@@ -102,14 +107,14 @@ std::string Warnings::fold(const Signs& signs) const {
   if (signs.jacobian_ratio > folding) return {};
   const std::string cure = scene_.membrane.load == "strong" && elastic(scene_)           ? "set Membrane/load to weak"
                            : scene_.interface_motion() == "material" && !elastic(scene_) ? "set Interface/motion to relaxed"
-                                                                                         : "set a finer mesh, or Adaptation/enabled";
+                                                                                         : finer_mesh(scene_);
   return text("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure;
 }
 
 std::string Warnings::stretch(const Signs& signs) const {
   if (signs.aspect_ratio < slenderness) return {};
   return text("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
-         (elastic(scene_) ? "set Adaptation/enabled, or a finer mesh" : "set Interface/motion to relaxed, or Adaptation/enabled");
+         (elastic(scene_) || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
 }
 
 std::string Warnings::gap(const Signs& signs) const {

@@ -87,6 +87,10 @@ std::array<int, 4> corners(const Lattice& l, const Rectangle& r) {
   return {at(0, 0, 0), at(r.width - 1, 0, 1), at(r.width - 1, r.height - 1, 2), at(0, r.height - 1, 3)};
 }
 
+bool is_degenerate(const Lattice& l, const Rectangle& r) {
+  return l.pad > 0 && (l.height(r.y) == 0 || l.height(r.y + r.height) == l.height(l.rows));
+}
+
 Tiling elements(const TMesh& mesh) { return tiling(*mesh.lattice, mesh.edges); }
 
 Tiling bezier_mesh(const TMesh& mesh) {

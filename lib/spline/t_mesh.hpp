@@ -42,6 +42,9 @@ struct Rectangle {
 /// Lattice vertices at the corners (x, y), (x+w, y), (x+w, y+h), (x, y+h): outward orientation.
 std::array<int, 4> corners(const Lattice& lattice, const Rectangle& r);
 
+/// Whether one of its sides is a pole.
+bool is_degenerate(const Lattice& lattice, const Rectangle& r);
+
 /// Rectangles into which the edges cut the faces, and the one that holds each cell.
 struct Tiling {
   std::vector<Rectangle> tiles;

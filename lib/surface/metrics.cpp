@@ -50,10 +50,11 @@ double arc_length(const Patches& patches, const Piece& piece) {
 
 double curvature(const Patches& patches, const spline::Site& site) { return mean_curvature(jet(patches[site.element], site.s, site.t)); }
 
-MidLine mid_line(const std::vector<Piece>& parts, const Patches& patches, const MetricFields& fields) {
+MidLine mid_line(const std::vector<Piece>& parts, const Patches& patches, const MetricFields& fields, bool meets_pole) {
   const spline::Site &start = parts.front().first, &end = parts.back().last;
   MidLine result;
   for (const Piece& part : parts) result.length += arc_length(patches, part);
+  if (meets_pole) return result;
   if (fields.traction) result.traction = (fields.traction(end) - fields.traction(start)).norm() / result.length;
   if (fields.velocity) result.velocity = (fields.velocity(end) - fields.velocity(start)).norm() / result.length;
   result.curvature = std::abs(curvature(patches, end) - curvature(patches, start)) / result.length;
@@ -67,13 +68,14 @@ std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spl
   const BezierMap map(space);
   const Patches patches(map, net);
   const spline::Locator locate(space);
-  const double unit = 1. / mesh.lattice->units;
+  const spline::Lattice& l = *mesh.lattice;
+  const double unit = 1. / l.units, vertical_unit = 1. / l.height(l.rows);
   std::vector<ElementMetrics> result;
   for (const spline::Rectangle& r : spline::elements(mesh).tiles) {
-    const double x = r.x * unit, y = r.y * unit, width = r.width * unit, height = r.height * unit;
+    const double x = r.x * unit, y = l.height(r.y) * vertical_unit, width = r.width * unit, height = r.height * vertical_unit;
     const auto along_s = pieces(space, locate, {r.face, x, y + height / 2}, 0, width);
     const auto along_t = pieces(space, locate, {r.face, x + width / 2, y}, 1, height);
-    result.push_back({{mid_line(along_s, patches, fields), mid_line(along_t, patches, fields)}});
+    result.push_back({{mid_line(along_s, patches, fields, false), mid_line(along_t, patches, fields, spline::is_degenerate(l, r))}});
   }
   return result;
 }

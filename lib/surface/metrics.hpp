@@ -33,7 +33,7 @@ struct MetricFields {
 };
 
 /// Metrics of elements(mesh), in its order, on the surface of `net`. Elements are those of the T-mesh, which are marked and cut, not the Bezier
-/// elements: a mid-line may run through several of these.
+/// elements: a mid-line may run through several of these. Of one that ends at a pole, where most fields have no value, only the length is taken.
 std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
                                             const MetricFields& fields);
 

@@ -63,6 +63,11 @@ double MeshOptions::n_points() const {
   return poles == "c1" ? (r - 1) * m + 6 : (r + 1) * m + 2;
 }
 
+double MeshOptions::n_elements() const {
+  if (!polar()) return 6.0 * *elements_per_side * *elements_per_side;
+  return 1.0 * *azimuthal_elements * *meridional_elements;
+}
+
 void ParticleShape::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
               "resting shape; `red cell`: the biconcave disc of Evans and Fung; `file`: the closed surface in Particle/file");

@@ -35,8 +35,9 @@ struct MeshOptions {
   spline::PolarMesh polar_mesh() const;
   int axis() const { return pole_axis.value()[1] - '1'; }
 
-  /// Control points of the mesh.
+  /// Control points of the mesh, and elements of its T-mesh.
   double n_points() const;
+  double n_elements() const;
 };
 
 /// The resting shape of the particle: keys of `Particle/*`.

@@ -1,5 +1,6 @@
 #include "surface/resolution.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -20,6 +21,18 @@ struct Sample {
   Vec3 rest, now, load;
 };
 
+/// Where the sides of elements of a polar mesh have no length.
+bool on_pole(const Lattice& lattice, int vertex) {
+  if (lattice.pad == 0) return false;
+  const int height = lattice.height(vertex / lattice.units);
+  return height == 0 || height == lattice.height(lattice.rows);
+}
+
+/// Whether there is no way on: at the border of an open face, or at a pole.
+bool ends(const Lattice& lattice, Ray ray) {
+  return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0;
+}
+
 /// Both surfaces and the load at lattice vertices, each evaluated once.
 class Samples {
  public:
@@ -29,9 +42,11 @@ class Samples {
   const Sample& at(int vertex) {
     const auto [found, fresh] = known_.try_emplace(vertex);
     if (fresh) {
-      const spline::Site site = locate_(spline::place(lattice_, vertex));
+      spline::Site site = locate_(spline::place(lattice_, vertex));
       const auto on = [&](const Patches& patches) { return place(patches[site.element], site.s, site.t); };
-      found->second = {on(rest_), on(now_), load_ ? load_(site) : Vec3(Vec3::Zero())};
+      found->second = {on(rest_), on(now_), Vec3::Zero()};
+      if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);  // a load per area has only a limit there
+      if (load_) found->second.load = load_(site);
     }
     return found->second;
   }
@@ -59,13 +74,13 @@ class Samples {
   std::unordered_map<int, Sample> known_;
 };
 
-/// Vertices `stride` units apart along a ray, at most `most` of them, up to an extraordinary point or a border.
+/// Vertices `stride` units apart along a ray, at most `most` of them, up to an extraordinary point or a pole.
 std::vector<int> vertices_along(const Lattice& lattice, Ray ray, int stride, int most) {
   std::vector<int> found;
   while (static_cast<int>(found.size()) < most) {
     for (int k = 0; k < stride; ++k) {
       if (k > 0 && lattice.is_extraordinary[ray.vertex]) return found;
-      if (lattice.ends(ray.vertex, ray.slot)) return found;
+      if (ends(lattice, ray)) return found;
       ray = spline::step(lattice, ray);
     }
     found.push_back(ray.vertex);
@@ -136,13 +151,17 @@ std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, con
   std::vector<std::array<Resolution, 2>> result;
   for (const spline::Rectangle& r : spline::elements(mesh).tiles) {
     const int right = r.x + r.width - 1, top = r.y + r.height - 1;
-    const Mat3 f = samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (r.y + 0.5 * r.height) / l.units});
+    const Mat3 f = samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)});
     // Edge k runs from corner k to corner k + 1.
     const int cells[4] = {l.cell_at(r.face, r.x, r.y), l.cell_at(r.face, right, r.y), l.cell_at(r.face, right, top), l.cell_at(r.face, r.x, top)};
     const auto edge = [&](int k) {
       return along_edge(l, samples, {l.corners[cells[k]][k], l.slot[cells[k]][k]}, k % 2 == 0 ? r.width : r.height, f);
     };
-    result.push_back({mean(edge(0), edge(2)), mean(edge(1), edge(3))});
+    const auto along_s = [&] {
+      if (on_pole(l, l.corners[cells[0]][0])) return edge(2);
+      return on_pole(l, l.corners[cells[3]][3]) ? edge(0) : mean(edge(0), edge(2));
+    };
+    result.push_back({along_s(), mean(edge(1), edge(3))});
   }
   return result;
 }

@@ -26,8 +26,8 @@ struct Resolution {
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
 };
 
-/// Of elements(mesh), in its order, along s and t. A line of places ends at an extraordinary point; where fewer than five are left, the estimate
-/// is 0.
+/// Of elements(mesh), in its order, along s and t. A line of places ends at an extraordinary point or a pole; where fewer than five are left, the
+/// estimate is 0. A side that is a pole does not count.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
                                                   const FieldAt& load);
 

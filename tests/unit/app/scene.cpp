@@ -103,8 +103,11 @@ TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Surface: {poles: c1}\n"), "Surface/poles and Surface/mesh `cube` contradict each other: it belongs to `polar`.");
   EXPECT_EQ(refusal("  Surface: {mesh: polar, poles: plain, pole subdivisions: 1}\n"),
             "Surface/pole subdivisions and Surface/poles `plain` contradict each other: it belongs to `bezier transform`.");
-  EXPECT_EQ(refusal("  Surface: {mesh: polar}\n  Adaptation: {enabled: true}\n"),
-            "Adaptation/enabled and Surface/mesh `polar` contradict each other: only the mesh `cube` can be refined.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar}\n  Adaptation: {enabled: true}\n"), "");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, azimuthal elements: 8, meridional elements: 4}\n"
+                    "  Adaptation: {enabled: true, minimum length: 0.7}\n"),
+            "Adaptation/minimum length must be below the length of the elements that the run starts with, 0.627, or nothing is ever cut, "
+            "but is 0.7.");
   EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"),
             "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
   EXPECT_EQ(refusal("  Flow: {type: four-roll}\n"), "Flow/type `four-roll` needs Flow/roll parameter.");

@@ -7,6 +7,7 @@
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
+#include "surface/polar_sphere.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {
@@ -42,6 +43,23 @@ TEST(Metrics, ALinearFieldVariesAlongMidLinesAsTheyAreLong) {
       EXPECT_GE(line.velocity, 0.99);
       EXPECT_EQ(line.traction, line.velocity);
     }
+  }
+}
+
+TEST(Metrics, MeridiansOfAPolarSphereAreHalfCirclesAndNothingIsAskedOfAPole) {
+  const spline::TMesh mesh = spline::polar(12, 8, 1);
+  const spline::Space space = spline::space(mesh, spline::PoleRule::plain);
+  const Net net = unit_sphere({12, 8, spline::PoleRule::plain}, space);
+  const auto metrics = element_metrics(mesh, space, net, {per_current_area(space, net, net, net), {}});
+  for (int k = 0; k < 12; ++k) {
+    double meridian = 0;
+    for (int row = 0; row < 8; ++row) {
+      const ElementMetrics& m = metrics[static_cast<std::size_t>(12 * row + k)];
+      meridian += m.along[1].length;
+      EXPECT_GT(m.along[0].length, 0);
+      EXPECT_EQ(m.along[1].traction == 0, row == 0 || row == 7);
+    }
+    EXPECT_NEAR(meridian, 3.14159265, 1e-3);
   }
 }
 

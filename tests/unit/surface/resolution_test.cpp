@@ -8,6 +8,7 @@
 #include "spline/extraction.hpp"
 #include "spline/locate.hpp"
 #include "surface/geometry.hpp"
+#include "surface/polar_sphere.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {
@@ -61,6 +62,32 @@ TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
   const double order = std::log2(error(12) / error(24));
   EXPECT_GT(order, 3.5);  // the lines at extraordinary points, a share of 1/n of them, have a lower one
   EXPECT_LT(order, 4.1);
+}
+
+struct PolarSphere {
+  spline::TMesh mesh = spline::polar(12, 8, 1);
+  spline::Space space = spline::space(mesh, spline::PoleRule::plain);
+  Net net = unit_sphere({12, 8, spline::PoleRule::plain}, space);
+};
+
+TEST(Resolution, OfAPolarMeshIsNoneWhereTheShapeIsKeptAndFiniteAtThePoles) {
+  const PolarSphere sphere;
+  const Net net = (1.7 * sphere.net).rowwise() + Vec3(0.3, -2, 1).transpose();
+  EXPECT_LT(largest_surface_error(resolution(sphere.mesh, sphere.space, sphere.net, net, {})), 1e-15);
+  // phi = x J0/J with J = 1.7^2 J0: what varies at a pole has a limit there.
+  const Net load = 1.7 * 1.7 * sphere.net;
+  const auto found = resolution(sphere.mesh, sphere.space, sphere.net, net, per_current_area(sphere.space, sphere.net, net, load));
+  const auto tiles = spline::elements(sphere.mesh).tiles;
+  ASSERT_EQ(found.size(), 12u * 8u);
+  for (std::size_t e = 0; e < found.size(); ++e) {
+    const bool at_pole = spline::is_degenerate(*sphere.mesh.lattice, tiles[e]);
+    EXPECT_EQ(at_pole, e < 12 || e >= 12 * 7);
+    EXPECT_GT(found[e][1].length, 0.2);
+    EXPECT_GT(found[e][0].length, at_pole ? 0.15 : 0.2);  // of the side that is not the pole
+    // sin(x) has the fourth difference 16 sin(d/2)^4 sin(x): below d^4 for d = pi/8 along a meridian, pi/6 around.
+    EXPECT_LT(found[e][0].load, std::pow(3.15 / 6, 4) / 384);
+    EXPECT_LT(found[e][1].load, 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not quite even
+  }
 }
 
 }  // namespace
