@@ -239,7 +239,7 @@ void Capsule::freeze(const Net& x) {
   if (parameters_.solvers.frozen_operator == "nodal") {
     const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
     const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
-    nodal_.assemble(own_points_, {sites * x, sites, row_sums(unstressed_), row_sums(x)}, 3, assemble);
+    nodal_.assemble(own_points_, {sites * x, sites, row_sums(unstressed_), row_sums(x), parameters_.symmetry}, 3, assemble);
   } else {
     frozen_.assemble(own_points_, space_.n_points, assemble);
   }

@@ -16,14 +16,31 @@ Mat3 stokeslet(const Vec3& r) {
   return inverse * Mat3::Identity() + inverse * inverse * inverse * r * r.transpose();
 }
 
+using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+ByRows rows_of(const ByRows& matrix, const std::vector<int>& wanted) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    for (ByRows::InnerIterator entry(matrix, wanted[k]); entry; ++entry)
+      entries.emplace_back(static_cast<int>(k), static_cast<int>(entry.col()), entry.value());
+  ByRows rows(static_cast<Eigen::Index>(wanted.size()), matrix.cols());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
+}
+
 }  // namespace
 
 void NodalOperator::assemble(const std::vector<int>& targets, const Surface& surface, double reach, const FrozenOperator::Assemble& assemble) {
   constexpr std::size_t at_a_time = 64;
   targets_ = targets;
-  values_ = surface.values;
-  weights_ = factor * surface.weights;
   const Eigen::Index n = surface.sites.rows(), padded = (n + nodal_tile - 1) / nodal_tile * nodal_tile;
+  symmetry_ = surface.symmetry.fundamental().empty() ? surface::Symmetry(static_cast<int>(n)) : surface.symmetry;
+  values_ = rows_of(surface.values, symmetry_.fundamental());
+  row_.clear();
+  const std::vector<int>& fundamental = symmetry_.fundamental();
+  for (const int source : symmetry_.source())
+    row_.push_back(static_cast<int>(std::ranges::lower_bound(fundamental, source) - fundamental.begin()));
+  weights_ = factor * surface.weights;
   for (int c = 0; c < 3; ++c) {
     node_[c].assign(static_cast<std::size_t>(padded), 0);
     force_[c].assign(static_cast<std::size_t>(padded), 0);
@@ -55,10 +72,18 @@ void NodalOperator::correct(int target, const Surface& surface, double reach, co
   first_block_.push_back(blocks_.size());
 }
 
+/// w_B (R f)_B at all nodes.
+void NodalOperator::spread(const Net& f) const {
+  const Net values = values_ * f;
+  for (std::size_t b = 0; b < row_.size(); ++b)
+    for (int c = 0; c < 3; ++c) {
+      const auto node = static_cast<Eigen::Index>(b);
+      force_[c][b] = static_cast<float>(weights_[node] * symmetry_.signs()(node, c) * values(row_[b], c));
+    }
+}
+
 void NodalOperator::apply(const Net& f, Net& u) const {
-  const Net at_nodes = weights_.asDiagonal() * (values_ * f);
-  for (Eigen::Index b = 0; b < f.rows(); ++b)
-    for (int c = 0; c < 3; ++c) force_[c][static_cast<std::size_t>(b)] = static_cast<float>(at_nodes(b, c));
+  spread(f);
   const float* const node[3] = {node_[0].data(), node_[1].data(), node_[2].data()};
   const float* const force[3] = {force_[0].data(), force_[1].data(), force_[2].data()};
   float x0[3 * nodal_block], sums[3 * nodal_block];

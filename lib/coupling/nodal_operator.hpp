@@ -9,6 +9,7 @@
 
 #include "base/types.hpp"
 #include "coupling/frozen_operator.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
 
@@ -26,6 +27,7 @@ class NodalOperator {
     Eigen::SparseMatrix<double> values;  ///< R, shape (N, N)
     Eigen::VectorXd weights;             ///< w_B
     Eigen::VectorXd areas;               ///< present ones: a control point C is near where |x_C - x_i| < reach sqrt(area_C)
+    surface::Symmetry symmetry;          ///< of surface and densities; of no points: none
   };
 
   /// `assemble(targets, rows)` fills three rows of the exact A a target, for a few targets at a time.
@@ -41,10 +43,13 @@ class NodalOperator {
     int point;
     float a[6];  // entries 11, 12, 13, 22, 23, 33
   };
+  void spread(const Net& f) const;
   void correct(int target, const Surface& surface, double reach, const stokes::Rows<float>& rows, Eigen::Index row);
 
   std::vector<int> targets_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> values_;
+  surface::Symmetry symmetry_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> values_;  // R at the fundamental sites
+  std::vector<int> row_;                                 // of each site, that of its fundamental one
   Eigen::VectorXd weights_;
   std::vector<float> node_[3];  // padded to whole tiles
   mutable std::vector<float> force_[3];
