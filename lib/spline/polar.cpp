@@ -6,6 +6,9 @@
 #include <map>
 #include <numbers>
 
+#include <Eigen/LU>
+
+#include "base/types.hpp"
 #include "spline/pole_transform.hpp"
 #include "spline/tile_functions.hpp"
 
@@ -28,6 +31,49 @@ double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, b
   return d[3];
 }
 
+/// A control point of the tensor net near a pole: its anchor, and its place in the plane that is tangent there, heights of the first element of
+/// the base mesh from the pole.
+struct PolePoint {
+  int anchor;
+  bool is_pole;
+  Eigen::Vector2d place;
+};
+
+/// Three of these points around the origin, with the largest triangle as far as exchanging one of them tells.
+std::array<int, 3> largest_triangle(const std::vector<Eigen::Vector2d>& p) {
+  constexpr double clearly = 1e-9;
+  std::array<int, 3> best{0, 0, 0};
+  for (int k = 0; k < 3; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 3;
+    const Eigen::Vector2d way(std::cos(angle), std::sin(angle));
+    for (int i = 0; i < int(p.size()); ++i)
+      if (way.dot(p[i]) > way.dot(p[best[k]]) + clearly) best[k] = i;
+  }
+  const auto area = [&](const std::array<int, 3>& t) {
+    const Eigen::Vector2d a = p[t[1]] - p[t[0]], b = p[t[2]] - p[t[0]];
+    return std::abs(a[0] * b[1] - a[1] * b[0]);
+  };
+  double largest = area(best);
+  const auto exchange = [&](int corner) {
+    bool any = false;
+    for (int i = 0; i < int(p.size()); ++i) {
+      auto other = best;
+      other[corner] = i;
+      if (const double size = area(other); size > largest * (1 + clearly)) best = other, largest = size, any = true;
+    }
+    return any;
+  };
+  while (exchange(0) || exchange(1) || exchange(2)) {
+  }
+  return best;
+}
+
+/// Corners of the triangle that has these three as middles of its sides: corner k is opposite to number k.
+std::array<Eigen::Vector2d, 3> around(const std::array<Eigen::Vector2d, 3>& middle) {
+  const Eigen::Vector2d sum = middle[0] + middle[1] + middle[2];
+  return {sum - 2 * middle[0], sum - 2 * middle[1], sum - 2 * middle[2]};
+}
+
 /// In which control points' functions an anchor's function appears, and with which weight.
 struct Share {
   int point;
@@ -43,33 +89,55 @@ class Shares {
     for (std::size_t a = 0; a < f.anchor.size(); ++a)
       if (to_end(f.anchor[a]) >= replaced) shares_[a] = {{next++, 1.0}};
     n_points_ = next + per_pole_;
+    std::vector<PolePoint> at_pole[2];
     for (std::size_t a = 0; a < f.anchor.size(); ++a) {
-      const int v = f.anchor[a], first = v / l.units < l.rows / 2 ? 0 : next;
+      const int v = f.anchor[a];
+      const bool behind = v / l.units < l.rows / 2;
       if (to_end(v) >= replaced) continue;
-      if (per_pole_ == 1) {
-        shares_[a] = {{first, 1.0}};
-        continue;
-      }
-      const bool outermost = to_end(v) == 0, behind = first == 0;
-      const auto& reach = f.knots[a].reach;
-      const double x = v % l.units, height = double(l.length(v, behind ? 1 : 3, reach[behind ? 1 : 3][0])) / l.base;
-      const std::array<double, 3> knots{x - reach[2][0], x, x + reach[0][0]};
-      const double c = outermost ? 0 : height * blossom_of_circle(l, knots, false),
-                   s = outermost ? 0 : height * blossom_of_circle(l, knots, true);
-      for (int k = 0; k < 3; ++k) {
-        const double corner = 2 * std::numbers::pi * k / 3;
-        shares_[a].push_back({first + k, (1 + c * std::cos(corner) + s * std::sin(corner)) / 3});
-      }
+      if (per_pole_ == 1)
+        shares_[a] = {{behind ? 0 : next, 1.0}};
+      else
+        at_pole[!behind].push_back(
+            {int(a), to_end(v) == 0, to_end(v) == 0 ? Eigen::Vector2d(0, 0) : place(l, v, f.knots[a].reach, behind)});
     }
+    if (per_pole_ == 3)
+      for (int k : {0, 1}) share_among_three(at_pole[k], k == 0 ? 0 : next, sites_[k]);
   }
 
   const std::vector<Share>& operator[](int anchor) const { return shares_[anchor]; }
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
+  /// Under `c1`, the anchor at whose generalised Greville point function k of a pole is collocated; -1: at the pole itself.
+  int site(bool ahead, int k) const { return sites_[ahead][k]; }
+
  private:
+  static Eigen::Vector2d place(const Lattice& l, int v, const int (&reach)[4][2], bool behind) {
+    const int slot = behind ? 1 : 3;
+    const double x = v % l.units, height = double(l.length(v, slot, reach[slot][0])) / l.base;
+    const std::array<double, 3> knots{x - reach[2][0], x, x + reach[0][0]};
+    return height * Eigen::Vector2d(blossom_of_circle(l, knots, false), blossom_of_circle(l, knots, true));
+  }
+
+  void share_among_three(const std::vector<PolePoint>& at_pole, int first, std::array<int, 3>& sites) {
+    std::vector<Eigen::Vector2d> places;
+    for (const PolePoint& p : at_pole) places.push_back(p.place);
+    const auto middles = largest_triangle(places);
+    const auto corner = around({places[middles[0]], places[middles[1]], places[middles[2]]});
+    Eigen::Matrix3d corners;
+    for (int k = 0; k < 3; ++k) {
+      corners.col(k) << 1, corner[k];
+      const PolePoint& middle = at_pole[middles[(k + 1) % 3]];  // of a side that ends at the corner
+      sites[k] = middle.is_pole ? -1 : middle.anchor;
+    }
+    const Eigen::Matrix3d barycentric = corners.inverse();
+    for (const PolePoint& p : at_pole)
+      for (int k = 0; k < 3; ++k) shares_[p.anchor].push_back({first + k, barycentric.row(k).dot(Vec3(1, p.place[0], p.place[1]))});
+  }
+
   int per_pole_, n_points_ = 0;
   std::vector<std::vector<Share>> shares_;
+  std::array<std::array<int, 3>, 2> sites_{};
 };
 
 /// Knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
@@ -115,19 +183,6 @@ class Transform {
   std::vector<PolePiece> pieces_;
 };
 
-/// Tiles whose closure holds a place (lattice units, y from the pole behind).
-std::vector<Site> tiles_at(const Lattice& l, const Tiling& tiling, double x, double y) {
-  std::vector<Site> out;
-  for (int j : {int(std::ceil(y)) - 1, int(std::floor(y))})
-    for (int i : {int(std::ceil(x)) - 1, int(std::floor(x))}) {
-      const int tile = tiling.tile_of_cell[l.cell_at(0, (i + l.units) % l.units, j + l.pad)];
-      if (std::any_of(out.begin(), out.end(), [&](const Site& s) { return s.element == tile; })) continue;
-      const Rectangle& r = tiling.tiles[tile];
-      out.push_back({tile, ((i + l.units) % l.units - r.x + x - i) / r.width, (j + l.pad - r.y + y - j) / r.height});
-    }
-  return out;
-}
-
 /// The pole itself: on a whole side of every tile there.
 std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahead) {
   std::vector<Site> out;
@@ -153,10 +208,8 @@ std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunct
       continue;
     }
     for (int k = 0; k < 3; ++k) {
-      const double x = k * l.units / 3.0;
-      const int cell = l.cell_at(0, int(x), ahead ? l.rows - l.pad - 1 : l.pad);
-      const double from_pole = c1_site * f.tiling.tiles[f.tiling.tile_of_cell[cell]].height;
-      out[first + k] = tiles_at(l, f.tiling, x, ahead ? l.height(l.rows) - from_pole : from_pole);
+      const int a = shares.site(ahead, k);
+      out[first + k] = a < 0 ? tiles_at_pole(l, f.tiling, ahead) : tiles_around(mesh, f.tiling, greville(mesh, f.anchor[a], f.knots[a]));
     }
   }
   return out;
@@ -195,16 +248,20 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh) {
   const int m = mesh.azimuthal, r = mesh.meridional;
   const bool c1 = mesh.poles == PoleRule::c1;
   std::vector<PolarAnchor> out;
-  const auto pole = [&](double u) {
-    if (!c1) return out.push_back({u, 0});
-    for (int l = 0; l < 3; ++l) out.push_back({u == 0 ? c1_site : r - c1_site, l * m / 3.0});
+  const auto pole = [&](double u, double row) {
+    if (!c1) return out.push_back({u, 0, 1});
+    std::vector<Eigen::Vector2d> place;
+    for (int k = 0; k < m; ++k) place.emplace_back(std::cos(2 * std::numbers::pi * k / m), std::sin(2 * std::numbers::pi * k / m));
+    const auto middles = largest_triangle(place);
+    for (const Eigen::Vector2d& corner : around({place[middles[0]], place[middles[1]], place[middles[2]]}))
+      out.push_back({row, std::atan2(corner[1], corner[0]) * m / (2 * std::numbers::pi), corner.norm()});
   };
-  pole(0);
+  pole(0, 1.0 / 3);
   for (int row = c1 ? 2 : 1; row <= r + (c1 ? 0 : 1); ++row) {
     const double u = (open_knot(row + 1, r) + open_knot(row + 2, r) + open_knot(row + 3, r)) / 3;
-    for (int k = 0; k < m; ++k) out.push_back({u, double(k)});
+    for (int k = 0; k < m; ++k) out.push_back({u, double(k), 1});
   }
-  pole(r);
+  pole(r, r - 1.0 / 3);
   return out;
 }
 

@@ -23,31 +23,34 @@ struct PolarMesh {
   int subdivisions = 2;  ///< of the elements at the poles in azimuth before the transform, 2^subdivisions
 };
 
-/// Where a control point stands: azimuth in elements, 0 <= v < m, and way along the meridian in elements, from 0 (pole behind) to r (pole
-/// ahead). The generalised Greville places; the three of a pole under `c1` stand off it by `c1_site`, 120 degrees apart.
+/// Where a control point stands: way along the meridian in elements, from 0 (pole behind) to r (pole ahead), azimuth in elements, and distance
+/// from the axis in that of its row. The generalised Greville places; the three of a pole under `c1` stand in for row 1 of the tensor net, at
+/// other distances from the axis than that.
 struct PolarAnchor {
-  double u = 0, v = 0;
+  double u = 0, v = 0, distance = 1;
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
-
-/// Where the sites of the three functions of a pole under `c1` lie, in heights of the element there from the pole.
-constexpr double c1_site = 0.5;
 
 /// The space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth,
 /// t along the meridian towards the pole ahead; those of the transform last. A pole of `plain` lies on a whole side of m elements, and its
 /// site is at s = 1/2 of each. `face` is 0 and `origin`, `size` are in parts of m and r; the pieces of the transform share the size.
 ///
-/// Under `c1` (Speleers and Toshniwal 2021), with rows 0 and 1 next to the pole and azimuths f_j = 2 pi j / m of their functions:
+/// Under `c1` (after Speleers and Toshniwal 2021), with rows 0 and 1 next to the pole, azimuths f_j = 2 pi j / m of their functions,
+/// places d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all of them:
 ///
-///   N_l = 1/3 sum_j N_0j + sum_j (1 + cos(f_j - 2 pi l / 3)) / 3 N_1j,   l = 0, 1, 2
+///   N_k = l_k(0) sum_j N_0j + sum_j l_k(d_j) N_1j,   k = 0, 1, 2
+///
+/// The triangle is the one that has three of the d_j as middles of its sides, which are chosen so that it is as large as they can make it (then it
+/// holds them all, and l_k >= 0). The functions are collocated at the generalised Greville points of these three: condition numbers are those of
+/// tensor-product splines.
 Space space(const PolarMesh& mesh);
 
 /// The same on a mesh made by polar() and refined: analysis-suitable T-splines, one control point an anchor but for those of a pole, in the order
 /// of the lattice vertices.
 ///
-/// Under `c1` the cosines of the base mesh are carried to the finer functions of row 1 by knot insertion, times the height of the first element
-/// over that of the base mesh, so spaces of nested meshes are nested. `plain` spaces are nested too; `bezier_transform` ones are not, but their
-/// control points are those of the `plain` space: take fields over between these.
+/// Under `c1` the places of the base mesh are carried to the finer functions of row 1 by knot insertion, times the height of the first element over
+/// that of the base mesh, so spaces of nested meshes are nested; the triangle is made anew from these places and the pole. `plain` spaces are nested
+/// too; `bezier_transform` ones are not, but their control points are those of the `plain` space: take fields over between these.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 }  // namespace tanktread::spline

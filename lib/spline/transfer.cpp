@@ -114,7 +114,8 @@ std::vector<int> Transfer::State::combine_where_independent() {
 double Transfer::State::residual(const Net& field, const Net& net, const std::vector<int>& elements) const {
   double largest = 0;
   for (int k : elements)
-    largest = std::max(largest, (own_points(to.elements[k], embedding[k], net) - restricted(from, embedding[k], field)).cwiseAbs().maxCoeff());
+    largest =
+        std::max(largest, (own_points(to.elements[k], embedding[k], net) - restricted(from, embedding[k], field)).cwiseAbs().maxCoeff());
   return largest;
 }
 

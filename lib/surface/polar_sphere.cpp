@@ -16,10 +16,11 @@
 namespace tanktread::surface {
 namespace {
 
-/// Control point A lies at azimuth `angle` on the circle of row `row`: radius profile[2 row], height profile[2 row + 1].
+/// Control point A lies in direction (cos, sin) from the axis, `across` of length 1 but at a C1 pole, times the radius of its row, profile[2 row], at the
+/// height profile[2 row + 1].
 struct Circles {
   std::vector<int> row;
-  std::vector<double> angle;
+  std::vector<Eigen::Vector2d> across;
   int n_rows = 0;
 
   explicit Circles(const spline::PolarMesh& mesh) {
@@ -28,7 +29,8 @@ struct Circles {
       n_rows += anchor.u != last;
       last = anchor.u;
       row.push_back(n_rows - 1);
-      angle.push_back(2 * std::numbers::pi * anchor.v / mesh.azimuthal);
+      const double angle = 2 * std::numbers::pi * anchor.v / mesh.azimuthal;
+      across.push_back(anchor.distance * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
   }
 
@@ -36,24 +38,21 @@ struct Circles {
     Net x(row.size(), 3);
     for (std::size_t a = 0; a < row.size(); ++a) {
       const double radius = profile[2 * row[a]];
-      x.row(a) << radius * std::cos(angle[a]), radius * std::sin(angle[a]), profile[2 * row[a] + 1];
+      x.row(a) << radius * across[a][0], radius * across[a][1], profile[2 * row[a] + 1];
     }
     return x;
   }
 };
 
-/// Places on the sphere at even colatitudes; at the three points of a C1 pole, row 1 of the tensor net (u = 1/3), with half their radius.
+/// Places on the sphere at even colatitudes.
 Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   std::vector<double> profile;
   double last = -1;
   for (const spline::PolarAnchor& anchor : spline::anchors(mesh)) {
     if (anchor.u == last) continue;
     last = anchor.u;
-    double u = anchor.u, factor = 1;
-    const bool three = mesh.poles == spline::PoleRule::c1 && (u < 1 || u > mesh.meridional - 1);
-    if (three) u = u < 1 ? 1.0 / 3 : mesh.meridional - 1.0 / 3, factor = 2;
-    const double colatitude = std::numbers::pi * u / mesh.meridional;
-    profile.push_back(factor * std::sin(colatitude));
+    const double colatitude = std::numbers::pi * anchor.u / mesh.meridional;
+    profile.push_back(std::sin(colatitude));
     profile.push_back(-std::cos(colatitude));
   }
   return Eigen::Map<Eigen::VectorXd>(profile.data(), Eigen::Index(profile.size()));
@@ -121,8 +120,8 @@ class Sector {
     Eigen::Matrix<double, 3, Eigen::Dynamic> slope = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, width);
     for (std::size_t a = 0; a < points.size(); ++a) {
       const Eigen::Index k = Eigen::Index(a);
-      const double angle = circles_.angle[points[a]];
-      const Vec3 directions[2] = {{std::cos(angle), std::sin(angle), 0}, Vec3::UnitZ()};
+      const Eigen::Vector2d& across = circles_.across[points[a]];
+      const Vec3 directions[2] = {{across[0], across[1], 0}, Vec3::UnitZ()};
       for (int c = 0; c < 2; ++c) {
         const Vec3& d = directions[c];
         const double value = x.dot(d), in_s = xs.dot(d), in_t = xt.dot(d);

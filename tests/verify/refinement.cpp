@@ -52,10 +52,8 @@ TEST(Refinement, TwoHundredSequencesOnSurfacesWithPolesStayNested) {
   for (PoleRule poles : {PoleRule::plain, PoleRule::c1}) {
     Findings found;
     auto options = on_poles(poles);
-    for (unsigned seed = 0; seed < 100; ++seed) {
-      options.condition = seed % 4 == 0;
-      run_sequence(base[seed % 2], seed, options, found);
-    }
+    options.condition = true;
+    for (unsigned seed = 0; seed < 100; ++seed) run_sequence(base[seed % 2], seed, options, found);
     EXPECT_EQ(found.crossings, 0);
     EXPECT_EQ(found.overlaps, 0);
     EXPECT_EQ(found.straddling, 0);
@@ -63,8 +61,11 @@ TEST(Refinement, TwoHundredSequencesOnSurfacesWithPolesStayNested) {
     EXPECT_LT(found.unity, 1e-13);
     EXPECT_LT(found.residual, 1e-12);
     EXPECT_EQ(found.finest, 1);
-    // The wide function of a pole costs: without cuts 14 (8 x 4) to 19 (32 x 16) where the cube has 9.
-    EXPECT_LT(found.condition, poles == PoleRule::c1 ? 200 : 25);
+    // Measured 12.3 under `c1`, scaled 11.1. The one function of a plain pole stands for a whole row, and its column is as long as that row has
+    // points: 14 (8 x 4) to 19 (32 x 16) without cuts, 24 here, where the cube has 9. With columns of length one, which is what a direct solution
+    // feels, it is 9.4 at most.
+    EXPECT_LT(found.condition, poles == PoleRule::c1 ? 15 : 25);
+    EXPECT_LT(found.scaled, 15);
   }
 }
 

@@ -27,7 +27,9 @@ TEST(PolarRefinement, RandomSequencesStayNestedAndIndependent) {
     EXPECT_EQ(found.wrong_counts, 0);
     EXPECT_LT(found.unity, 1e-13);
     EXPECT_LT(found.residual, 1e-12);
-    EXPECT_LT(found.condition, poles == PoleRule::c1 ? 100 : 25);  // 8 to 19 without cuts; one-sided cuts at a C1 pole cost most
+    // The column of the one function of a plain pole is as long as many points around see it: 13 on 8 elements around, 19 on 32, without cuts.
+    EXPECT_LT(found.condition, poles == PoleRule::c1 ? 15 : 25);
+    EXPECT_LT(found.scaled, 15);
     EXPECT_EQ(found.finest, 1);
   }
 }

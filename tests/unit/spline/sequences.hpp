@@ -23,13 +23,29 @@ struct Findings {
   double unity = 0;           // defect of the partition of unity
   double residual = 0;        // of the transfer of a fresh random field
   double condition = 0;       // of Greville collocation
+  double scaled = 0;          // the same with columns of length one: how wide a function is no longer counts
   double least_diagonal = 1;  // and its smallest diagonal entry
   int finest = 1 << 30;       // lattice units
   int control_points = 0;
 };
 
-/// Condition number of the Greville collocation matrix in the 2-norm, by power iteration on C^T C and its inverse.
-inline double collocation_condition(const Space& s, double* least_diagonal = nullptr) {
+/// Condition number of a square matrix in the 2-norm, by power iteration on C^T C and its inverse.
+inline double condition_number(const Eigen::SparseMatrix<double>& C) {
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(C);
+  if (lu.info() != Eigen::Success) return HUGE_VAL;
+  Eigen::VectorXd x = random_net(int(C.cols()), 1).col(0), y = x;
+  double largest = 0, smallest = 0;
+  for (int i = 0; i < 40; ++i) {
+    x = C.transpose() * (C * x.normalized());
+    y = lu.solve(lu.transpose().solve(y.normalized()).eval());
+    largest = x.norm();
+    smallest = 1 / y.norm();
+  }
+  return std::sqrt(largest / smallest);
+}
+
+/// Of the Greville collocation matrix.
+inline double collocation_condition(const Space& s, double* least_diagonal = nullptr, double* scaled = nullptr) {
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> diagonal(s.n_points, 0);
   for (int i = 0; i < s.n_points; ++i) {
@@ -43,18 +59,13 @@ inline double collocation_condition(const Space& s, double* least_diagonal = nul
   }
   Eigen::SparseMatrix<double> C(s.n_points, s.n_points);
   C.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(C);
   if (least_diagonal) *least_diagonal = *std::min_element(diagonal.begin(), diagonal.end());
-  if (lu.info() != Eigen::Success) return HUGE_VAL;
-  Eigen::VectorXd x = random_net(s.n_points, 1).col(0), y = x;
-  double largest = 0, smallest = 0;
-  for (int i = 0; i < 40; ++i) {
-    x = C.transpose() * (C * x.normalized());
-    y = lu.solve(lu.transpose().solve(y.normalized()).eval());
-    largest = x.norm();
-    smallest = 1 / y.norm();
+  const double condition = condition_number(C);
+  if (scaled) {
+    for (int j = 0; j < s.n_points; ++j) C.col(j) /= C.col(j).norm();
+    *scaled = condition_number(C);
   }
-  return std::sqrt(largest / smallest);
+  return condition;
 }
 
 /// Random elements cut both ways (1/2), across s (1/4), across t (1/4); `deep` marks go to the smallest elements.
@@ -130,8 +141,9 @@ inline void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& optio
   for (const Rectangle& r : elements(mesh).tiles) found.finest = std::min({found.finest, r.width, r.height});
   found.control_points = std::max(found.control_points, now->n_points);
   if (options.condition) {
-    double diagonal;
-    found.condition = std::max(found.condition, collocation_condition(*now, &diagonal));
+    double diagonal, scaled;
+    found.condition = std::max(found.condition, collocation_condition(*now, &diagonal, &scaled));
+    found.scaled = std::max(found.scaled, scaled);
     found.least_diagonal = std::min(found.least_diagonal, diagonal);
   }
 }
