@@ -16,8 +16,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Control point A lies in direction (cos, sin) from the axis, `across` of length 1 but at a C1 pole, times the radius of its row, profile[2 row], at the
-/// height profile[2 row + 1].
+/// Control point A lies off the axis by `across`, of length 1 but at a C1 pole, times the radius of its row, profile[2 row], at the height
+/// profile[2 row + 1].
 struct Circles {
   std::vector<int> row;
   std::vector<Eigen::Vector2d> across;
