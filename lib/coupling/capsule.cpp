@@ -46,6 +46,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   mass_.factor(mass_matrix_.update(unstressed));
   layer_.set_reference(unstressed);
   if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
+  layer_.set_symmetry(symmetry);
   if (tube_) {
     sites_ = collocation_matrix(space);
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());

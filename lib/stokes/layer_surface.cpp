@@ -10,8 +10,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Below this share of the median size an element counts as tiny.
-constexpr double tiny = 0.3;
+/// Share of the distance between control points below which an element counts as small.
+constexpr double small = 0.6;
 
 /// Gauss points a direction of the far rule. Measured on deformed capsules at n = 3, 6 and 12 (tests/verify/layers.cpp).
 int far_order(const quadrature::Options& options) {
@@ -23,22 +23,32 @@ int far_order(const quadrature::Options& options) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// The same for each element. Pieces that are tiny beside the others (those at the extraordinary points of Catmull-Clark surfaces) get
-/// by with less: the smooth part of the integrand converges faster on them, and their share of the area is small.
+/// Parametric side of an element over the distance between control points around it: 1 on a uniform mesh.
+std::vector<double> shares(const spline::Space& space) {
+  std::vector<double> area(space.n_points, 0);  // per control point
+  for (const spline::Element& e : space.elements) {
+    const double each = e.size[0] * e.size[1];
+    for (std::size_t a = 0; a < e.points.size(); ++a) area[e.points[a]] += each * e.extraction.row(static_cast<Eigen::Index>(a)).mean();
+  }
+  std::vector<double> out;
+  for (const spline::Element& e : space.elements) {
+    double around = 0;
+    for (std::size_t a = 0; a < e.points.size(); ++a) around += area[e.points[a]] * e.extraction.row(static_cast<Eigen::Index>(a)).mean();
+    out.push_back(std::sqrt(e.size[0] * e.size[1] / around));
+  }
+  return out;
+}
+
+/// The same for each element. Pieces that are small beside the distance of the targets around (those at the extraordinary points of Catmull-Clark
+/// surfaces, halves at T-junctions) get by with less: the integrand is smoother on them, and their share of the area is small.
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;
-  std::vector<double> sizes;
-  for (const spline::Element& e : space.elements) sizes.push_back(std::sqrt(e.size[0] * e.size[1]));
-  std::vector<double> sorted = sizes;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double median = sorted[sorted.size() / 2], rho = std::pow(options.tolerance, -0.5 / order);
-  for (std::size_t e = 0; e < sizes.size(); ++e) {
-    const double share = sizes[e] / median;
-    if (share < tiny)
-      orders[e] = std::clamp(quadrature::order_for(options.tolerance / (share * share), rho / share),
-                             std::min(order, std::max(3, order - 2)), order);
-  }
+  const double rho = std::pow(options.tolerance, -0.5 / order);
+  const std::vector<double> share = shares(space);
+  for (std::size_t e = 0; e < share.size(); ++e)
+    if (share[e] < small)
+      orders[e] = std::clamp(quadrature::order_for(options.tolerance / (share[e] * share[e]), rho / share[e]), (order + 1) / 2, order);
   return orders;
 }
 
@@ -75,13 +85,23 @@ void LayerSurface::collocation_points(std::span<const int> targets, std::vector<
 }
 
 void LayerSurface::place(TreeSum& tree) const {
-  std::vector<int> everybody(n_points), first_nodes;
+  std::vector<int> all(panels.size());
+  std::iota(all.begin(), all.end(), 0);
+  place(tree, all);
+}
+
+void LayerSurface::place(TreeSum& tree, std::span<const int> some) const {
+  std::vector<int> everybody(n_points), starts{0};
   std::iota(everybody.begin(), everybody.end(), 0);
   std::vector<Vec3> at;
   collocation_points(everybody, at);
-  for (int e = 0; e < panels.size(); ++e) first_nodes.push_back(panels[e].first_node);
-  first_nodes.push_back(panels.n_nodes());
-  tree.place(node[0].data(), node[1].data(), node[2].data(), first_nodes, at);
+  std::vector<double> place[3];
+  for (const int e : some) {
+    const auto first = panels[e].first_node, last = first + panels[e].table->n_nodes;
+    for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), &node[c][first], &node[c][last]);
+    starts.push_back(starts.back() + last - first);
+  }
+  tree.place(place[0].data(), place[1].data(), place[2].data(), starts, at);
 }
 
 const std::vector<int>& LayerSurface::near(int i, const Vec3& x0) {

@@ -28,7 +28,10 @@ class LayerSurface {
   /// Collocation points of the shape.
   void collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const;
 
-  /// Far nodes, panel by panel, and all collocation points into a tree: clusters must not depend on who asks for which targets.
+  /// Far nodes of some panels, panel by panel, and all collocation points into a tree: clusters must not depend on who asks for which targets.
+  void place(TreeSum& tree, std::span<const int> some) const;
+
+  /// Those of all panels.
   void place(TreeSum& tree) const;
 
   /// The panels that collocation point i lies on and that have a rule of their own for it: all but under the rule `desingularised`.

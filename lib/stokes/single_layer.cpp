@@ -21,6 +21,27 @@ constexpr int nodes_in_cache = 4096;
 
 SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, options) {
   if (sums_by_tree(space, options)) tree_.emplace(options.tolerance);
+  set_symmetry(surface::Symmetry(space.n_points));
+}
+
+void SingleLayer::set_symmetry(const surface::Symmetry& symmetry) {
+  images_ = symmetry.images();
+  fundamental_.clear(), share_.clear();
+  const auto inside = [&](int e) {
+    const int* points = surface_.panels.points(e);
+    return std::count_if(points, points + surface_.panels[e].functions, [&](int a) { return symmetry.source()[a] == a; });
+  };
+  for (int e = 0; e < surface_.panels.size(); ++e) {
+    int same = 1, best = e;
+    for (const surface::Image& g : images_) {
+      const int other = g.element[e];
+      same += other == e;
+      if (const auto n = inside(other), most = inside(best); n > most || (n == most && other < best)) best = other;
+    }
+    if (best != e) continue;
+    fundamental_.push_back(e);
+    share_.push_back(1. / same);
+  }
 }
 
 void SingleLayer::set_reference(const Net& unstressed) {
@@ -44,8 +65,21 @@ PointForces SingleLayer::forces() const {
 }
 
 void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
-  surface_.place(*tree_);
-  tree_->sum<StokesletKernel>({force_[0].data(), force_[1].data(), force_[2].data()}, targets, u.data());
+  surface_.place(*tree_, fundamental_);
+  std::vector<double> carried[3];
+  for (std::size_t k = 0; k < fundamental_.size(); ++k) {
+    const Panel& panel = surface_.panels[fundamental_[k]];
+    for (int c = 0; c < 3; ++c)
+      for (int q = 0; q < panel.table->n_nodes; ++q) carried[c].push_back(share_[k] * force_[c][panel.first_node + q]);
+  }
+  std::vector<int> wanted(targets.begin(), targets.end());
+  for (const surface::Image& g : images_)
+    for (const int i : targets) wanted.push_back(g.point[i]);
+  Net there(surface_.n_points, 3);
+  tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, wanted, there.data());
+  for (const int i : targets) u.row(i) = there.row(i);
+  for (const surface::Image& g : images_)
+    for (const int i : targets) u.row(i) += there.row(g.point[i]).cwiseProduct(g.signs.transpose());
   evaluations_.far += tree_->interactions();
 }
 

@@ -13,6 +13,7 @@
 #include "stokes/kernels.hpp"
 #include "stokes/layer_surface.hpp"
 #include "stokes/tree_sum.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {
 
@@ -34,6 +35,12 @@ class SingleLayer {
 
   /// The unstressed surface, which Measure::reference needs. Its areas are kept at all far nodes and self points.
   void set_reference(const Net& unstressed);
+
+  /// States that all shapes and densities to come are of this symmetry. Where far sums are taken by clusters, those are made of fundamental panels F
+  /// only, for the others do to a target what these do to its images:
+  ///
+  ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
+  void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Rows `targets` of u, shape (N, 3), for the density with control values f on the surface x.
   void apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u);
@@ -68,6 +75,9 @@ class SingleLayer {
 
   LayerSurface surface_;
   std::optional<TreeSum> tree_;                             // where clusters are faster
+  std::vector<surface::Image> images_;                      // of all that is summed by them, without the identity
+  std::vector<int> fundamental_;                            // panels in the tree
+  std::vector<double> share_;                               // of each in the sum over images, 1 unless it is an image of itself
   Measure measure_ = Measure::current;
   std::vector<double> bezier_unstressed_, bezier_f_;        // Bezier points: unstressed surface, density
   std::vector<double> weight_unstressed_, weight_present_;  // of the far nodes, areas included

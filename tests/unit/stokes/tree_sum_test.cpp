@@ -122,8 +122,8 @@ struct Surface {
   Net x, field;
   std::vector<int> all;
 
-  Surface() {
-    const spline::TMesh mesh = spline::cube(12);
+  explicit Surface(int n = 12) {
+    const spline::TMesh mesh = spline::cube(n);
     space = spline::space(mesh, spline::ExtraordinaryRule::g1);
     const surface::LeastSquaresFit fit(space);
     const Net sphere = surface::unit_sphere(mesh, fit);
@@ -150,6 +150,25 @@ TEST(TreeSum, MakesTheSingleLayerOfALoadToTheTolerance) {
     EXPECT_LT(difference(u, exact), tolerance);
     EXPECT_GT(difference(u, exact), 1e-15);  // another sum it is
     EXPECT_LT(tree.evaluations().far, dense.evaluations().far);
+  }
+}
+
+TEST(TreeSum, MakesTheSingleLayerOfASymmetricLoadFromAPartOfTheSurface) {
+  for (const int n : {6, 7}) {  // with 7, panels are images of themselves
+    auto [space, x, f, all] = Surface(n);
+    const Net* nets[] = {&x};
+    const surface::Symmetry symmetry = surface::symmetry(space, nets, [](const surface::Image&) { return true; });
+    ASSERT_EQ(symmetry.order(), 4);
+    symmetry.complete(f);
+    for (const double tolerance : {1e-3, 1e-8}) {
+      SingleLayer part(space, {.tolerance = tolerance, .far_sum = "tree"}), dense(space, {.tolerance = tolerance, .far_sum = "dense"});
+      part.set_symmetry(symmetry);
+      Net u = Net::Zero(space.n_points, 3), exact = u;
+      part.apply(x, f, Measure::current, symmetry.fundamental(), u);
+      symmetry.complete(u);
+      dense.apply(x, f, Measure::current, all, exact);
+      EXPECT_LT(difference(u, exact), tolerance);
+    }
   }
 }
 
