@@ -1,6 +1,8 @@
 #include "app/adaptation.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 
 #include "motion/adaptation.hpp"
 #include "spline/coarsening.hpp"
@@ -41,15 +43,8 @@ spline::RepairRules rules(const Body& body) {
   return result;
 }
 
-Adapted refined(const Scene& scene, const Body& body, const motion::State& state, const std::vector<spline::Mark>& marks) {
-  if (marks.empty()) return {};
-  spline::Refinement refinement = spline::refine(body.mesh, marks, rules(body));
-  if (refinement.mesh.edges == body.mesh.edges) {
-    Adapted unchanged;
-    unchanged.refused = refinement.refused;
-    return unchanged;
-  }
-  auto target = on_mesh(scene, body, std::move(refinement.mesh));
+Adapted on_finer_mesh(const Scene& scene, const Body& body, const motion::State& state, spline::TMesh mesh) {
+  auto target = on_mesh(scene, body, std::move(mesh));
   const spline::Transfer transfer(body.nested(), target->nested());
   double residual = 0;
   Adapted result = carried(body, std::move(target), state, [&](const Net& field) {
@@ -58,7 +53,61 @@ Adapted refined(const Scene& scene, const Body& body, const motion::State& state
     return moved.net;
   });
   result.change = residual / body.radius;
-  result.refused = refinement.refused;
+  return result;
+}
+
+/// What the indicator says about the present mesh.
+struct Findings {
+  std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
+  std::vector<spline::Merge> merges;
+};
+
+Findings findings(const Scene& scene, const Body& body, const motion::State& state, const surface::FieldAt& traction) {
+  const motion::AdaptationOptions& options = scene.adaptation;
+  const auto of = [&](auto indicator) {
+    auto merges = motion::merges(indicator, options);
+    return Findings{[found = std::move(indicator)](const motion::AdaptationOptions& limits) { return motion::marks(found, limits); },
+                    std::move(merges)};
+  };
+  if (options.indicator == "error")
+    return of(surface::resolution(body.mesh, body.nested(), body.unstressed, state.x, options.load_tolerance ? traction : surface::FieldAt()));
+  surface::MetricFields fields;
+  if (options.reference_traction_variation) fields.traction = traction;
+  if (options.reference_velocity_variation && !state.history.empty())
+    fields.velocity = surface::field_of_net(body.nested(), state.history.front());
+  return of(surface::element_metrics(body.mesh, body.nested(), state.x, fields));
+}
+
+/// Of elements of the T-mesh that have no side at a pole. The paper cuts no others; what they are cut by comes from their neighbours.
+void leave_poles(const Body& body, std::vector<spline::Mark>& marks) {
+  if (body.mesh.lattice->pad == 0 || marks.empty()) return;
+  const spline::Tiling tiling = spline::elements(body.mesh);
+  const auto degenerate = [&](const spline::Mark& mark) {
+    return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);
+  };
+  std::erase_if(marks, degenerate);
+}
+
+/// Cuts all that is marked; where that gives more points than allowed, what is marked with limits twice, four times, ... as large.
+Adapted refined(const Scene& scene, const Body& body, const motion::State& state, const Findings& found) {
+  const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
+  const size_t before = spline::anchors(body.mesh).size();
+  Adapted result;
+  std::optional<spline::RepairRules> keeping;
+  for (double factor = 1; factor <= 64; factor *= 2) {
+    auto marks = found.marks(scene.adaptation.coarser(factor));
+    leave_poles(body, marks);
+    if (marks.empty()) break;
+    if (!keeping) keeping = rules(body);
+    spline::Refinement refinement = spline::refine(body.mesh, marks, *keeping);
+    const int refused = factor == 1 ? refinement.refused : result.refused;
+    const bool fits = static_cast<int>(spline::anchors(refinement.mesh).size() - before) <= room;
+    const bool full = result.full || !fits;
+    if (fits && refinement.mesh.edges != body.mesh.edges) result = on_finer_mesh(scene, body, state, std::move(refinement.mesh));
+    result.refused = refused;
+    result.full = full;
+    if (fits) break;
+  }
   return result;
 }
 
@@ -96,44 +145,17 @@ Adapted coarsened(const Scene& scene, const Body& body, const motion::State& sta
   return {};
 }
 
-/// Of elements of the T-mesh that have no side at a pole. The paper cuts no others; what they are cut by comes from their neighbours.
-void leave_poles(const Body& body, std::vector<spline::Mark>& marks) {
-  if (body.mesh.lattice->pad == 0 || marks.empty()) return;
-  const spline::Tiling tiling = spline::elements(body.mesh);
-  const auto degenerate = [&](const spline::Mark& mark) {
-    return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);
-  };
-  std::erase_if(marks, degenerate);
-}
-
 }  // namespace
 
 Adapted adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
-  const motion::AdaptationOptions& options = scene.adaptation;
   const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, state.x, load)
                                                         : surface::field_of_net(body.nested(), load);
-  std::vector<spline::Mark> marks;
-  std::vector<spline::Merge> merges;
-  if (options.indicator == "error") {
-    const auto resolution =
-        surface::resolution(body.mesh, body.nested(), body.unstressed, state.x, options.load_tolerance ? traction : surface::FieldAt());
-    marks = motion::marks(resolution, options);
-    merges = motion::merges(resolution, options);
-  } else {
-    surface::MetricFields fields;
-    if (options.reference_traction_variation) fields.traction = traction;
-    if (options.reference_velocity_variation && !state.history.empty())
-      fields.velocity = surface::field_of_net(body.nested(), state.history.front());
-    const auto metrics = surface::element_metrics(body.mesh, body.nested(), state.x, fields);
-    marks = motion::marks(metrics, options);
-    merges = motion::merges(metrics, options);
-  }
-  leave_poles(body, marks);
-  Adapted finer;
-  if (body.space.n_points < options.largest_number_of_points) finer = refined(scene, body, state, marks);
-  if (finer.body || !options.coarsen) return finer;
-  Adapted coarser = coarsened(scene, body, state, merges);
+  const Findings found = findings(scene, body, state, traction);
+  Adapted finer = refined(scene, body, state, found);
+  if (finer.body || !scene.adaptation.coarsen) return finer;
+  Adapted coarser = coarsened(scene, body, state, found.merges);
   coarser.refused = finer.refused;
+  coarser.full = finer.full;
   return coarser;
 }
 

@@ -15,6 +15,7 @@ struct Adapted {
   bool finer = true;    ///< refined; otherwise coarsened
   double change = 0;    ///< largest change of the unstressed and the present surface, over R_C: the residual of the transfer
   int refused = 0;      ///< cuts that `Adaptation/levels` does not leave room for
+  bool full = false;    ///< whether cuts were left out for `Adaptation/largest number of points`
 };
 
 /// Cuts what the indicator marks, or takes back what it allows to be longer. Every field of the state goes along: both surfaces, the scheme's

@@ -1,6 +1,7 @@
 // The capsule or drop in the time loop, on a mesh that may change.
 
 #include <cstdio>
+#include <utility>
 
 #include "app/adaptation.hpp"
 #include "app/drift.hpp"
@@ -38,23 +39,17 @@ class Deforming : public Moving {
     if (!scene_.adaptation.enabled || standing.step % scene_.adaptation.interval != 0) return false;
     const auto clock = phases_.time("adaptation");
     Adapted change = adapted(scene_, *body_, state, capsule_->load(state.x), capsule_->measure() == stokes::Measure::reference);
-    if (change.refused > 0 && !warned_of_levels_)
-      warn(text("elements that should be cut at time %.6g stay whole: they have been halved as often as Adaptation/levels = %d allows", state.time,
-                scene_.adaptation.levels));
-    warned_of_levels_ = warned_of_levels_ || change.refused > 0;
+    remark_on(change, state.time);
     if (!change.body) return false;
-    if (change.finer && change.change > 1e-12)
-      warn(text("refinement at time %.6g moved the surface by %.2g R_C: the space at extraordinary points is not nested", state.time, change.change));
     state = std::move(change.state);
     settle(std::move(change.body), state.x);
     capsule_->restore_volume(state.x);
     if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
     (change.finer ? standing.refinements : standing.coarsenings) += 1;
-    const bool full = body_->space.n_points >= scene_.adaptation.largest_number_of_points;
-    if (full && !warned_of_size_) warn(text("refinement ends at %d control points, Adaptation/largest number of points", body_->space.n_points));
-    warned_of_size_ = warned_of_size_ || full;
     return true;
   }
+
+  std::vector<std::string> remarks() override { return std::exchange(remarks_, {}); }
 
   coupling::Work work() const override { return capsule_->work(); }
 
@@ -93,13 +88,26 @@ class Deforming : public Moving {
   }
 
   static std::string text(const char* format, auto... values) {
-    char line[200];
+    char line[300];
     std::snprintf(line, sizeof line, format, values...);
     return line;
   }
 
-  void warn(const std::string& sentence) const {
-    if (ranks_.rank() == 0) std::fprintf(stderr, "tanktread: %s\n", sentence.c_str());
+  /// What a change of the mesh lacks, once of each kind.
+  void remark_on(const Adapted& change, double time) {
+    const motion::AdaptationOptions& options = scene_.adaptation;
+    const auto once = [&](bool lacks, bool& said, const std::string& sentence) {
+      if (lacks && !said) remarks_.push_back(text("at time %.4g ", time) + sentence);
+      said = said || lacks;
+    };
+    once(change.refused > 0, remarked_on_levels_,
+         text("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows", options.levels));
+    once(change.full, remarked_on_size_,
+         text("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all their cuts",
+              options.largest_number_of_points));
+    once(change.body && change.finer && change.change > 1e-12, remarked_on_change_,
+         text("refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
+              change.change));
   }
 
   std::vector<output::Field> fields(const output::Nodes& nodes, const motion::State& state, const Net& load) const {
@@ -132,7 +140,8 @@ class Deforming : public Moving {
   std::unique_ptr<coupling::Capsule> capsule_;
   std::vector<Column> columns_;
   stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
-  bool warned_of_size_ = false, warned_of_levels_ = false;
+  bool remarked_on_size_ = false, remarked_on_levels_ = false, remarked_on_change_ = false;
+  std::vector<std::string> remarks_;
   bool holds_centre_ = holds_centre(scene_);
 };
 

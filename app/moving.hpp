@@ -45,6 +45,7 @@ class Moving {
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual void resume(Resumed& resumed) = 0;                                     ///< takes what a checkpoint holds beside the state
   virtual bool adapt(motion::State& state, Standing& standing) = 0;              ///< after a step; whether body() has another mesh now
+  virtual std::vector<std::string> remarks() { return {}; }                      ///< sentences for the user, each once
   virtual coupling::Work work() const = 0;
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual const std::vector<Column>& columns() const = 0;

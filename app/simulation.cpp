@@ -135,6 +135,7 @@ class Run {
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body());
+    for (const std::string& sentence : particle_->remarks()) results_.warn(sentence);
     record();
     if (!scene_.tube.present) return;
     const std::string reason = contact(scene_, entry("gap"));

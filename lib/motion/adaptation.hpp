@@ -22,16 +22,16 @@ struct AdaptationOptions {
   std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
   double surface_tolerance = 4e-4;                         ///< of e(x), length
   std::optional<double> load_tolerance;                    ///< of e(phi), force/length^2; empty: not in use
-  double reference_length = 0.35;                          ///< L_ref
+  std::optional<double> reference_length;                  ///< L_ref; set for `variation`, as are the next five where they are in use
   std::optional<double> reference_curvature_variation;     ///< chi_ref, 1/length^2; empty: not in use
   std::optional<double> reference_traction_variation;      ///< T_ref, of the traction per current area, per length
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
-  double limit_aspect_ratio = 2.5;                         ///< D_ref
-  double order = 1;                                        ///< kappa
+  std::optional<double> limit_aspect_ratio;                ///< D_ref
+  std::optional<double> order;                             ///< kappa
   double minimum_length = 0.035;                           ///< L_min, a floor under every cut
   int interval = 1;                                        ///< accepted steps between checks
   int levels = 4;                                          ///< how often an element of the first mesh may be halved in a direction
-  int largest_number_of_points = 4000;                     ///< refinement ends here, with a warning
+  int largest_number_of_points = 4000;                     ///< no mesh has more
   bool coarsen = false;
   double coarsening_margin = 0.7;                          ///< a doubled element must stay below this part of every limit
   double coarsening_tolerance = 1e-4;                      ///< largest change of either surface by one coarsening, length
@@ -41,6 +41,9 @@ struct AdaptationOptions {
   /// One sentence (UserError) for keys that contradict each other, or that leave nothing to do on a first mesh of so many points with elements of
   /// this length.
   void check(int first_points, double first_length) const;
+
+  /// The same with every limit (tolerances, longest element, aspect ratio) this many times as large.
+  AdaptationOptions coarser(double factor) const;
 };
 
 /// Elements and directions that the rule wants to be cut (P-37), in the order of elements(mesh):

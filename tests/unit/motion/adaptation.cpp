@@ -82,5 +82,18 @@ TEST(Adaptation, WhatIsMergedByItsErrorIsNotCutAgain) {
         EXPECT_FALSE(merge.s && mark.s) << error;
 }
 
+TEST(Adaptation, CoarserLimitsMarkTheWorstElementsOnly) {
+  AdaptationOptions o;
+  o.surface_tolerance = 1e-3;
+  const std::vector<Resolved> elements = {{{{0.2, 1.5e-3, 0}, {0.2, 0, 0}}}, {{{0.2, 3e-3, 0}, {0.2, 0, 0}}}};
+  EXPECT_EQ(marks(elements, o).size(), 2u);
+  ASSERT_EQ(marks(elements, o.coarser(2)).size(), 1u);
+  EXPECT_EQ(marks(elements, o.coarser(2))[0].element, 1);
+  EXPECT_EQ(marks(elements, o.coarser(4)).size(), 0u);
+  const std::vector<surface::ElementMetrics> long_and_slender = {element(0.5, 0.3), element(0.9, 0.3), element(0.3, 0.11)};
+  EXPECT_EQ(marks(long_and_slender, options()).size(), 3u);
+  EXPECT_EQ(marks(long_and_slender, options().coarser(2)).size(), 1u);
+}
+
 }  // namespace
 }  // namespace tanktread::motion
