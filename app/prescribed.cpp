@@ -156,7 +156,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   Phases phases;
   const Body body = tanktread::body(scene);
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
-  if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(scene, ranks.size()).c_str(), stdout);
+  if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, ranks, phases);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/scene.hpp"
+#include "output/summary.hpp"
 
 namespace tanktread {
 
@@ -21,6 +22,7 @@ int simulate(const Scene& scene, const RunRequest& request);
 
 /// The plan of `--check` as text: blocks, unknowns, memory, kernel evaluations. Collective.
 std::string plan_text(const Scene& scene, int ranks = 1);
+std::string plan_text(const output::Entries<std::string>& plan);  ///< of a plan that is made already
 
 /// The effective deck that the newest checkpoint of a directory holds. Throws UserError when there is none.
 std::string stored_deck(const std::string& directory);

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "deck/words.hpp"
 #include "surface/geometry.hpp"
+#include "surface/patch.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {
@@ -26,12 +27,14 @@ struct Closest {
 
 Closest closest(const Body& body, const surface::Outline& outline) {
   Closest result;
-  for (int e = 0; e < static_cast<int>(body.space.elements.size()); ++e)
+  for (int e = 0; e < static_cast<int>(body.space.elements.size()); ++e) {
+    const surface::ElementPoints element(body.space, body.rest, e);
     for (int k = 0; k < 25; ++k) {
-      const Vec3 x = surface::value(body.space, body.rest, {e, k % 5 / 4.0, k / 5 / 4.0});
+      const Vec3 x = surface::place(element.patch(), k % 5 / 4.0, k / 5 / 4.0);
       const double gap = outline.distance({x[1], x[2]});
       if (gap < result.gap) result = {x, gap};
     }
+  }
   return result;
 }
 
@@ -107,13 +110,11 @@ const std::vector<Column>& tube_columns() {
 
 std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state) {
   coupling::Tube& tube = *capsule.tube();
-  const Net v = capsule.velocity(state.x);  // the scheme's own slope carries what is left of its iteration, over the step
+  const Net v = capsule.velocity(state.x, state.history.front());  // the slope carries what is left of the scheme's iteration, over the step
   const Vec3 c = capsule.geometry().measures(state.x).centroid, u = surface::centroid_velocity(capsule.geometry(), state.x, v);
   const Eigen::Vector2d across = c.tail<2>(), moves = u.tail<2>();
-  const Net f = capsule.load(state.x);
-  tube.place(state.x);
-  const coupling::Tube::Response response = tube.respond(f, v);
-  const coupling::Tube::Checks checks = tube.checks(f, v, response);
+  const coupling::Tube::Response response = capsule.response(state.x);
+  const coupling::Tube::Checks checks = tube.checks(capsule.load(state.x), v, response);
   return {c[0],
           c[1],
           c[2],

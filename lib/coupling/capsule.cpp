@@ -14,6 +14,7 @@ namespace tanktread::coupling {
 namespace {
 
 double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
 
@@ -45,8 +46,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   collocation_.factor(collocation_matrix(space));
   mass_.factor(mass_matrix_.update(unstressed));
   layer_.set_reference(unstressed);
-  if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
   layer_.set_symmetry(symmetry);
+  if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
   if (tube_) {
     sites_ = collocation_matrix(space);
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
@@ -67,32 +68,64 @@ Net Capsule::ambient(const Net& x) const {
   return v;
 }
 
+void Capsule::replicate(Net& net) {
+  const auto clock = phases_.time("exchange");
+  ranks_.replicate(net);
+}
+
+/// A^-1 of each field, in place; ranks share the columns.
+void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
+  const int n = 3 * static_cast<int>(fields.size());
+  for (int k = 0; k < n; k += 3) {
+    Net& field = *fields[static_cast<size_t>(k / 3)];
+    std::vector<int> mine;
+    for (int c = 0; c < 3; ++c)
+      if (ranks_.owner(k + c, n) == ranks_.rank()) mine.push_back(c);
+    field = a.solve(field, mine);
+  }
+  const auto clock = phases_.time("exchange");
+  ranks_.join(fields);
+}
+
+Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
+  Net* const one[] = {&field};
+  solve(a, one);
+  return field;
+}
+
 Net Capsule::energy_gradient(const Net& x) {
   Net d(x.rows(), 3);
   membrane_.load(x, own_elements_, d);
-  ranks_.replicate(d);
+  replicate(d);
   return d;
 }
 
-Net Capsule::load(const Net& x) {
+Net Capsule::load(const Net& x) { return same(x, latest_.x) ? latest_.load : load_there(x, nullptr); }
+
+/// The load at x, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than twice three.
+Net Capsule::load_there(const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
+  const bool together = other && !parameters_.strong_load && parameters_.measure == stokes::Measure::reference;
+  if (other && !together) *other = solved(mass_.reference(), std::move(*other));
   if (parameters_.strong_load) {
     Net t = Net::Zero(x.rows(), 3);
     membrane_.strong_load(x, own_points_, t);
-    ranks_.replicate(t);
-    return collocation_.solve(t);
+    replicate(t);
+    return solved(collocation_, std::move(t));
   }
-  const Net d = energy_gradient(x);
+  Net d = energy_gradient(x);
   const auto projection = phases_.time("projection");
-  if (parameters_.measure == stokes::Measure::reference) return mass_.solve(d);
-  return mass_.solve(mass_matrix_.update(x), d);
+  if (parameters_.measure != stokes::Measure::reference) return mass_.solve(mass_matrix_.update(x), d);
+  Net* const both[] = {&d, other};
+  solve(mass_.reference(), std::span(both).first(together ? 2 : 1));
+  return d;
 }
 
 Net Capsule::flux_vector(const Net& x) {
   const auto clock = phases_.time("volume");
   Net b(x.rows(), 3);
   geometry_.volume_gradient(x, own_elements_, b);
-  ranks_.replicate(b);
+  replicate(b);
   return b;
 }
 
@@ -101,19 +134,38 @@ Net Capsule::symmetric(Net field) const {
   return field;
 }
 
-Net Capsule::velocity(const Net& x) {
+Net Capsule::velocity(const Net& x, const Net& near) {
+  if (same(x, latest_.x)) return latest_.velocity;
   ++work_.evaluations;
-  return symmetric(present_velocity(x));
+  latest_ = {};
+  Net v = symmetric(present_velocity(x, near));
+  if (!v.allFinite()) return v;
+  latest_.x = x;
+  return latest_.velocity = std::move(v);
 }
 
-Net Capsule::present_velocity(const Net& x) {
+Tube::Response Capsule::response(const Net& x) {
+  const Net v = velocity(x);
+  place(x);
+  if (!latest_.response) latest_.response = tube_->respond(load(x), v);
+  return *latest_.response;
+}
+
+void Capsule::place(const Net& x) {
+  if (same(x, placed_)) return;
+  tube_->place(x);
+  placed_ = x;
+}
+
+Net Capsule::present_velocity(const Net& x, const Net& near) {
   if (tube_ && !enter_tube(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
-  const Net f = load(x);
-  Net v = load_velocity(x, f);
   const bool constrained = parameters_.volume.constraint != "none";
-  const Net b = constrained ? flux_vector(x) : Net(), c = constrained ? mass_.solve(b) : Net();
+  const Net b = constrained ? flux_vector(x) : Net();
+  Net c = b;
+  const Net f = latest_.load = load_there(x, constrained ? &c : nullptr);
+  Net v = load_velocity(x, f);
   if (constrained) v -= dot(b, v) / dot(b, c) * c;
-  if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v);
+  if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
   if (!interface_) return v;
   const auto clock = phases_.time("interface motion");
   if (tube_) {
@@ -133,26 +185,27 @@ Net Capsule::load_velocity(const Net& x, const Net& f) {
     const auto clock = phases_.time("single layer");
     layer_.apply(x, f, measure(), own_points_, u);
   }
-  {
-    const auto clock = phases_.time("exchange");
-    ranks_.replicate(u);
-  }
+  replicate(u);
   if (tube_) {
     u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
-    if (schur()) u += tube_->respond(f).velocity;
+    if (schur()) {
+      Tube::Response response = tube_->respond(f);
+      u += response.velocity;
+      if (!double_layer_) latest_.response = std::move(response);
+    }
     const auto clock = phases_.time("projection");
-    return collocation_.solve(u);
+    return solved(collocation_, std::move(u));
   }
   Net v = ambient(x);
   const auto clock = phases_.time("projection");
-  v -= collocation_.solve(u) / parameters_.viscosity;
+  v -= solved(collocation_, std::move(u)) / parameters_.viscosity;
   return v;
 }
 
 /// Takes the shape into the tube; whether that can be: no point of it is outside.
 bool Capsule::enter_tube(const Net& x) {
   if (!x.allFinite()) return false;
-  tube_->place(x);
+  place(x);
   const Net at_sites = sites_ * x;
   const surface::Outline& outline = tube_->wall().outline;
   const bool outside = std::ranges::any_of(own_points_, [&](int i) {
@@ -182,8 +235,8 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
 }
 
 /// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
-/// are solved for.
-Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs) {
+/// are solved for. Starts from `near`, else from the right-hand side.
+Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   const bool assembled = double_layer_ && parameters_.solvers.assembled(double_layer_->by_clusters());
@@ -197,7 +250,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     } else {
       double_layer_->apply(x, v, own_points_, hv);
     }
-    ranks_.replicate(hv);
+    replicate(hv);
     return viscous(v, hv);
   };
   if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);
@@ -212,8 +265,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
-  Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  const Eigen::VectorXd right = v;
+  const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
+  Eigen::VectorXd v = near.size() > 0 ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
   note(krylov_.solve(apply, right, v, parameters_.solvers.tolerance), v);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
@@ -245,7 +298,7 @@ void Capsule::freeze(const Net& x) {
     frozen_.assemble(own_points_, space_.n_points, assemble);
   }
   if (tube_) {
-    tube_->place(x);
+    place(x);
     tube_->freeze();
   }
   if (!double_layer_) return;
@@ -270,20 +323,20 @@ void Capsule::linearise(const Net& x) {
 Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3), u(delta.rows(), 3);
   tangent_.apply(delta, h);
-  ranks_.replicate(h);
-  const Net f = mass_.solve(h);
+  replicate(h);
+  const Net f = solved(mass_.reference(), std::move(h));
   if (nodal_.empty())
     frozen_.apply(f, u);
   else
     nodal_.apply(f, u);
-  ranks_.replicate(u);
+  replicate(u);
   if (tube_) {
     u = tube_->frozen_response(f) - u / parameters_.viscosity;
     const Net at_sites = sites_ * delta;
     for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
-    return collocation_.solve(u);
+    return solved(collocation_, std::move(u));
   }
-  return delta * flow_.gradient(Vec3::Zero()).transpose() - collocation_.solve(u) / parameters_.viscosity;
+  return delta * flow_.gradient(Vec3::Zero()).transpose() - solved(collocation_, std::move(u)) / parameters_.viscosity;
 }
 
 /// B v with B frozen.
@@ -291,7 +344,7 @@ Net Capsule::frozen_viscous(const Net& v) {
   if (!double_layer_) return v;
   Net hv(v.rows(), 3);
   frozen_double_.apply(v, hv);
-  ranks_.replicate(hv);
+  replicate(hv);
   if (!tube_) return viscous(v, hv);
   return v - collocation_.solve((1 - parameters_.viscosity_ratio) * hv + tube_->frozen_response({}, v));
 }
@@ -348,7 +401,7 @@ void Capsule::restore_volume(Net& x) {
   for (int k = 0; k < 5; ++k) {  // two are enough after any but a very long step
     const double missing = volume0_ - geometry_.volume(x);
     if (k > 1 && !(std::abs(missing) > 2e-15 * volume0_)) return;
-    const Net b = flux_vector(x), c = symmetric(mass_.solve(b));
+    const Net b = flux_vector(x), c = symmetric(solved(mass_.reference(), b));
     x += missing / dot(b, c) * c;
   }
 }

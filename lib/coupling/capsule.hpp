@@ -79,7 +79,9 @@ class Capsule : public Dynamics {
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
-  Net velocity(const Net& x) override;
+  /// Of the latest place nothing is evaluated again. A system starts from `near`, a velocity near the answer, where there is one.
+  Net velocity(const Net& x) override { return velocity(x, {}); }
+  Net velocity(const Net& x, const Net& near);
   void freeze(const Net& x) override;
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance) override;
@@ -97,6 +99,9 @@ class Capsule : public Dynamics {
 
   double volume_error(const Net& x) const;  ///< V/V0 - 1
   Tube* tube() { return tube_.get(); }      ///< nothing without one
+
+  /// What the tube answers to load and velocity at x; the tube is left placed there.
+  Tube::Response response(const Net& x);
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const surface::Geometry& geometry() const { return geometry_; }
@@ -107,15 +112,20 @@ class Capsule : public Dynamics {
 
  private:
   Net ambient(const Net& x) const;
-  Net present_velocity(const Net& x);
+  Net present_velocity(const Net& x, const Net& near);
+  Net load_there(const Net& x, Net* other);
+  void place(const Net& x);
   Net load_velocity(const Net& x, const Net& f);
+  void replicate(Net& net);
+  void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
+  Net solved(const membrane::SymmetricSolver& a, Net field);
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);
-  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs);
+  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near);
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
@@ -150,6 +160,12 @@ class Capsule : public Dynamics {
   Net linearised_, linearised_flux_;    // x and b of the interface in a tube, as linearised
   double volume0_ = 0;
   Work work_;
+  struct Latest {
+    Net x, load, velocity;
+    std::optional<Tube::Response> response;
+  };
+  Latest latest_;  // evaluation
+  Net placed_;     // the tube's particle
 };
 
 }  // namespace tanktread::coupling

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <string_view>
+#include <utility>
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Core.hpp>
@@ -14,20 +17,48 @@ namespace tanktread::coupling {
 using Map = Tpetra::Map<>;
 using MultiVector = Tpetra::MultiVector<>;
 
-struct Session::Impl {
-  Tpetra::ScopeGuard guard;
-  Impl(int* argc, char*** argv) : guard(alone(argc), argv) {}
+namespace {
 
-  /// A process that no launcher started needs no daemon of Open MPI beside it, which would take a tenth of a second to start, and no look
-  /// for fast networks, which takes two more. What the environment says already stays.
-  static int* alone(int* argc) {
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    if (!std::getenv("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMIX_RANK")) {
-      setenv("OMPI_MCA_pml", "ob1", 0);
-      setenv("OMPI_MCA_btl", "self", 0);
-    }
-    return argc;
+/// A process that no launcher started needs no daemon of Open MPI beside it, which would take a tenth of a second to start, no look for fast
+/// networks, which takes two more, and no look at the machine's devices nor collectives of many: a hundredth each. What the environment says
+/// already stays.
+void prepare_for_one() {
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK")) return;
+  constexpr std::pair<const char*, const char*> settings[] = {{"OMPI_MCA_pml", "ob1"},
+                                                              {"OMPI_MCA_btl", "self"},
+                                                              {"OMPI_MCA_coll", "self,basic,libnbc"},
+                                                              {"HWLOC_COMPONENTS", "no_os,stop"},
+                                                              {"HWLOC_PLUGINS_PATH", "/"}};
+  for (const auto& [name, value] : settings) setenv(name, value, 0);
+}
+
+/// Arguments of Kokkos, which would answer to `--help` too. They are taken from those of the program.
+struct KokkosArguments {
+  std::vector<char*> all;
+  int count = 0;
+  char** begin = nullptr;
+
+  KokkosArguments(int* argc, char*** argv) {
+    const auto of_kokkos = [](const char* argument) { return std::string_view(argument).starts_with("--kokkos-"); };
+    char **first = *argv, **last = first + *argc;
+    all.push_back(*first);
+    std::copy_if(first + 1, last, std::back_inserter(all), of_kokkos);
+    char** end = std::remove_if(first + 1, last, of_kokkos);
+    if (end != last) *end = nullptr;
+    *argc = static_cast<int>(end - first);
+    count = static_cast<int>(all.size());
+    all.push_back(nullptr);
+    begin = all.data();
   }
+};
+
+}  // namespace
+
+struct Session::Impl {
+  KokkosArguments arguments;
+  Tpetra::ScopeGuard guard;
+  Impl(int* argc, char*** argv) : arguments(argc, argv), guard((prepare_for_one(), &arguments.count), &arguments.begin) {}
 };
 
 Session::Session(int* argc, char*** argv) : impl_(std::make_unique<Impl>(argc, argv)) {}
@@ -78,6 +109,23 @@ void Ranks::replicate(Net& net) const {
     }
   }
   impl_->symmetry.complete(net);
+}
+
+void Ranks::join(std::span<Net* const> nets) const {
+  if (size() == 1) return;
+  const std::vector<int>& all = impl_->symmetry.fundamental();
+  std::vector<double> mine, together;
+  for (const Net* net : nets)
+    for (const int a : all)
+      for (int c = 0; c < 3; ++c) mine.push_back((*net)(a, c));
+  together.resize(mine.size());
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), together.data());  // of one number and zeros
+  const double* next = together.data();
+  for (Net* net : nets) {
+    for (const int a : all)
+      for (int c = 0; c < 3; ++c) (*net)(a, c) = *next++;
+    impl_->symmetry.complete(*net);
+  }
 }
 
 bool Ranks::any(bool mine) const {

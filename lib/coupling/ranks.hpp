@@ -2,6 +2,7 @@
 // Who computes which rows, and how every rank gets all of them.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -12,6 +13,7 @@ namespace tanktread::coupling {
 /// MPI and what Trilinos needs beside it, for as long as it lives: the first object of main.
 class Session {
  public:
+  /// Takes the arguments `--kokkos-...` away.
   Session(int* argc, char*** argv);
   ~Session();
   int rank() const;
@@ -38,6 +40,12 @@ class Ranks {
 
   /// Fills in the rows of other ranks and those of images. Collective.
   void replicate(Net& net) const;
+
+  /// The rank that is to do item k of n equal ones that come in a row.
+  int owner(int k, int n) const { return k * size() / n; }
+
+  /// Joins nets of which each component was filled by one rank and is zero on the others. Collective.
+  void join(std::span<Net* const> nets) const;
 
   /// Whether any rank says so (a signal, a limit). Collective.
   bool any(bool mine) const;

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "surface/patch.hpp"
+
 namespace tanktread::surface {
 
 namespace {
@@ -81,11 +83,12 @@ double tank_treading_velocity(const spline::Space& space, const Net& x, const Ne
   std::array<std::array<Corner, intervals + 1>, intervals + 1> grid;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     if (!may_meet(space.elements[static_cast<size_t>(e)], x, centre[1])) continue;
+    const ElementPoints places(space, x, e), velocities(space, v, e);
     for (size_t j = 0; j <= intervals; ++j)
       for (size_t i = 0; i <= intervals; ++i) {
-        const spline::Site site{e, static_cast<double>(i) / intervals, static_cast<double>(j) / intervals};
-        const Vec3 place = value(space, x, site);
-        grid[j][i] = {place, value(space, v, site) - of_centre, place[1] - centre[1]};
+        const double s = static_cast<double>(i) / intervals, t = static_cast<double>(j) / intervals;
+        const Vec3 at = place(places.patch(), s, t);
+        grid[j][i] = {at, place(velocities.patch(), s, t) - of_centre, at[1] - centre[1]};
       }
     for (size_t j = 0; j < intervals; ++j)
       for (size_t i = 0; i < intervals; ++i) {

@@ -72,6 +72,34 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
   }
 }
 
+TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined known(ratio, "schur"), fresh(ratio, "schur");
+    const Net elsewhere = known.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0.02);
+    known.capsule->velocity(elsewhere);
+    const Net v = known.capsule->velocity(known.x);
+    EXPECT_EQ(known.capsule->velocity(known.x), v);
+    EXPECT_EQ(known.capsule->work().evaluations, 2);
+    known.capsule->freeze(elsewhere);  // takes the tube there
+    const Tube::Response response = known.capsule->response(known.x);
+    EXPECT_EQ(known.capsule->work().evaluations, 2);
+
+    EXPECT_EQ(fresh.capsule->velocity(fresh.x), v);
+    const Net f = fresh.capsule->load(fresh.x);
+    fresh.capsule->tube()->place(fresh.x);
+    const Tube::Response again = fresh.capsule->tube()->respond(f, v);
+    EXPECT_EQ(response.wall_traction, again.wall_traction);
+    EXPECT_EQ(response.pressure_drop, again.pressure_drop);
+  }
+}
+
+TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
+  Confined plain(4, "schur"), helped(4, "schur");
+  const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
+  EXPECT_LT((helped.capsule->velocity(helped.x, start) - v).norm(), 1e-9 * v.norm());  // residuals of 1e-11
+  EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
+}
+
 TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
   Confined scene(1, "schur");
   Capsule& capsule = *scene.capsule;
