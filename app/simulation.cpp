@@ -86,7 +86,7 @@ class Run {
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
 
   int go() {
-    if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(scene_, ranks_.size()).c_str(), stdout);
+    if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particle_->body(), ranks_.size())).c_str(), stdout);
     begin();
     output::Progress progress(state_.time, scene_.time.final_time, request_.quiet || ranks_.rank() != 0);
     std::string reason;
@@ -268,9 +268,11 @@ std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phase
   return scene.particle.motion == "free" ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
 }
 
-std::string plan_text(const Scene& scene, int ranks) {
+std::string plan_text(const Scene& scene, int ranks) { return plan_text(plan(scene, body(scene), ranks)); }
+
+std::string plan_text(const output::Entries<std::string>& plan) {
   std::ostringstream text;
-  for (const auto& [what, how] : plan(scene, body(scene), ranks)) {
+  for (const auto& [what, how] : plan) {
     text << "  " << what << std::string(12 - std::min<size_t>(11, what.size()), ' ') << how << "\n";
   }
   return "plan\n" + text.str();
