@@ -11,6 +11,7 @@ Tanktread:
   Membrane: { law: neo-Hookean, capillary number: 0.3 }
   Surface: { mesh: cube, elements per side: 3 }
   Time: { final time: 0.2 }
+  Output: { interval: 0.1 }
 """
 
 
@@ -28,13 +29,16 @@ def a_run_is_drawn():
         _script(name, "results", "-o", f"{name}.png")
         with open(f"{name}.png", "rb") as file:
             check(file.read(8) == b"\x89PNG\r\n\x1a\n", f"{name}.png is no picture")
+    _script("animation.py", "results", "-o", "animation.gif")
+    with open("animation.gif", "rb") as file:
+        check(file.read(6) == b"GIF89a", "animation.gif is no animation")
     check("taylor_inertia" in _script("read.py", "results"), "read.py does not list the series")
     said = _script("shape.py", "results", "--field", "colour", code=1)
     check("colour" in said and "load" in said, said)
 
 
 def help_is_there_and_absent_results_are_named():
-    for name in "deformation.py", "shape.py", "read.py":
+    for name in "deformation.py", "shape.py", "read.py", "animation.py":
         check("usage" in _script(name, "--help"), name)
         said = _script(name, "nowhere", code=1)
         check("nowhere" in said and said.count("\n") == 1, said)

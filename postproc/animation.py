@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""The particle in motion, as a GIF: its surface with the elements and a field, and D with the number of control points over time.
+
+A frame is a saved step: `Output/interval` says how many there are. Between two of them nothing is made up.
+"""
+
+import argparse
+import sys
+
+import numpy
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.cm import ScalarMappable
+
+import read
+import shape
+import style
+from style import plt
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", help="directory of a run's results")
+    parser.add_argument("-o", "--output", default="animation.gif", metavar="FILE", help="the animation (default: %(default)s)")
+    parser.add_argument("--field", default="traction", help="field that colours the surface (default: %(default)s, or the load where there is none)")
+    parser.add_argument("--view", type=float, nargs=2, default=[-75, 20], metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
+    parser.add_argument("--rate", type=float, default=8, help="frames a second (default: %(default)s)")
+    parser.add_argument("--width", type=int, default=720, help="of the animation, in pixels (default: %(default)s)")
+    parser.add_argument("--frame", type=float, metavar="TIME", help="one picture of this time instead, a PNG")
+    arguments = parser.parse_args()
+
+    run = read.run(arguments.results)
+    shots = run.snapshots() if arguments.frame is None else [run.snapshot_at(arguments.frame)]
+    field = arguments.field if arguments.field in shots[0].fields else "load"
+    if field != arguments.field and arguments.field != "traction":
+        sys.exit(f"{shots[0].path} holds no field {arguments.field}; there are: {', '.join(sorted(shots[0].fields))}")
+    film = Film(run, run.snapshots(), field, arguments.view)
+    if arguments.frame is not None:
+        film.show(shots[0])
+        style.save(film.figure, arguments.output)
+        return
+    film.figure.set_dpi(arguments.width / film.figure.get_figwidth())
+    FuncAnimation(film.figure, film.show, frames=shots).save(arguments.output, PillowWriter(arguments.rate), dpi=film.figure.dpi)
+    print(arguments.output)
+
+
+class Film:
+    """One figure in which frame after frame is drawn: the same scale, the same window, the same colours in all of them."""
+
+    def __init__(self, run, shots, field, view):
+        self.run, self.field, self.view = run, field, view
+        places = numpy.concatenate([shot.points - middle(shot) for shot in shots]) @ shape.view_axes(*view)[:2].T
+        self.window = places.min(0), places.max(0)
+        self.norm, self.colours = shape.scale([shape.magnitude(shot.fields[field]) for shot in shots])
+        extent = self.window[1] - self.window[0]
+        with plt.rc_context({"figure.constrained_layout.use": False}):  # it would move the axes from frame to frame
+            self.figure = plt.figure(figsize=(7.2, 7.2 * 0.80 * extent[1] / extent[0] + 3.1))
+        height = self.figure.get_figheight()
+        self.surface = self.figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
+        bar = self.figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
+        vector = numpy.ndim(shots[0].fields[field]) > 1
+        self.figure.colorbar(ScalarMappable(self.norm, self.colours), cax=bar, label=f"|{field}|" if vector else field)
+        self.deformation = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
+        self.points = self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=self.deformation)
+        self.marks = self.draw_series()
+
+    def draw_series(self):
+        time, deformation, points = (self.run.series[name] for name in ("time", "taylor_inertia", "n_control_points"))
+        self.deformation.plot(time, deformation, color=style.RUNS[0])
+        self.deformation.set_ylabel("D")
+        self.deformation.tick_params(labelbottom=False)
+        self.points.step(time, points, where="post", color=style.RUNS[1])
+        self.points.set_ylabel("control points")
+        self.points.set_xlabel("time · rate")
+        self.points.set_xlim(time[0], time[-1])
+        self.points.set_ylim(0, 1.1 * points.max())
+        self.deformation.set_ylim(0, 1.1 * max(deformation.max(), 1e-6))
+        return [axis.plot([], [], "o", color=style.INK, markersize=4.5, clip_on=False)[0] for axis in (self.deformation, self.points)]
+
+    def show(self, shot):
+        self.surface.clear()
+        shape.draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view)
+        middle_seen = shape.view_axes(*self.view)[:2] @ middle(shot)
+        room = 0.09 * (self.window[1] - self.window[0])[0]
+        (left, low), (right, high) = self.window + middle_seen
+        self.surface.set_xlim(left - room, right + room)
+        self.surface.set_ylim(low - room, high + room)
+        series = self.run.series
+        points = series["n_control_points"][numpy.searchsorted(series["time"], shot.time * (1 + 1e-12), side="right") - 1]
+        self.surface.set_title(f"{self.run.name}, t = {shot.time:.2f}: {points:.0f} control points")
+        deformation = numpy.interp(shot.time, series["time"], series["taylor_inertia"])
+        for mark, value in zip(self.marks, (deformation, points)):
+            mark.set_data([shot.time], [value])
+        return self.marks
+
+
+def middle(shot):
+    return (shot.points.min(0) + shot.points.max(0)) / 2
+
+
+if __name__ == "__main__":
+    main()
