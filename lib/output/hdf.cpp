@@ -110,12 +110,14 @@ Id new_column(hid_t parent, const std::string& name, std::span<const double> val
   return set;
 }
 
-void append(const Id& column, std::size_t rows, double value) {
+void append(std::span<const Id> columns, std::size_t rows, std::span<const double> values) {
   const hsize_t last = rows, size = rows + 1, one = 1;
   const Id from(H5Screate(H5S_SCALAR), H5Sclose, "no data space"), to(H5Screate_simple(1, &size, nullptr), H5Sclose, "no data space");
   check(H5Sselect_hyperslab(to, H5S_SELECT_SET, &last, nullptr, &one, nullptr), "no last place");
-  check(H5Dset_extent(column, &size), "cannot extend a column");
-  check(H5Dwrite(column, H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, &value), "cannot write to a column");
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    check(H5Dset_extent(columns[i], &size), "cannot extend a column");
+    check(H5Dwrite(columns[i], H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, &values[i]), "cannot write to a column");
+  }
 }
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape) {

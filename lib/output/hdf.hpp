@@ -47,9 +47,11 @@ void write(hid_t parent, const std::string& name, std::span<const std::int64_t> 
 void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values);
 void write(hid_t parent, const std::string& name, const std::string& text);
 
-/// A one-dimensional dataset of doubles that holds `values` and can grow to `capacity` of them; and its growth by one.
+/// A one-dimensional dataset of doubles that holds `values` and can grow to `capacity` of them.
 Id new_column(hid_t parent, const std::string& name, std::span<const double> values, std::size_t capacity);
-void append(const Id& column, std::size_t rows, double value);  ///< `rows`: that it has so far
+
+/// Makes columns of `rows` values longer by one value each.
+void append(std::span<const Id> columns, std::size_t rows, std::span<const double> values);
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape);
 std::string read_text(hid_t parent, const std::string& name);

@@ -61,7 +61,7 @@ void RunRecord::append(std::span<const double> row) {
   if (!image_ || rows() > image_->capacity)
     lay_out();
   else
-    for (std::size_t i = 0; i < row.size(); ++i) hdf::append(image_->columns[i], before, row[i]);
+    hdf::append(image_->columns, before, row);
   write_whole(path_, hdf::image(image_->file));
 }
 
