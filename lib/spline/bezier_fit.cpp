@@ -5,7 +5,6 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "spline/bernstein.hpp"
 #include "spline/locate.hpp"
 #include "spline/normal_matrix.hpp"
 
@@ -16,7 +15,7 @@ namespace {
 /// (T x S) applied to Bezier points.
 BezierPoints along_both(const Eigen::MatrixXd& S, const Eigen::MatrixXd& T, const BezierPoints& Q) {
   BezierPoints out(S.rows() * T.rows(), 3);
-  Eigen::MatrixXd half(S.rows(), T.cols());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_degree + 1, max_degree + 1> half(S.rows(), T.cols());
   for (int d = 0; d < 3; ++d) {
     const Eigen::Map<const Eigen::MatrixXd> in(Q.col(d).data(), S.cols(), T.cols());
     half = S.lazyProduct(in);
@@ -67,9 +66,9 @@ BezierPoints bezier_points(const Element& e, const Net& field) {
   if (e.degree == 3 && e.points.size() == 16) {  // of a size that the compiler knows
     Eigen::Matrix<double, 16, 3> P;
     gather(P);
-    return Eigen::Map<const Eigen::Matrix<double, 16, 16>>(e.extraction.data()).transpose() * P;
+    return Eigen::Map<const Eigen::Matrix<double, 16, 16>>(e.extraction.data()).transpose().lazyProduct(P);
   }
-  BezierPoints P(Eigen::Index(e.points.size()), 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> P(Eigen::Index(e.points.size()), 3);
   gather(P);
   return e.extraction.transpose().lazyProduct(P);
 }
@@ -138,7 +137,7 @@ void BezierFit::solve(const Net& field, Net& net) const {
     const Embedding& in = s.embedding[rows.element];
     BezierPoints rest = restricted(s.from, in, field);
     if (!s.all) rest -= own_points(s.to.elements[rows.element], in, net);
-    const BezierPoints r = rows.values.lazyProduct(rest);
+    const Eigen::MatrixXd r = rows.values.lazyProduct(rest);
     for (std::size_t i = 0; i < rows.number.size(); ++i) right.row(rows.number[i]) += r.row(Eigen::Index(i));
   }
   const Eigen::MatrixXd values = s.factor.solve(right);

@@ -7,12 +7,13 @@
 #include <Eigen/Core>
 
 #include "base/types.hpp"
+#include "spline/bernstein.hpp"
 #include "spline/space.hpp"
 
 namespace tanktread::spline {
 
-/// Bezier points of a field on an element, row (p + 1) j + i.
-using BezierPoints = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+/// Bezier points of a field on an element, row (p + 1) j + i; without allocation.
+using BezierPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, (max_degree + 1) * (max_degree + 1), 3>;
 BezierPoints bezier_points(const Element& e, const Net& field);
 
 /// How an element of one space lies in an element of another.

@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <numeric>
@@ -55,9 +56,9 @@ struct Scene {
   Net unstressed, x, f;
   std::vector<int> all;
 
-  explicit Scene(int n) {
+  explicit Scene(int n, spline::ExtraordinaryRule rule = spline::ExtraordinaryRule::g1) {
     const spline::TMesh mesh = spline::cube(n);
-    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    space = spline::space(mesh, rule);
     const surface::LeastSquaresFit fit(space);
     unstressed = surface::unit_sphere(mesh, fit);
     x = fit.fit_image(unstressed, [](const Vec3& p) { return Vec3(1.3 * p[0] + 0.4 * p[2], 0.9 * p[1], 0.75 * p[2]); });
@@ -66,6 +67,9 @@ struct Scene {
     std::iota(all.begin(), all.end(), 0);
   }
 };
+
+/// Two shapes to evaluate in turns: the velocity of the latest one is kept.
+std::array<Net, 2> in_turns(const Net& x) { return {x, Net((1 + 1e-6) * x)}; }
 
 /// Shares of the time of an apply, its far rate over the bare rate, and the whole over its own far sum.
 void single_layer(benchmark::State& state) {
@@ -115,13 +119,15 @@ void velocity_evaluation(benchmark::State& state) {
   parameters.law = membrane::NeoHookean{1 / 0.3};
   stokes::FlowOptions shear;
   coupling::Capsule capsule(scene.space, scene.unstressed, scene.unstressed, stokes::AmbientFlow(shear), parameters, ranks, phases);
-  benchmark::DoNotOptimize(capsule.velocity(scene.x));
+  const auto x = in_turns(scene.x);
+  int turn = 0;
+  benchmark::DoNotOptimize(capsule.velocity(x[1]));
   const long long far = capsule.kernel_evaluations().far;
   const Phases before = phases;
   double best = 1e9, tangent = 1e9;
   for (auto _ : state) {
     const double start = now();
-    benchmark::DoNotOptimize(capsule.velocity(scene.x));
+    benchmark::DoNotOptimize(capsule.velocity(x[turn++ % 2]));
     best = std::min(best, now() - start);
   }
   for (const Phases::Phase& phase : phases.all())
@@ -135,5 +141,41 @@ void velocity_evaluation(benchmark::State& state) {
   state.counters["tangent / all"] = tangent / best;
 }
 BENCHMARK(velocity_evaluation)->Arg(6)->Arg(12)->Arg(24)->Unit(benchmark::kMillisecond)->Iterations(30);
+
+/// One velocity evaluation under Catmull-Clark over one under G1: the extra pieces at the extraordinary points. In turns, best of each.
+void catmull_clark_over_g1(benchmark::State& state) {
+  coupling::Ranks ranks;
+  Phases phases[2];
+  coupling::CapsuleParameters parameters;
+  parameters.law = membrane::NeoHookean{1 / 0.3};
+  const stokes::AmbientFlow flow{stokes::FlowOptions()};
+  const int n = static_cast<int>(state.range(0));
+  const Scene scene[2] = {Scene(n), Scene(n, spline::ExtraordinaryRule::catmull_clark)};
+  coupling::Capsule capsule[2] = {
+      {scene[0].space, scene[0].unstressed, scene[0].unstressed, flow, parameters, ranks, phases[0]},
+      {scene[1].space, scene[1].unstressed, scene[1].unstressed, flow, parameters, ranks, phases[1]},
+  };
+  const std::array<Net, 2> x[2] = {in_turns(scene[0].x), in_turns(scene[1].x)};
+  for (int k : {0, 1}) benchmark::DoNotOptimize(capsule[k].velocity(x[k][1]));
+  const stokes::Evaluations first[2] = {capsule[0].kernel_evaluations(), capsule[1].kernel_evaluations()};
+  double best[2] = {1e9, 1e9};
+  int turn = 0;
+  for (auto _ : state) {
+    for (int k : {0, 1}) {
+      const double start = now();
+      benchmark::DoNotOptimize(capsule[k].velocity(x[k][turn % 2]));
+      best[k] = std::min(best[k], now() - start);
+    }
+    ++turn;
+  }
+  for (const char* part : {"setup", "far", "near", "self"})
+    state.counters[std::string(part) + " ratio"] = capsule[1].layer_phases().seconds(part) / capsule[0].layer_phases().seconds(part);
+  for (const Phases::Phase& phase : phases[0].all()) state.counters[phase.name + " ratio"] = phases[1].seconds(phase.name) / phase.seconds;
+  const auto evaluations = [&](int k) { return static_cast<double>(capsule[k].kernel_evaluations().far - first[k].far); };
+  state.counters["far evaluations ratio"] = evaluations(1) / evaluations(0);
+  state.counters["g1 ms"] = 1e3 * best[0];
+  state.counters["all ratio"] = best[1] / best[0];
+}
+BENCHMARK(catmull_clark_over_g1)->Arg(6)->Arg(12)->Unit(benchmark::kMillisecond)->Iterations(60);
 
 }  // namespace
