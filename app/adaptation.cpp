@@ -25,6 +25,9 @@ Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::St
   result.body->unstressed = move(body.unstressed);
   result.state.x = move(state.x);
   for (Net& slope : result.state.history) slope = move(slope);
+  std::vector<Net> pairs = state.secants.pairs();
+  for (Net& net : pairs) net = move(net);
+  result.state.secants = coupling::Secants(std::move(pairs));
   if (state.frozen.size() > 0) result.state.frozen = move(state.frozen);
   return result;
 }

@@ -166,7 +166,7 @@ class Run {
     double time = next_snapshot(scene_, before.time);
     for (double next = next_snapshot(scene_, time); next <= state_.time && next > time; next = next_snapshot(scene_, time)) time = next;
     const motion::DenseOutput dense(before, state_);
-    pictured_ = motion::State{time, 0, dense.place(time), {dense.slope(time)}, {}, {}};
+    pictured_ = motion::State{time, 0, dense.place(time), {dense.slope(time)}, {}, {}, {}};
   }
 
   void record() {

@@ -361,17 +361,17 @@ Net Capsule::fluid_velocity_change(const Net& delta) {
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
-/// Material motion: (B - shift B J) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W)) delta = r (4.6).
-Net Capsule::solve(double shift, const Net& r, double tolerance) {
+/// Material motion: (B - shift (B J + E)) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6).
+Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
   const Eigen::Index n = r.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
     Eigen::Map<Net> result(out, n, 3);
     if (interface_)
-      result = delta - shift * interface_change(fluid_velocity_change(delta), delta);
+      result = delta - shift * (interface_change(fluid_velocity_change(delta), delta) + secants(delta));
     else
-      result = frozen_viscous(delta) - shift * energy_part(delta);
+      result = frozen_viscous(delta) - shift * (energy_part(delta) + secants(delta));
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
   const Net rhs = interface_ ? r : frozen_viscous(r);
@@ -379,6 +379,12 @@ Net Capsule::solve(double shift, const Net& r, double tolerance) {
   ++work_.solves;
   work_.solver_iterations += report.iterations;
   return symmetric(Eigen::Map<const Net>(solution.data(), n, 3));
+}
+
+Net Capsule::missed(const Net& dv, const Net& delta) {
+  const auto clock = phases_.time("implicit solve");
+  if (interface_) return dv - interface_change(fluid_velocity_change(delta), delta);
+  return frozen_viscous(dv) - energy_part(delta);
 }
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {

@@ -84,7 +84,8 @@ class Capsule : public Dynamics {
   Net velocity(const Net& x, const Net& near);
   void freeze(const Net& x) override;
   void linearise(const Net& x) override;
-  Net solve(double shift, const Net& r, double tolerance) override;
+  Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
+  Net missed(const Net& dv, const Net& delta) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends

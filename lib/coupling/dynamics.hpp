@@ -2,6 +2,7 @@
 // What a time integrator sees of the coupled system: dx/dt = v(x) and its quasi-Newton Jacobian.
 
 #include "base/types.hpp"
+#include "coupling/secants.hpp"
 
 namespace tanktread::coupling {
 
@@ -19,8 +20,11 @@ class Dynamics {
   /// Takes the membrane's tangent H of the Jacobian (4.3) at x.
   virtual void linearise(const Net& x) = 0;
 
-  /// delta = (I - shift J)^{-1} r with the Jacobian (4.3), to the relative residual `tolerance`. `shift` is gamma dt.
-  virtual Net solve(double shift, const Net& r, double tolerance) = 0;
+  /// delta = (I - shift J)^{-1} r with the Jacobian (4.3) and what `secants` know beyond it, to the relative residual `tolerance`. `shift` is gamma dt.
+  virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
+
+  /// B (dv - J delta) where last linearised: what the Jacobian misses of the velocity's change dv that delta made; for Secants.
+  virtual Net missed(const Net& dv, const Net& delta) = 0;
 
   /// J delta at x, where the velocity is v, delta of the norm of a shape: with the frozen operators (4.3) where there are any, else by a
   /// difference of velocities, which costs an evaluation.

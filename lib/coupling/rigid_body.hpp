@@ -46,7 +46,8 @@ class RigidParticle : public Dynamics {
   Net velocity(const Net& place) override;
   void freeze(const Net&) override {}
   void linearise(const Net&) override {}
-  Net solve(double, const Net& r, double) override { return r; }  ///< J = 0: the motion is not stiff
+  Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< J = 0: the motion is not stiff
+  Net missed(const Net& dv, const Net&) override { return dv; }
   void restore_volume(Net& place) override;                       ///< a rigid body has its volume; here the quaternion gets back its length
   double norm(const Net& displacement) const override;            ///< displacement of the centre over R_C and angle, as one length
 

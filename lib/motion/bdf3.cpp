@@ -73,6 +73,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
   if (state.memory.size() < 3 + places) return start(dynamics, state, limit);
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
   Memory memory = Memory::from(state.memory);
+  coupling::Secants secants = state.secants;
   const std::array<const Net*, places + 1> nets{&state.x, &state.history[1], &state.history[2], &state.history[3]};
   std::array<double, places + 1> times{};
   for (int i = 0; i < places; ++i) times[i + 1] = times[i] - state.memory[3 + i];
@@ -99,7 +100,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     Stage stage;
     stage.y = predicted;
     stage.contraction = memory.expected_contraction(dt);
-    solve(dynamics, options_, rhs, scheme.shift, stage);
+    solve(dynamics, options_, rhs, scheme.shift, secants, stage);
     report.iterations += stage.iterations;
 
     const double error =
@@ -117,6 +118,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     state.memory = Memory{stage.contraction, error, dt}.values();
     state.memory.insert(state.memory.end(), {dt, -times[1], times[1] - times[2]});
     state.history = {stage.slope, before, state.history[1], state.history[2]};
+    state.secants = std::move(secants);
     return report;
   }
 }

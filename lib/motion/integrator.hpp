@@ -21,6 +21,7 @@ struct State {
   Net x;                        ///< control net
   std::vector<Net> history;     ///< slopes that the scheme keeps; the first one is dx/dt at x
   std::vector<double> memory;   ///< the controller's memory, its meaning is the scheme's own
+  coupling::Secants secants;    ///< what the quasi-Newton iterations have learnt of the Jacobian
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if none were
 };
 

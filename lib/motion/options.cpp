@@ -35,6 +35,8 @@ void TimeOptions::declare(deck::Section& section) {
               "contraction rate of the iteration above which the frozen layer operator is assembled anew");
   section.key("largest operator", largest_operator, deck::positive(), "GB",
               "`auto`: no frozen operator larger than this, on all ranks together, is assembled; `rkc2` is taken instead");
+  section.key("secants", secants, deck::between(0, 20), "1",
+              "implicit schemes: quasi-Newton corrections remembered, from which is learnt what the Jacobian leaves out (4.13)");
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
               "order of the extrapolation of slopes that a stage starts from");
 }

@@ -23,12 +23,13 @@ struct TimeOptions {
   std::string nonlinear_solver = "plain";   ///< of crank-nicolson: plain, anderson, newton-krylov
   std::optional<std::string> step_control;  ///< of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations where plain
   bool count_euler_step = true;             ///< whether the Euler step is the first sub-iteration of crank-nicolson
-  double newton_tolerance = 0.05;          ///< end of the quasi-Newton iteration, in parts of `tolerance`
+  double newton_tolerance = 0.2;           ///< end of the quasi-Newton iteration, in parts of `tolerance`
   int newton_iterations = 6;               ///< most iterations of a stage before the step is halved
-  double linear_tolerance = 0.1;           ///< relative residual of its linear solves
+  double linear_tolerance = 0.05;          ///< relative residual of its linear solves
   double contraction_limit = 0.3;          ///< contraction rate above which the frozen layer operator is assembled anew
   double largest_operator = 32;             ///< GB of the frozen operator on all ranks together beyond which `auto` does without
-  int predictor_order = 2;                 ///< order of the polynomial through known slopes that a stage starts from
+  int secants = 2;                         ///< corrections remembered by the quasi-Newton iteration (4.13)
+  int predictor_order = 1;                 ///< order of the polynomial through known slopes that a stage starts from
 
   bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< a frozen operator of any size (4.3)
   bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }  ///< of crank-nicolson

@@ -14,14 +14,16 @@ const double worth_assembling = 0.8;  // root mean square displacement over R_C 
 
 double Memory::expected_contraction(double dt) const { return std::min(0.9, contraction * (step > 0 ? dt / step : 1)); }
 
-void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, Stage& stage) {
+void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {
   double previous = 0;
+  Net before, delta;
   for (int k = 0; k < options.newton_iterations; ++k) {
-    const Net residual = rhs + shift * dynamics.velocity(stage.y) - stage.y;
+    const Net v = dynamics.velocity(stage.y), residual = rhs + shift * v - stage.y;
     ++stage.iterations;
     if (!residual.allFinite()) return;
+    if (k > 0 && options.secants > 0) secants.add(delta, dynamics.missed(v - before, delta), options.secants);
     dynamics.linearise(stage.y);
-    const Net delta = dynamics.solve(shift, residual, options.linear_tolerance);
+    delta = dynamics.solve(shift, residual, options.linear_tolerance, secants);
     const double size = dynamics.norm(delta);
     stage.y += delta;
     if (!std::isfinite(size)) return;
@@ -35,6 +37,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
       return;
     }
     previous = size;
+    before = v;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "motion/quasi_newton.hpp"
 #include "motion/slopes.hpp"
@@ -17,6 +18,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
   if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
   Memory memory = Memory::from(state.memory);
+  coupling::Secants secants = state.secants;
   StepReport report;
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
 
@@ -30,7 +32,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
 
     const Net rhs2 = state.x + shift * k1;
     second.y = rhs2 + shift * slopes.at(2 * d * dt, options_.predictor_order);
-    solve(dynamics, options_, rhs2, shift, second);
+    solve(dynamics, options_, rhs2, shift, secants, second);
     const Net& k2 = second.slope;
     third.contraction = second.contraction;
     double error = 0;
@@ -38,12 +40,12 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       slopes.add(2 * d * dt, k2);
       const Net rhs3 = state.x + dt * w * (k1 + k2);
       third.y = rhs3 + shift * slopes.at(dt, options_.predictor_order);
-      solve(dynamics, options_, rhs3, shift, third);
+      solve(dynamics, options_, rhs3, shift, secants, third);
     }
     report.iterations += second.iterations + third.iterations;
     if (third.solved) {
       const Net raw = dt * ((4 * w - 1) / 3 * k1 - k2 / 3 + 2 * d / 3 * third.slope);
-      error = dynamics.norm(dynamics.solve(shift, raw, options_.linear_tolerance)) / options_.tolerance;
+      error = dynamics.norm(dynamics.solve(shift, raw, options_.linear_tolerance, secants)) / options_.tolerance;
     }
     const auto [accepted, factor] = judge(dynamics, options_, state, third, error, 3, memory);
     if (!accepted) {
@@ -53,6 +55,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
 
     accept(dynamics, options_, state, third, dt, h, limit, error, factor, report);
     state.history = {third.slope, k2, k1};
+    state.secants = std::move(secants);
     state.memory = Memory{third.contraction, error, dt}.values();
     return report;
   }

@@ -1,11 +1,15 @@
 #include "output/state.hpp"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace tanktread::output {
 namespace {
 
 std::string slope_name(std::size_t k) { return "slope_" + std::to_string(k); }
+
+std::string secant_name(std::size_t k) { return "secant_" + std::to_string(k); }
 
 }  // namespace
 
@@ -16,6 +20,8 @@ void store(const motion::State& state, Checkpoint& checkpoint) {
   checkpoint.arrays["frozen"] = state.frozen;
   checkpoint.arrays["memory"] = Eigen::Map<const Eigen::VectorXd>(state.memory.data(), static_cast<Eigen::Index>(state.memory.size()));
   for (std::size_t k = 0; k < state.history.size(); ++k) checkpoint.arrays[slope_name(k)] = state.history[k];
+  const std::vector<Net>& pairs = state.secants.pairs();
+  for (std::size_t k = 0; k < pairs.size(); ++k) checkpoint.arrays[secant_name(k)] = pairs[k];
 }
 
 motion::State stored_state(const Checkpoint& checkpoint) {
@@ -27,6 +33,9 @@ motion::State stored_state(const Checkpoint& checkpoint) {
   const Eigen::MatrixXd& memory = checkpoint.arrays.at("memory");
   state.memory.assign(memory.data(), memory.data() + memory.size());
   for (std::size_t k = 0; checkpoint.arrays.contains(slope_name(k)); ++k) state.history.emplace_back(checkpoint.arrays.at(slope_name(k)));
+  std::vector<Net> pairs;
+  for (std::size_t k = 0; checkpoint.arrays.contains(secant_name(k)); ++k) pairs.emplace_back(checkpoint.arrays.at(secant_name(k)));
+  state.secants = coupling::Secants(std::move(pairs));
   return state;
 }
 

@@ -104,7 +104,7 @@ TEST_P(JacobianOf, CapsuleIsTheDerivativeOfTheVelocityAtRest) {
   f.parameters.volume.constraint = "none";
   Capsule free = f.capsule();
   const Net jd = (free.velocity(f.sphere + h * delta) - free.velocity(f.sphere - h * delta)) / (2 * h);
-  const Net solved = capsule.solve(shift, delta - shift * jd, 1e-7);
+  const Net solved = capsule.solve(shift, delta - shift * jd, 1e-7, {});
   EXPECT_LT((solved - delta).norm(), GetParam().second * delta.norm());
 }
 

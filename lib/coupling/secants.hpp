@@ -1,0 +1,41 @@
+#pragma once
+// What the Jacobian leaves out, learnt from the iterations before.
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "base/types.hpp"
+
+namespace tanktread::coupling {
+
+/// The last few quasi-Newton corrections d_i and what the Jacobian (4.3) missed of each one's change of velocity, e_i = B (dv_i - J d_i):
+///
+///   E w = sum_i c_i e_i,   c the coefficients of the least-squares fit of w by the d_i                                          (4.13)
+///
+/// The part left out of (4.3) is bounded and changes with the shape, so pairs serve over some steps. A multisecant update: Fang & Saad,
+/// Numer. Linear Algebra Appl. 16 (2009).
+class Secants {
+ public:
+  /// `pairs`: d_1, e_1, d_2, e_2, ..., the oldest first.
+  explicit Secants(std::vector<Net> pairs);
+  Secants() = default;
+
+  /// Joins a pair, of which `most` are kept.
+  void add(const Net& correction, const Net& missed, int most);
+
+  /// E w.
+  Net operator()(const Net& w) const;
+
+  bool empty() const { return pairs_.empty(); }
+  const std::vector<Net>& pairs() const { return pairs_; }
+
+ private:
+  void factor();
+  const Net& correction(Eigen::Index i) const { return pairs_[static_cast<std::size_t>(2 * i)]; }
+
+  std::vector<Net> pairs_;
+  Eigen::LDLT<Eigen::MatrixXd> gram_;
+};
+
+}  // namespace tanktread::coupling
