@@ -23,37 +23,47 @@ def main():
 
     runs = [read.run(directory) for directory in [arguments.refined, *arguments.fixed]]
     shots = [run.snapshot_at(None) for run in runs]
+    names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
     extent = shots[0].points.max(0) - shots[0].points.min(0)
-    tall = 4.2 * (extent[2] / extent[0] + 0.15)
-    figure, axes = plt.subplots(2, max(2, len(runs)), figsize=(4.2 * max(2, len(runs)), tall + 3.6), height_ratios=[tall, 3], squeeze=False)
+    columns = max(3, len(runs))
+    tall = 4.2 * (extent[2] / extent[0] + 0.25)
+    figure = plt.figure(figsize=(4.2 * columns, tall + 4.4), layout="constrained")
+    grid = figure.add_gridspec(3, columns, height_ratios=[tall, 0.1, 3.4])
     norm, colours = shape.scale([shape.magnitude(shot.fields[arguments.field]) for shot in shots])
-    for axis, run, shot in zip(axes[0], runs, shots):
-        shape.draw_surface(axis, shot, arguments.field, norm, colours, -90, 20)
-        axis.set_title(f"{run.name}: {run.series['n_control_points'][-1]:.0f} control points")
-    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=axes[0][0].inset_axes([0.3, -0.12, 0.5, 0.05]), orientation="horizontal",
-                    label=arguments.field)
-    for axis in axes[0][len(runs):]:
-        axis.axis("off")
+    for k, (shot, name) in enumerate(zip(shots, names)):
+        axis = figure.add_subplot(grid[0, k])
+        shape.draw_surface(axis, shot, arguments.field, norm, colours, -75, 20)
+        axis.set_title(name)
+    vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
+    words = f"|{arguments.field}|" if vector else arguments.field
+    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal", label=words)
 
-    outline, along = axes[1][0], axes[1][1]
-    for axis in axes[1][2:]:
-        axis.axis("off")
+    outline, tip, along = (figure.add_subplot(grid[2, k]) for k in range(3))
     curves = []
-    for k, (run, shot, color) in enumerate(zip(runs, shots, style.RUNS)):
+    for k, (shot, name, color) in enumerate(zip(shots, names, style.RUNS)):
+        look = {"color": color, "linewidth": 2.2 if k == 0 else 1.2, "linestyle": "-" if k == 0 else (0, (4, 2)), "zorder": 2 + k}
         middle = (shot.points.min(0) + shot.points.max(0)) / 2
-        outline.add_collection(LineCollection(shape.section(shot, middle[1]) - middle[[0, 2]], colors=color, linewidths=1.6 if k == 0 else 1.1,
-                                              linestyles="-" if k == 0 else (0, (4, 2))))
-        outline.plot([], [], color=color, label=run.name)
-        angle, values = profile(shot, arguments.field)
-        curves.append((angle, values))
-        along.plot(numpy.degrees(angle), values, color=color, linewidth=1.6 if k == 0 else 1.1, linestyle="-" if k == 0 else (0, (4, 2)))
+        section = shape.section(shot, middle[1]) - middle[[0, 2]]
+        for axis in outline, tip:
+            axis.add_collection(LineCollection(section, colors=color, linewidths=look["linewidth"], linestyles=look["linestyle"]))
+        curves.append(profile(shot, arguments.field))
+        along.plot(*by_distance(shot, arguments.field), label=name, **look)
     outline.set_aspect("equal")
     outline.autoscale_view()
-    outline.set_xlabel("x₁")
-    outline.set_ylabel("x₃")
-    outline.legend(loc="upper center", bbox_to_anchor=(0.5, -0.6))
-    along.set_xlabel("angle about the centre in the section x₂ = 0, degrees")
-    along.set_ylabel(f"|{arguments.field}|")
+    reach = outline.dataLim.x1
+    tip.set_xlim(0.9 * reach, 1.01 * reach)
+    tip.set_ylim(-0.11 * reach, 0.11 * reach)
+    outline.add_patch(plt.Rectangle((0.9 * reach, -0.11 * reach), 0.11 * reach, 0.22 * reach, fill=False, edgecolor=style.FAINT, linewidth=0.8))
+    for axis, title in (outline, "the section x₂ = 0"), (tip, "its tip"):
+        axis.set_title(title)
+        axis.set_xlabel("x₁")
+        axis.set_ylabel("x₃")
+    along.set_title(f"{words} on the section near the tip")
+    along.set_xlabel("x₃")
+    along.set_ylabel(words)
+    along.set_xlim(-0.11 * reach, 0.11 * reach)
+    along.set_ylim(bottom=0)
+    along.legend(loc="upper left", bbox_to_anchor=(0, -0.2))
     for run, (angle, values) in zip(runs[1:], curves[1:]):
         print(f"{run.name}: largest {arguments.field} {largest(values):.5g} against {largest(curves[0][1]):.5g}, "
               f"largest difference on the section {100 * difference(curves[0], (angle, values)):.2f} % of the largest")
@@ -64,6 +74,14 @@ def profile(shot, field):
     """Magnitude of a field on the section, by angle."""
     angle, _, values = meshes.on_section(shot, field)
     return angle, numpy.linalg.norm(values, axis=1)
+
+
+def by_distance(shot, field):
+    """x3 and the field's magnitude on that half of the section where x1 is above the middle."""
+    ends = meshes.cut(shot, field).mean(axis=1)
+    ends = ends[ends[:, 0] > 0]
+    ends = ends[numpy.argsort(ends[:, 2])]
+    return ends[:, 2], numpy.linalg.norm(ends[:, 3:], axis=1)
 
 
 def largest(values):
