@@ -4,6 +4,7 @@
 import pathlib
 import shutil
 
+import h5py
 import numpy
 
 from harness import check, deck, main, run, series, summary
@@ -53,9 +54,20 @@ def a_symmetric_scene_stays_symmetric_on_every_mesh():
     run(deck(DECK), "--output", "run", "--quiet")
     plan = summary("run")["plan"]["symmetry"]
     check(plan.startswith("mirror x1, mirror x2 and mirror x3"), plan)
-    turned = deck(DECK.replace("Surface:", "Particle: { orientation: [20.0, 35.0, 50.0] }\n  Surface:"))
+    turned = deck(DECK.replace("Surface:", "Particle: { orientation: [20.0, 35.0, 50.0], drift: free }\n  Surface:"))
     run(turned, "--output", "turned", "--quiet")
     check(summary("turned")["plan"]["symmetry"].startswith("point symmetry"), summary("turned")["plan"]["symmetry"])
+    with h5py.File(sorted(pathlib.Path("turned").glob("snapshot_*.hdf"))[-1], "r") as file:
+        middle = (file["VTKHDF/Points"][()].max(0) + file["VTKHDF/Points"][()].min(0)) / 2
+    check(abs(middle).max() < 1e-12, f"the particle has drifted to {middle}, where the flow carries it off")
+
+
+def the_largest_number_of_points_is_kept_and_what_stays_coarse_is_said():
+    run(deck(DECK), "--set", "Adaptation/largest number of points=160", "--output", "run", "--quiet")
+    most = max(_points("run"))
+    check(98 <= most <= 160, f"{most} control points")
+    warnings = summary("run")["warnings"]
+    check(len(warnings) == 1 and "Adaptation/largest number of points = 160" in warnings[0], warnings)
 
 
 def the_volume_is_kept_through_every_change_of_the_mesh():
