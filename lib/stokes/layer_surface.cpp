@@ -40,15 +40,17 @@ std::vector<double> shares(const spline::Space& space) {
 }
 
 /// The same for each element. Pieces that are small beside the distance of the targets around (those at the extraordinary points of Catmull-Clark
-/// surfaces, halves at T-junctions) get by with less: the integrand is smoother on them, and their share of the area is small.
+/// surfaces, halves at T-junctions) get by with less: the integrand is smoother on them, and their share of the area is small. Half the digits is
+/// what the shape of a piece next to such a point asks for (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;
   const double rho = std::pow(options.tolerance, -0.5 / order);
+  const int least = std::clamp(static_cast<int>(-0.5 * std::log10(options.tolerance) + 1e-9), 1, order);
   const std::vector<double> share = shares(space);
   for (std::size_t e = 0; e < share.size(); ++e)
     if (share[e] < small)
-      orders[e] = std::clamp(quadrature::order_for(options.tolerance / (share[e] * share[e]), rho / share[e]), (order + 1) / 2, order);
+      orders[e] = std::clamp(quadrature::order_for(options.tolerance / (share[e] * share[e]), rho / share[e]), least, order);
   return orders;
 }
 
