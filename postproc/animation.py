@@ -52,8 +52,8 @@ class Film:
         self.window = places.min(0), places.max(0)
         self.norm, self.colours = shape.scale([shape.magnitude(shot.fields[field]) for shot in shots])
         extent = self.window[1] - self.window[0]
-        with plt.rc_context({"figure.constrained_layout.use": False}):  # it would move the axes from frame to frame
-            self.figure = plt.figure(figsize=(7.2, 7.2 * 0.80 * extent[1] / extent[0] + 3.1))
+        plt.rcParams["figure.constrained_layout.use"] = False  # it would move the axes from frame to frame
+        self.figure = plt.figure(figsize=(7.2, 7.2 * 0.80 * extent[1] / extent[0] + 3.1))
         height = self.figure.get_figheight()
         self.surface = self.figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
         bar = self.figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
