@@ -20,6 +20,9 @@ class MassSolver {
   /// Factors M0. Throws as DirectSolver does.
   void factor(const Eigen::SparseMatrix<double>& m0);
 
+  /// M0^-1.
+  const SymmetricSolver& reference() const { return reference_; }
+
   /// M0^-1 d, shape (N, 3).
   Net solve(const Net& d) const { return reference_.solve(d); }
 

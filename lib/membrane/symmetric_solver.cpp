@@ -1,6 +1,7 @@
 #include "membrane/symmetric_solver.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace tanktread::membrane {
@@ -55,18 +56,28 @@ void SymmetricSolver::factor(const Eigen::SparseMatrix<double>& a) {
 }
 
 Net SymmetricSolver::solve(const Net& b) const {
-  if (parts_.empty()) return whole_.solve(b);
-  Net x(b.rows(), 3);
+  constexpr int all[] = {0, 1, 2};
+  return solve(b, all);
+}
+
+Net SymmetricSolver::solve(const Net& b, std::span<const int> components) const {
+  const auto asked = [&](int c) { return std::ranges::find(components, c) != components.end(); };
+  Net x = Net::Zero(b.rows(), 3);
+  if (parts_.empty() && !components.empty()) {
+    Columns some = b(Eigen::all, components);
+    whole_.solve(some, some);
+    x(Eigen::all, components) = some;
+  }
   for (const Part& part : parts_) {
-    Columns some = part.images.asDiagonal() * b(part.points, part.components);
+    std::vector<int> mine;
+    std::ranges::copy_if(part.components, std::back_inserter(mine), asked);
+    if (mine.empty()) continue;
+    Columns some = part.images.asDiagonal() * b(part.points, mine);
     part.solver.solve(some, some);
-    for (std::size_t k = 0; k < part.components.size(); ++k) {
-      const int c = part.components[k];
-      for (Eigen::Index a = 0; a < x.rows(); ++a) {
-        const int i = part.unknown[static_cast<std::size_t>(a)];
-        x(a, c) = i < 0 ? 0 : symmetry_.signs()(a, c) * some(i, static_cast<Eigen::Index>(k));
-      }
-    }
+    for (std::size_t k = 0; k < mine.size(); ++k)
+      for (Eigen::Index a = 0; a < x.rows(); ++a)
+        if (const int i = part.unknown[static_cast<std::size_t>(a)]; i >= 0)
+          x(a, mine[k]) = symmetry_.signs()(a, mine[k]) * some(i, static_cast<Eigen::Index>(k));
   }
   return x;
 }

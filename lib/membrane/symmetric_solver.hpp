@@ -1,6 +1,7 @@
 #pragma once
 // Sparse linear systems of a symmetric surface, solved on its fundamental part.
 
+#include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -29,6 +30,9 @@ class SymmetricSolver {
 
   /// The symmetric x with A x = b, shape (N, 3), from the fundamental rows of b.
   Net solve(const Net& b) const;
+
+  /// The same for some components only; the others are zero.
+  Net solve(const Net& b, std::span<const int> components) const;
 
  private:
   /// Components that share a factor.
