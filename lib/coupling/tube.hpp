@@ -111,7 +111,8 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // of the checks, made when first asked for
+  Net flow_weights_, force_weights_;  // of the checks, made when first asked for, as is
+  double own_flow_ = 0;               // what the inlet's own pressure drives through it
 };
 
 }  // namespace tanktread::coupling

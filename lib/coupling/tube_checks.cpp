@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "coupling/tube_particle.hpp"
+#include "surface/patch.hpp"
 
 namespace tanktread::coupling {
 
@@ -23,6 +24,23 @@ std::vector<Vec3> points_of_cap(const surface::Outline& outline, double place) {
   return points;
 }
 
+/// The `count` sites that are nearest to the wall, each behind its distance. The distance of a place at most differs from that of the outline's
+/// centroid by how far it is from there, so that only sites far out are looked at.
+std::vector<std::pair<double, int>> nearest_sites(const Net& sites, const surface::Outline& outline, std::size_t count) {
+  const surface::Vec2 middle = outline.centroid();
+  const double inner = outline.distance(middle);
+  std::vector<std::pair<double, int>> least, nearest;
+  for (int i = 0; i < sites.rows(); ++i) least.emplace_back(inner - (sites.row(i).tail<2>().transpose() - middle).norm(), i);
+  std::ranges::sort(least);
+  for (const auto& [bound, i] : least) {
+    if (nearest.size() == count && bound > nearest.back().first) break;
+    nearest.emplace_back(outline.distance({sites(i, 1), sites(i, 2)}), i);
+    std::ranges::sort(nearest);
+    if (nearest.size() > count) nearest.pop_back();
+  }
+  return nearest;
+}
+
 std::vector<int> everybody(Eigen::Index n) {
   std::vector<int> all(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
@@ -37,9 +55,13 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   const double mu = viscosity(), factor = 1 - particle.parameters.viscosity_ratio, dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
   const stokes::Cap& inlet = wall_->inlet();
-  if (flow_weights_.size() == 0) flow_weights_ = wall_->flow_weights(), force_weights_ = wall_->force_weights();
+  if (flow_weights_.size() == 0) {
+    flow_weights_ = wall_->flow_weights();
+    force_weights_ = wall_->force_weights();
+    own_flow_ = inlet.own_flow();
+  }
 
-  double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * inlet.own_flow();
+  double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
   double force = area * dp - dot(force_weights_, response.wall_traction);
   std::vector<double> value[3];
   if (f.size() > 0) {
@@ -59,7 +81,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
       flow += factor * inlet.double_layer_flow(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
                                                Vec3(normal[0][k], normal[1][k], normal[2][k]));
   }
-  const double flow_of_pressure = -dot(flow_weights_, wall_->pumped()) / mu + inlet.own_flow() / mu;
+  const double flow_of_pressure = -dot(flow_weights_, wall_->pumped()) / mu + own_flow_ / mu;
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
 
   Checks checks;
@@ -99,13 +121,12 @@ double Tube::gap() const {
   const Particle& particle = *particle_;
   const surface::Outline& outline = wall_->surface().outline;
   const auto distance = [&](const Vec3& x) { return outline.distance({x[1], x[2]}); };
-  std::vector<std::pair<double, int>> order;
-  for (int i = 0; i < particle.space.n_points; ++i) order.emplace_back(distance(particle.sites.row(i).transpose()), i);
   constexpr std::size_t starts = 4;
-  std::partial_sort(order.begin(), order.begin() + std::min(starts, order.size()), order.end());
+  const auto order = nearest_sites(particle.sites, outline, starts);
   double smallest = order.front().first;
-  for (std::size_t k = 0; k < std::min(starts, order.size()); ++k)
+  for (std::size_t k = 0; k < order.size(); ++k)
     for (spline::Site site : particle.space.collocation[static_cast<std::size_t>(order[k].second)]) {
+      const surface::ElementPoints element(particle.space, particle.shape, site.element);
       double best = order[k].first;
       for (double step = 0.25; step > 1e-5;) {
         spline::Site next = site;
@@ -113,7 +134,7 @@ double Tube::gap() const {
         for (const int a : {-1, 0, 1})
           for (const int b : {-1, 0, 1}) {
             const spline::Site trial{site.element, std::clamp(site.s + a * step, 0., 1.), std::clamp(site.t + b * step, 0., 1.)};
-            const double there = distance(surface::value(particle.space, particle.shape, trial));
+            const double there = distance(surface::place(element.patch(), trial.s, trial.t));
             if (there < lowest) lowest = there, next = trial;
           }
         if (lowest < best)
