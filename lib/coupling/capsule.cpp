@@ -47,6 +47,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   mass_.factor(mass_matrix_.update(unstressed));
   layer_.set_reference(unstressed);
   layer_.set_symmetry(symmetry);
+  layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
   if (tube_) {
     sites_ = collocation_matrix(space);
@@ -73,6 +74,12 @@ void Capsule::replicate(Net& net) {
   ranks_.replicate(net);
 }
 
+void Capsule::add(Net& net) {
+  const auto clock = phases_.time("exchange");
+  Net* const one[] = {&net};
+  ranks_.add(one);
+}
+
 /// A^-1 of each field, in place; ranks share the columns.
 void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
   const int n = 3 * static_cast<int>(fields.size());
@@ -84,7 +91,7 @@ void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fi
     field = a.solve(field, mine);
   }
   const auto clock = phases_.time("exchange");
-  ranks_.join(fields);
+  ranks_.add(fields);
 }
 
 Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
@@ -185,7 +192,7 @@ Net Capsule::load_velocity(const Net& x, const Net& f) {
     const auto clock = phases_.time("single layer");
     layer_.apply(x, f, measure(), own_points_, u);
   }
-  replicate(u);
+  layer_.shared() ? add(u) : replicate(u);
   if (tube_) {
     u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
     if (schur()) {

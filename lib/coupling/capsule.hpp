@@ -118,6 +118,7 @@ class Capsule : public Dynamics {
   void place(const Net& x);
   Net load_velocity(const Net& x, const Net& f);
   void replicate(Net& net);
+  void add(Net& net);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   Net energy_gradient(const Net& x);

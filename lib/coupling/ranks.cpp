@@ -111,7 +111,7 @@ void Ranks::replicate(Net& net) const {
   impl_->symmetry.complete(net);
 }
 
-void Ranks::join(std::span<Net* const> nets) const {
+void Ranks::add(std::span<Net* const> nets) const {
   if (size() == 1) return;
   const std::vector<int>& all = impl_->symmetry.fundamental();
   std::vector<double> mine, together;
@@ -119,7 +119,7 @@ void Ranks::join(std::span<Net* const> nets) const {
     for (const int a : all)
       for (int c = 0; c < 3; ++c) mine.push_back((*net)(a, c));
   together.resize(mine.size());
-  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), together.data());  // of one number and zeros
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), together.data());
   const double* next = together.data();
   for (Net* net : nets) {
     for (const int a : all)

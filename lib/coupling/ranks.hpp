@@ -44,8 +44,8 @@ class Ranks {
   /// The rank that is to do item k of n equal ones that come in a row.
   int owner(int k, int n) const { return k * size() / n; }
 
-  /// Joins nets of which each component was filled by one rank and is zero on the others. Collective.
-  void join(std::span<Net* const> nets) const;
+  /// Adds up the nets of all ranks, whose rows of fundamental points count. Sums of one number and zeros are exact. Collective.
+  void add(std::span<Net* const> nets) const;
 
   /// Whether any rank says so (a signal, a limit). Collective.
   bool any(bool mine) const;

@@ -26,7 +26,7 @@ SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& 
 
 void SingleLayer::set_symmetry(const surface::Symmetry& symmetry) {
   images_ = symmetry.images();
-  fundamental_.clear(), share_.clear();
+  fundamental_.clear(), weight_.clear();
   const auto inside = [&](int e) {
     const int* points = surface_.panels.points(e);
     return std::count_if(points, points + surface_.panels[e].functions, [&](int a) { return symmetry.source()[a] == a; });
@@ -40,7 +40,7 @@ void SingleLayer::set_symmetry(const surface::Symmetry& symmetry) {
     }
     if (best != e) continue;
     fundamental_.push_back(e);
-    share_.push_back(1. / same);
+    weight_.push_back(1. / same);
   }
 }
 
@@ -59,6 +59,14 @@ void SingleLayer::place(const Net& x, Measure measure, std::span<const int> targ
   surface_.collocation_points(targets, at_);
 }
 
+void SingleLayer::share(int part, int parts, std::vector<int> everybody) {
+  if (!tree_ || parts == 1) return;
+  everybody_ = std::move(everybody);
+  tree_->share(part, parts);
+}
+
+std::span<const int> SingleLayer::rows(std::span<const int> targets) const { return shared() ? everybody_ : targets; }
+
 PointForces SingleLayer::forces() const {
   const auto& node = surface_.node;
   return {n_nodes(), node[0].data(), node[1].data(), node[2].data(), force_[0].data(), force_[1].data(), force_[2].data()};
@@ -70,16 +78,17 @@ void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
   for (std::size_t k = 0; k < fundamental_.size(); ++k) {
     const Panel& panel = surface_.panels[fundamental_[k]];
     for (int c = 0; c < 3; ++c)
-      for (int q = 0; q < panel.table->n_nodes; ++q) carried[c].push_back(share_[k] * force_[c][panel.first_node + q]);
+      for (int q = 0; q < panel.table->n_nodes; ++q) carried[c].push_back(weight_[k] * force_[c][panel.first_node + q]);
   }
-  std::vector<int> wanted(targets.begin(), targets.end());
+  const std::span<const int> rows = this->rows(targets);
+  std::vector<int> wanted(rows.begin(), rows.end());
   for (const surface::Image& g : images_)
-    for (const int i : targets) wanted.push_back(g.point[i]);
+    for (const int i : rows) wanted.push_back(g.point[i]);
   Net there(surface_.n_points, 3);
   tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, wanted, there.data());
-  for (const int i : targets) u.row(i) = there.row(i);
+  for (const int i : rows) u.row(i) = there.row(i);
   for (const surface::Image& g : images_)
-    for (const int i : targets) u.row(i) += there.row(g.point[i]).cwiseProduct(g.signs.transpose());
+    for (const int i : rows) u.row(i) += there.row(g.point[i]).cwiseProduct(g.signs.transpose());
   evaluations_.far += tree_->interactions();
 }
 
@@ -167,7 +176,7 @@ void SingleLayer::apply(const Net& x, const Net& f, Measure measure, std::span<c
     subtract_identities(targets, u);
   else
     add_self(targets, own_sum, u);
-  for (const int i : targets) u.row(i) *= factor;
+  for (const int i : rows(targets)) u.row(i) *= factor;
 }
 
 void SingleLayer::apply_to_normal(const Net& x, std::span<const int> targets, Net& u) {
@@ -184,7 +193,7 @@ void SingleLayer::apply_to_normal(const Net& x, std::span<const int> targets, Ne
   add_far(targets, u);
   add_near(targets, own_sum, u);
   add_self(targets, own_sum, u);
-  for (const int i : targets) u.row(i) *= factor;
+  for (const int i : rows(targets)) u.row(i) *= factor;
 }
 
 /// M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,

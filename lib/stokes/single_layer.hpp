@@ -42,6 +42,11 @@ class SingleLayer {
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
+  /// Shares the far sums of the rows `everybody`, where they are taken by clusters, among callers 0 .. parts - 1: from now on `apply` fills these rows
+  /// with what adds up to the layer over all callers; near and singular panels are counted by the caller whose targets they concern.
+  void share(int part, int parts, std::vector<int> everybody);
+  bool shared() const { return !everybody_.empty(); }
+
   /// Rows `targets` of u, shape (N, 3), for the density with control values f on the surface x.
   void apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u);
 
@@ -72,12 +77,14 @@ class SingleLayer {
   const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
   Mat3 identities(int target, const Vec3& at) const;
   PointForces forces() const;
+  std::span<const int> rows(std::span<const int> targets) const;
 
   LayerSurface surface_;
   std::optional<TreeSum> tree_;                             // where clusters are faster
   std::vector<surface::Image> images_;                      // of all that is summed by them, without the identity
   std::vector<int> fundamental_;                            // panels in the tree
-  std::vector<double> share_;                               // of each in the sum over images, 1 unless it is an image of itself
+  std::vector<double> weight_;                              // of each in the sum over images, 1 unless it is an image of itself
+  std::vector<int> everybody_;                              // rows that far sums are shared of; empty: they are not
   Measure measure_ = Measure::current;
   std::vector<double> bezier_unstressed_, bezier_f_;        // Bezier points: unstressed surface, density
   std::vector<double> weight_unstressed_, weight_present_;  // of the far nodes, areas included

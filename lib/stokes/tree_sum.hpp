@@ -29,6 +29,10 @@ class TreeSum {
     sum(carried, wanted, values);
   }
 
+  /// The next sums are of one part of the interactions; those of parts 0 .. parts - 1, of the same places, charges and wanted rows, add up to the
+  /// whole. Parts are of equal work.
+  void share(int part, int parts) { part_ = part, parts_ = parts; }
+
   long long interactions() const { return interactions_; }  ///< of the last sum
   std::size_t bytes() const;
 
@@ -36,12 +40,20 @@ class TreeSum {
   void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values);
   void collect(const std::array<const double*, 6>& carried);
   void mark(std::span<const int> wanted);
+  /// Clusters that meet, each as its Chebyshev nodes or as its points.
+  struct Pair {
+    int target, source;
+    bool target_nodes, source_nodes;
+  };
   void meet(const Cluster& target, const Cluster& source);
-  void add(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes);
+  void note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes);
+  long long work(const Pair& pair) const;
+  void add(const Pair& pair);
   void hand_down();
   Charges points() const;
   Charges nodes() const;
 
+  int part_ = 0, parts_ = 1;
   int in_ = 3, out_ = 3;  // of the kernel
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, targets_;
@@ -49,6 +61,7 @@ class TreeSum {
   std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
   std::vector<double> target_u_, node_u_;       // values there
   std::vector<char> row_, wanted_, has_nodes_;  // targets wanted; of target clusters: any of them wanted; values at Chebyshev nodes
+  std::vector<Pair> pairs_;
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };

@@ -120,6 +120,24 @@ TEST(Ranks, EveryRankGetsAllRows) {
   for (int i = 0; i < n; ++i) EXPECT_EQ(net.row(i), Eigen::RowVector3d(i, 10 * i, 100 * i));
 }
 
+TEST(Ranks, WhatTheyHaveAddsUp) {
+  Ranks ranks;
+  ranks.own(ranks.rank() == 0 ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{}, 5);
+  Net a = Net::Constant(5, 3, 1 + ranks.rank()), b = Net::Zero(5, 3);
+  int owners = 0;
+  for (int k = 0; k < 15; ++k) {
+    if (ranks.owner(k, 15) == ranks.rank()) b(k / 3, k % 3) = 0.1 * k;
+    if (k > 0) owners += ranks.owner(k, 15) != ranks.owner(k - 1, 15);
+  }
+  Net* const both[] = {&a, &b};
+  ranks.add(both);
+  EXPECT_EQ(owners, std::min(ranks.size(), 15) - 1);
+  for (int k = 0; k < 15; ++k) {
+    EXPECT_EQ(a(k / 3, k % 3), ranks.size() * (ranks.size() + 1) / 2);
+    EXPECT_EQ(b(k / 3, k % 3), 0.1 * k);
+  }
+}
+
 TEST(Ranks, OneRankSpeaksForAll) {
   Ranks ranks;
   EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));
