@@ -81,9 +81,10 @@ Findings findings(const Scene& scene, const Body& body, const motion::State& sta
   return of(surface::element_metrics(body.mesh, body.nested(), state.x, fields));
 }
 
-/// Of elements of the T-mesh that have no side at a pole. The paper cuts no others; what they are cut by comes from their neighbours.
-void leave_poles(const Body& body, std::vector<spline::Mark>& marks) {
-  if (body.mesh.lattice->pad == 0 || marks.empty()) return;
+/// Takes out the marks of elements of the T-mesh with a side at a pole, where these stay degenerate, and under the paper's rule, which cuts none of
+/// them. What they are cut by then comes from their neighbours.
+void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
+  if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);
   const auto degenerate = [&](const spline::Mark& mark) {
     return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);
@@ -99,7 +100,7 @@ Adapted refined(const Scene& scene, const Body& body, const motion::State& state
   std::optional<spline::RepairRules> keeping;
   for (double factor = 1; factor <= 64; factor *= 2) {
     auto marks = found.marks(scene.adaptation.coarser(factor));
-    leave_poles(body, marks);
+    leave_poles(scene, body, marks);
     if (marks.empty()) break;
     if (!keeping) keeping = rules(body);
     spline::Refinement refinement = spline::refine(body.mesh, marks, *keeping);
