@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "coupling/tube_particle.hpp"
 #include "surface/patch.hpp"
@@ -116,7 +117,7 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   return u.rowwise().norm().maxCoeff();
 }
 
-/// From the collocation points nearest to the wall, downhill on each element that holds them.
+/// From the collocation points nearest to the wall, downhill on each element that holds them, once an element.
 double Tube::gap() const {
   const Particle& particle = *particle_;
   const surface::Outline& outline = wall_->surface().outline;
@@ -124,8 +125,10 @@ double Tube::gap() const {
   constexpr std::size_t starts = 4;
   const auto order = nearest_sites(particle.sites, outline, starts);
   double smallest = order.front().first;
+  std::set<int> searched;
   for (std::size_t k = 0; k < order.size(); ++k)
     for (spline::Site site : particle.space.collocation[static_cast<std::size_t>(order[k].second)]) {
+      if (!searched.insert(site.element).second) continue;
       const surface::ElementPoints element(particle.space, particle.shape, site.element);
       double best = order[k].first;
       for (double step = 0.25; step > 1e-5;) {
@@ -133,6 +136,7 @@ double Tube::gap() const {
         double lowest = best;
         for (const int a : {-1, 0, 1})
           for (const int b : {-1, 0, 1}) {
+            if (a == 0 && b == 0) continue;
             const spline::Site trial{site.element, std::clamp(site.s + a * step, 0., 1.), std::clamp(site.t + b * step, 0., 1.)};
             const double there = distance(surface::place(element.patch(), trial.s, trial.t));
             if (there < lowest) lowest = there, next = trial;
