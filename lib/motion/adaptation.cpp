@@ -26,7 +26,7 @@ void AdaptationOptions::declare(deck::Section& section) {
               "T_ref; if not given, traction is not looked at");
   section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
               "V_ref; if not given, velocity is not looked at");
-  section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1", 
+  section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
               "D_ref: an element that is longer than this times its width is cut; 2.5 if not given");
   section.key("order", order, deck::positive(), "1", "kappa: how strongly a variation above its reference shortens elements; 1 if not given");
   section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut");
