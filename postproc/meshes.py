@@ -41,12 +41,12 @@ def main():
         surfaces.append(figure.add_subplot(grid[0, k]))
         shape.draw_surface(surfaces[-1], shot, arguments.field, norm, colours, *arguments.view)
         points = run.series["n_control_points"][numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1]
-        surfaces[-1].set_title(f"{run.name}, t = {shot.time:.3g}: {points:.0f} control points")
+        surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
         polar = figure.add_subplot(grid[2, k], projection="polar")
         reference = arguments.reference and arguments.reference[min(k, len(arguments.reference) - 1)]
         draw_variation(polar, shot, arguments.field, reference)
-        if k == 0 and reference:
-            polar.legend(loc="upper left", bbox_to_anchor=(-0.15, 0.06))
+        if reference and (k == 0 or len(set(arguments.reference)) > 1):
+            polar.legend(loc="upper left", bbox_to_anchor=(-0.1, 0.04))
     share_window(surfaces)
     vector = numpy.ndim(shots[0][1].fields[arguments.field]) > 1
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]), orientation="horizontal",
