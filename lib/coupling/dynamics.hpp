@@ -20,7 +20,8 @@ class Dynamics {
   /// Takes the membrane's tangent H of the Jacobian (4.3) at x.
   virtual void linearise(const Net& x) = 0;
 
-  /// delta = (I - shift J)^{-1} r with the Jacobian (4.3) and what `secants` know beyond it, to the relative residual `tolerance`. `shift` is gamma dt.
+  /// delta = (I - shift J)^{-1} r with the Jacobian (4.3) and what `secants` know beyond it, to the relative residual `tolerance`.
+  /// `shift` is gamma dt.
   virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
 
   /// B (dv - J delta) where last linearised: what the Jacobian misses of the velocity's change dv that delta made; for Secants.

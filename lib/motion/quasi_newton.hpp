@@ -30,7 +30,8 @@ struct Stage {
   bool solved = false;
 };
 
-/// Quasi-Newton iteration on the frozen-geometry Jacobian (4.3), H fresh in every iteration, to `Time/newton tolerance`. Uses the secants (4.13) and adds its own.
+/// Quasi-Newton iteration on the frozen-geometry Jacobian (4.3), H fresh in every iteration, to `Time/newton tolerance`.
+/// Uses the secants (4.13) and adds its own.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
 
 /// What an attempt at a step comes to.
