@@ -82,13 +82,13 @@ void Capsule::add(Net& net) {
 
 /// A^-1 of each field, in place; ranks share the columns.
 void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
-  const int n = 3 * static_cast<int>(fields.size());
-  for (int k = 0; k < n; k += 3) {
-    Net& field = *fields[static_cast<size_t>(k / 3)];
+  const std::vector<int> components = a.components();
+  int column = 0;
+  for (Net* const field : fields) {
     std::vector<int> mine;
-    for (int c = 0; c < 3; ++c)
-      if (ranks_.owner(k + c, n) == ranks_.rank()) mine.push_back(c);
-    field = a.solve(field, mine);
+    for (const int c : components)
+      if (ranks_.owner(column++, 3 * static_cast<int>(fields.size())) == ranks_.rank()) mine.push_back(c);
+    *field = a.solve(*field, mine);
   }
   const auto clock = phases_.time("exchange");
   ranks_.add(fields);

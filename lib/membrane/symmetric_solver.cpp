@@ -55,6 +55,13 @@ void SymmetricSolver::factor(const Eigen::SparseMatrix<double>& a) {
   }
 }
 
+std::vector<int> SymmetricSolver::components() const {
+  if (parts_.empty()) return {0, 1, 2};
+  std::vector<int> all;
+  for (const Part& part : parts_) all.insert(all.end(), part.components.begin(), part.components.end());
+  return all;
+}
+
 Net SymmetricSolver::solve(const Net& b) const {
   constexpr int all[] = {0, 1, 2};
   return solve(b, all);
