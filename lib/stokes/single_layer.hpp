@@ -42,8 +42,8 @@ class SingleLayer {
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Shares the far sums of the rows `everybody`, where they are taken by clusters, among callers 0 .. parts - 1: from now on `apply` fills these rows
-  /// with what adds up to the layer over all callers; near and singular panels are counted by the caller whose targets they concern.
+  /// Shares the far sums of the rows `everybody`, where they are taken by clusters, among callers 0 .. parts - 1: from now on `apply` fills these
+  /// rows with what adds up to the layer over all callers; near and singular panels are counted by the caller whose targets they concern.
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return !everybody_.empty(); }
 
