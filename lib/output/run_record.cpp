@@ -1,7 +1,6 @@
 #include "output/run_record.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <stdexcept>
 
@@ -84,7 +83,7 @@ const std::vector<double>& RunRecord::values(std::string_view name) const {
 
 void RunRecord::lay_out() {
   image_.reset();
-  Image image{hdf::new_file(), {}, std::max<std::size_t>(64, std::bit_ceil(2 * rows()))};
+  Image image{hdf::new_file(), {}, rows() + std::max<std::size_t>(63, rows() / 8)};
   hdf::write(image.file, "deck", deck_);
   const hdf::Id provenance = hdf::new_group(image.file, "provenance"), series = hdf::new_group(image.file, "series");
   for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);

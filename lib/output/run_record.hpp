@@ -22,8 +22,8 @@ struct Series {
 ///
 /// The columns live here, and so does an image of the file, which every `append` extends and writes beside the file on disk, to be renamed
 /// to it: some tenth of a millisecond. A process killed at any moment leaves a file with every row whose `append` returned. Columns are one
-/// chunk each, with room for twice the rows at least when they are made; a record that is longer is laid out anew. Serial: on several ranks
-/// only the first holds one.
+/// chunk each, with room for an eighth more rows, or for some dozens, than when they were made; then the file is laid out anew. Serial: on
+/// several ranks only the first holds one.
 class RunRecord {
  public:
   /// A record without rows. Nothing is written before the first `append`.
