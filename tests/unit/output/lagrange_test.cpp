@@ -75,6 +75,19 @@ TEST(LagrangeMesh, SitesNameThePlaceOfEachNode) {
     EXPECT_NEAR(points(static_cast<Eigen::Index>(k), 0), mesh.sites[k].element + mesh.sites[k].s, 1e-13);
 }
 
+TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) {
+  const Sheet sheet_;
+  const Nodes nodes(sheet_.space, lagrange_mesh(sheet_.space, sheet_.net));
+  const std::vector<surface::Jet> jets = nodes.jets(sheet_.net);
+  ASSERT_EQ(jets.size(), nodes.mesh().sites.size());
+  for (std::size_t k = 0; k < jets.size(); ++k) {
+    const auto& [element, s, t] = nodes.mesh().sites[k];
+    const surface::Jet there = surface::jet(surface::ElementPoints(sheet_.space, sheet_.net, element).patch(), s, t);
+    for (const auto part : {&surface::Jet::x, &surface::Jet::s, &surface::Jet::t, &surface::Jet::ss, &surface::Jet::st, &surface::Jet::tt})
+      EXPECT_LT((jets[k].*part - there.*part).norm(), 1e-10);  // round-off of second derivatives of heights up to 27
+  }
+}
+
 TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   spline::Space space;
   Net net;
