@@ -66,13 +66,19 @@ def _digitised(folder, ca):
     return found
 
 
-def difference(t, values, curve_t, curve_values, order=6):
-    """Largest |values - curve| over the times t that the curve covers; the curve is interpolated by polynomials through `order` points."""
-    worst = 0.0
-    for time, value in zip(t, values):
-        if curve_t[0] <= time <= curve_t[-1]:
-            start = min(max(int(numpy.searchsorted(curve_t, time)) - order // 2, 0), len(curve_t) - order)
-            nodes = curve_t[start:start + order]
-            weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
-            worst = max(worst, abs(value - float(numpy.dot(weights, curve_values[start:start + order]))))
-    return worst
+def interpolated(t, values, at, order=6):
+    """values(t) at the times `at` within t, by polynomials through `order` points."""
+    result = []
+    for time in at:
+        start = min(max(int(numpy.searchsorted(t, time)) - order // 2, 0), max(len(t) - order, 0))
+        nodes = t[start:start + order]
+        weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
+        result.append(float(numpy.dot(weights, values[start:start + order])))
+    return numpy.array(result)
+
+
+def difference(t, values, curve_t, curve_values):
+    """Largest |values - curve| over the times that both cover. The one that is told at more times is interpolated to the times of the other."""
+    (fine_t, fine), (coarse_t, coarse) = sorted([(t, values), (curve_t, curve_values)], key=lambda one: -len(one[0]))
+    common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])
+    return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))

@@ -71,7 +71,7 @@ class Scene:
             if not reference.done:
                 raise SystemExit(f"the reference run failed: {reference.message}")
             t, values = reference.series["time"], reference.series[series]
-        return lambda outcome: literature.difference(outcome.series["time"][1:], outcome.series[series][1:], t, values)
+        return lambda outcome: literature.difference(outcome.series["time"], outcome.series[series], t, values)
 
 
 class Point:
