@@ -10,7 +10,7 @@ namespace tanktread::quadrature {
 
 /// How the layer integrals are taken: `Quadrature/*` of the deck.
 struct Options {
-  double tolerance = 1e-5;        ///< relative accuracy of every layer integral, self, near and far
+  double tolerance = 1e-4;        ///< relative accuracy of every layer integral, self, near and far
   std::string rule = "adaptive";  ///< `adaptive`: by tolerance; `fixed`: `points` x `points` Gauss with Lachat-Watson, the paper's;
                                   ///< `desingularised`: the same Gauss points alone, with the singularity subtracted by identities
   int points = 8;                 ///< Gauss points a direction of the last two
