@@ -125,9 +125,9 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
 namespace {
 
 /// Largest estimated error over its tolerance.
-double excess(const surface::Resolution& along, const AdaptationOptions& options) {
-  const double surface = along.surface / options.surface_tolerance;
-  return options.load_tolerance ? std::max(surface, along.load / *options.load_tolerance) : surface;
+double excess(const surface::Errors& errors, const AdaptationOptions& options) {
+  const double surface = errors.surface / options.surface_tolerance;
+  return options.load_tolerance ? std::max(surface, errors.load / *options.load_tolerance) : surface;
 }
 
 }  // namespace
@@ -136,7 +136,7 @@ std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution
   std::vector<spline::Mark> found;
   for (size_t e = 0; e < resolution.size(); ++e) {
     bool cut[2];
-    for (int a = 0; a < 2; ++a) cut[a] = resolution[e][a].length > options.minimum_length && excess(resolution[e][a], options) > 1;
+    for (int a = 0; a < 2; ++a) cut[a] = resolution[e][a].length > options.minimum_length && excess(resolution[e][a].errors, options) > 1;
     if (cut[0] || cut[1]) found.push_back({static_cast<int>(e), cut[0], cut[1]});
   }
   return found;
@@ -146,7 +146,7 @@ std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resoluti
   std::vector<spline::Merge> found;
   for (size_t e = 0; e < resolution.size(); ++e) {
     int merge[2];
-    for (int a = 0; a < 2; ++a) merge[a] = 16 * excess(resolution[e][a], options) < options.coarsening_margin;
+    for (int a = 0; a < 2; ++a) merge[a] = excess(resolution[e][a].merged, options) < options.coarsening_margin;
     if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0], merge[1]});
   }
   return found;

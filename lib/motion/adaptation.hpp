@@ -54,8 +54,8 @@ std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metr
 /// Elements that stay below `coarsening margin` of every limit of (P-37) when they are twice as long, in the directions in which they do.
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// The same by estimated errors (1.5): cut along a where L_a > L_min and one of them is above its tolerance; merge where 16 times all of them stay
-/// below `coarsening margin` of it.
+/// The same by estimated errors (1.5): cut along a where L_a > L_min and one of them is above its tolerance; merge where all those of the element
+/// twice as long stay below `coarsening margin` of it.
 std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 

@@ -1,6 +1,7 @@
 #include "surface/resolution.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -29,9 +30,7 @@ bool on_pole(const Lattice& lattice, int vertex) {
 }
 
 /// Whether there is no way on: at the border of an open face, or at a pole.
-bool ends(const Lattice& lattice, Ray ray) {
-  return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0;
-}
+bool ends(const Lattice& lattice, Ray ray) { return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0; }
 
 /// Both surfaces and the load at lattice vertices, each evaluated once.
 class Samples {
@@ -123,7 +122,8 @@ Sample fourth_difference(Samples& samples, const Line& line, int first) {
 Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int length, const Mat3& f) {
   const Line found = line(lattice, edge, length);
   Resolution result;
-  result.length = (samples.at(found.vertices[static_cast<std::size_t>(found.start) + 1]).now - samples.at(edge.vertex).now).norm();
+  if (static_cast<int>(found.vertices.size()) > found.start + 1)
+    result.length = (samples.at(found.vertices[static_cast<std::size_t>(found.start) + 1]).now - samples.at(edge.vertex).now).norm();
   const int last = static_cast<int>(found.vertices.size()) - 5;
   // The two windows with the edge in the middle, or else the nearest that there is.
   std::vector<int> windows;
@@ -134,13 +134,42 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
       if (first >= 0 && first <= last) windows.push_back(first);
   for (const int first : windows) {
     const Sample d4 = fourth_difference(samples, found, first);
-    result.surface += (d4.now - f * d4.rest).norm() / 384 / static_cast<double>(windows.size());
-    result.load += d4.load.norm() / 384 / static_cast<double>(windows.size());
+    result.errors.surface += (d4.now - f * d4.rest).norm() / 384 / static_cast<double>(windows.size());
+    result.errors.load += d4.load.norm() / 384 / static_cast<double>(windows.size());
   }
   return result;
 }
 
-Resolution mean(const Resolution& a, const Resolution& b) { return {(a.length + b.length) / 2, (a.surface + b.surface) / 2, (a.load + b.load) / 2}; }
+Resolution mean(const Resolution& a, const Resolution& b) {
+  return {(a.length + b.length) / 2, {(a.errors.surface + b.errors.surface) / 2, (a.errors.load + b.errors.load) / 2}, {}};
+}
+
+/// What a tile becomes when its width (or height) doubles on the grid of the first mesh; itself if that is no tile around it.
+spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bool in_height) {
+  spline::Rectangle out = r;
+  int &at = in_height ? out.y : out.x, &size = in_height ? out.height : out.width;
+  const int first = in_height ? lattice.pad : 0, end = at + size;
+  size = 2 * static_cast<int>(std::bit_floor(static_cast<unsigned>(size)));
+  at = first + (at - first) / size * size;
+  return size <= lattice.base && end <= at + size ? out : r;
+}
+
+/// Along s and t of a tile.
+std::array<Resolution, 2> on_tile(const Lattice& l, Samples& samples, const spline::Rectangle& r) {
+  const int right = r.x + r.width - 1, top = r.y + r.height - 1;
+  const Mat3 f = samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)});
+  // Edge k runs from corner k to corner k + 1.
+  const int cells[4] = {l.cell_at(r.face, r.x, r.y), l.cell_at(r.face, right, r.y), l.cell_at(r.face, right, top),
+                        l.cell_at(r.face, r.x, top)};
+  const auto edge = [&](int k) {
+    return along_edge(l, samples, {l.corners[cells[k]][k], l.slot[cells[k]][k]}, k % 2 == 0 ? r.width : r.height, f);
+  };
+  const auto along_s = [&] {
+    if (on_pole(l, l.corners[cells[0]][0])) return edge(2);
+    return on_pole(l, l.corners[cells[3]][3]) ? edge(0) : mean(edge(0), edge(2));
+  };
+  return {along_s(), mean(edge(1), edge(3))};
+}
 
 }  // namespace
 
@@ -150,18 +179,14 @@ std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, con
   Samples samples(mesh, space, rest, net, load);
   std::vector<std::array<Resolution, 2>> result;
   for (const spline::Rectangle& r : spline::elements(mesh).tiles) {
-    const int right = r.x + r.width - 1, top = r.y + r.height - 1;
-    const Mat3 f = samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)});
-    // Edge k runs from corner k to corner k + 1.
-    const int cells[4] = {l.cell_at(r.face, r.x, r.y), l.cell_at(r.face, right, r.y), l.cell_at(r.face, right, top), l.cell_at(r.face, r.x, top)};
-    const auto edge = [&](int k) {
-      return along_edge(l, samples, {l.corners[cells[k]][k], l.slot[cells[k]][k]}, k % 2 == 0 ? r.width : r.height, f);
-    };
-    const auto along_s = [&] {
-      if (on_pole(l, l.corners[cells[0]][0])) return edge(2);
-      return on_pole(l, l.corners[cells[3]][3]) ? edge(0) : mean(edge(0), edge(2));
-    };
-    result.push_back({along_s(), mean(edge(1), edge(3))});
+    auto own = on_tile(l, samples, r);
+    for (const bool along_t : {false, true}) {
+      const spline::Rectangle whole = doubled(l, r, along_t);
+      const auto& [surface, traction] = own[along_t].errors;
+      const bool larger = whole.width != r.width || whole.height != r.height;
+      own[along_t].merged = larger ? on_tile(l, samples, whole)[along_t].errors : Errors{16 * surface, 16 * traction};
+    }
+    result.push_back(own);
   }
   return result;
 }

@@ -19,11 +19,16 @@ namespace tanktread::surface {
 /// with D4 the fourth difference of values one element apart, the mean over both edges of the element in this direction: 1/384 is the constant of
 /// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the present one, and its normal
 /// to that one's times the square root of the stretch in area: how X itself varies over the mesh, at extraordinary points above all, costs
-/// nothing where the particle has kept its shape. Where all is smooth, cutting an element divides either by 16.
-struct Resolution {
-  double length = 0;   ///< of the edges, their mean
+/// nothing where the particle has kept its shape. Where all is smooth, cutting an element divides either by 16; next to an extraordinary point
+/// by about 8.
+struct Errors {
   double surface = 0;  ///< e(x), length
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
+};
+struct Resolution {
+  double length = 0;  ///< of the edges, their mean
+  Errors errors;
+  Errors merged;  ///< of the element twice as long that this one is a part of; 16 times `errors` where there is none
 };
 
 /// Of elements(mesh), in its order, along s and t. A line of places ends at an extraordinary point or a pole; where fewer than five are left, the

@@ -59,33 +59,41 @@ TEST(Adaptation, WhatIsMergedIsNotCutAgain) {
 
 using Resolved = std::array<surface::Resolution, 2>;
 
+/// Of an element of this length: its errors, and those of one twice as long.
+surface::Resolution along(double length, double surface, double load = 0, double merged = 0) { return {length, {surface, load}, {merged, 0}}; }
+
 TEST(Adaptation, AnErrorAboveItsToleranceCutsItsOwnDirection) {
   AdaptationOptions o;
   o.surface_tolerance = 1e-3;
   o.minimum_length = 0.05;
-  const std::vector<Resolved> elements = {{{{0.2, 1.1e-3, 0}, {0.2, 0.9e-3, 0}}}, {{{0.04, 1, 0}, {0.04, 1, 0}}}, {{{0.2, 0, 0.5}, {0.2, 0, 0}}}};
+  const std::vector<Resolved> elements = {
+      {along(0.2, 1.1e-3), along(0.2, 0.9e-3)}, {along(0.04, 1), along(0.04, 1)}, {along(0.2, 0, 0.5), along(0.2, 0)}};
   const auto found = marks(elements, o);
   ASSERT_EQ(found.size(), 1u);  // the second is at the floor, the third's load is not looked at
   EXPECT_EQ(found[0].element, 0);
   EXPECT_TRUE(found[0].s);
   EXPECT_FALSE(found[0].t);
   o.load_tolerance = 0.4;
-  EXPECT_EQ(marks(std::vector<Resolved>{{{{0.2, 0, 0.5}, {0.2, 0, 0}}}}, o).size(), 1u);
+  EXPECT_EQ(marks(std::vector<Resolved>{{along(0.2, 0, 0.5), along(0.2, 0)}}, o).size(), 1u);
 }
 
 TEST(Adaptation, WhatIsMergedByItsErrorIsNotCutAgain) {
   AdaptationOptions o;
   o.surface_tolerance = 1e-3;
-  for (const double error : {1e-6, 3e-5, 5e-5, 1e-4, 1e-3})
-    for (const spline::Merge& merge : merges(std::vector<Resolved>{{{{0.2, error, 0}, {0.2, 1e-9, 0}}}}, o))
-      for (const spline::Mark& mark : marks(std::vector<Resolved>{{{{0.4, 16 * error, 0}, {0.4, 16e-9, 0}}}}, o))
-        EXPECT_FALSE(merge.s && mark.s) << error;
+  int merged = 0;
+  for (const double error : {1e-5, 5e-4, 8e-4, 2e-3})
+    for (const spline::Merge& merge : merges(std::vector<Resolved>{{along(0.2, error / 16, 0, error), along(0.2, 1e-9)}}, o)) {
+      merged += merge.s;
+      const std::vector<Resolved> then = {{along(0.4, error), along(0.4, 16e-9)}};
+      for (const spline::Mark& mark : marks(then, o)) EXPECT_FALSE(merge.s && mark.s) << error;
+    }
+  EXPECT_EQ(merged, 2);  // below 0.7 of the tolerance
 }
 
 TEST(Adaptation, CoarserLimitsMarkTheWorstElementsOnly) {
   AdaptationOptions o;
   o.surface_tolerance = 1e-3;
-  const std::vector<Resolved> elements = {{{{0.2, 1.5e-3, 0}, {0.2, 0, 0}}}, {{{0.2, 3e-3, 0}, {0.2, 0, 0}}}};
+  const std::vector<Resolved> elements = {{along(0.2, 1.5e-3), along(0.2, 0)}, {along(0.2, 3e-3), along(0.2, 0)}};
   EXPECT_EQ(marks(elements, o).size(), 2u);
   ASSERT_EQ(marks(elements, o.coarser(2)).size(), 1u);
   EXPECT_EQ(marks(elements, o.coarser(2))[0].element, 1);

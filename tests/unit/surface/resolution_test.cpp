@@ -7,8 +7,11 @@
 
 #include "spline/extraction.hpp"
 #include "spline/locate.hpp"
+#include "spline/refinement.hpp"
+#include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/polar_sphere.hpp"
+#include "surface/shapes.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {
@@ -17,7 +20,7 @@ namespace {
 double largest_surface_error(const std::vector<std::array<Resolution, 2>>& all) {
   double largest = 0;
   for (const auto& element : all)
-    for (const Resolution& along : element) largest = std::max(largest, along.surface);
+    for (const Resolution& along : element) largest = std::max(largest, along.errors.surface);
   return largest;
 }
 
@@ -43,8 +46,8 @@ TEST(Resolution, AFourthPowerHasItsFourthDifferenceAlongOneDirectionOnly) {
     const int unit = tiles[e].width;
     if (tiles[e].x < 3 * unit || tiles[e].x > (n - 4) * unit || tiles[e].y < 3 * unit || tiles[e].y > (n - 4) * unit) continue;
     ++counted;
-    EXPECT_NEAR(found[e][0].load, 24. / 384, 1e-9);  // of numbers up to 4096
-    EXPECT_NEAR(found[e][1].load, 0, 1e-9);
+    EXPECT_NEAR(found[e][0].errors.load, 24. / 384, 1e-9);  // of numbers up to 4096
+    EXPECT_NEAR(found[e][1].errors.load, 0, 1e-9);
   }
   EXPECT_EQ(counted, 6 * 2 * 2);
 }
@@ -56,12 +59,31 @@ TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
     const FieldAt bump = [&](const spline::Site& site) { return Vec3(std::sin(2 * value(cube.space, rest, site)[0]), 0, 0); };
     double sum = 0;
     const auto found = resolution(cube.mesh, cube.space, rest, rest, bump);
-    for (const auto& element : found) sum += element[0].load + element[1].load;
+    for (const auto& element : found) sum += element[0].errors.load + element[1].errors.load;
     return sum / static_cast<double>(found.size());
   };
   const double order = std::log2(error(12) / error(24));
   EXPECT_GT(order, 3.5);  // the lines at extraordinary points, a share of 1/n of them, have a lower one
   EXPECT_LT(order, 4.1);
+}
+
+TEST(Resolution, WhatMergingWouldLeaveIsTheErrorOfTheMeshBefore) {
+  const spline::TMesh coarse = spline::cube(6, 1);
+  std::vector<spline::Mark> all;
+  for (int e = 0; e < 216; ++e) all.push_back({e});
+  const spline::TMesh fine = spline::refine(coarse, all).mesh;
+  const spline::Space before = spline::space(coarse, spline::ExtraordinaryRule::catmull_clark);
+  const spline::Space after = spline::space(fine, spline::ExtraordinaryRule::catmull_clark);
+  const Net rest = unit_sphere(coarse, LeastSquaresFit(before)), same = spline::Transfer(before, after)(rest).net;
+  const auto errors = [](const spline::TMesh& mesh, const spline::Space& space, const Net& net, Errors Resolution::*which) {
+    const FieldAt bump = [&](const spline::Site& site) { return Vec3(std::sin(3 * value(space, net, site)[0]), 0, 0); };
+    double sum = 0;
+    for (const auto& element : resolution(mesh, space, net, net, bump)) sum += (element[0].*which).load + (element[1].*which).load;
+    return sum / static_cast<double>(spline::elements(mesh).tiles.size());
+  };
+  const double was = errors(coarse, before, rest, &Resolution::errors);
+  EXPECT_NEAR(errors(fine, after, same, &Resolution::merged), was, 0.03 * was);  // edges in the middle of an element are looked at too
+  EXPECT_NEAR(errors(coarse, before, rest, &Resolution::merged), 16 * was, 1e-12 * was);
 }
 
 struct PolarSphere {
@@ -85,8 +107,8 @@ TEST(Resolution, OfAPolarMeshIsNoneWhereTheShapeIsKeptAndFiniteAtThePoles) {
     EXPECT_GT(found[e][1].length, 0.2);
     EXPECT_GT(found[e][0].length, at_pole ? 0.15 : 0.2);  // of the side that is not the pole
     // sin(x) has the fourth difference 16 sin(d/2)^4 sin(x): below d^4 for d = pi/8 along a meridian, pi/6 around.
-    EXPECT_LT(found[e][0].load, std::pow(3.15 / 6, 4) / 384);
-    EXPECT_LT(found[e][1].load, 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not quite even
+    EXPECT_LT(found[e][0].errors.load, std::pow(3.15 / 6, 4) / 384);
+    EXPECT_LT(found[e][1].errors.load, 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not quite even
   }
 }
 
