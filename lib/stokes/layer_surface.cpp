@@ -76,6 +76,8 @@ LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options
       self_field(space, how) {}
 
 void LayerSurface::place(const Net& x) {
+  if (x.rows() == placed_.rows() && x == placed_) return;
+  placed_ = x;
   panels.bezier(x, bezier);
   node_values(panels, bezier, node);
   if (options.rule == "adaptive") near_field.update(bezier);

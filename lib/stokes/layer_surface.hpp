@@ -22,7 +22,7 @@ class LayerSurface {
   /// `steep`: near rules for a kernel like 1 / r^2. `order`: Gauss points a direction of the far rule; 0: what targets on the surface need.
   LayerSurface(const spline::Space& space, const quadrature::Options& options, bool steep = false, int order = 0);
 
-  /// Takes a shape.
+  /// Takes a shape; the one that it has already, at no cost.
   void place(const Net& x);
 
   /// Collocation points of the shape.
@@ -51,6 +51,7 @@ class LayerSurface {
   std::vector<double> node[3];  ///< far nodes
 
  private:
+  Net placed_;
   std::vector<int> near_;
 };
 
