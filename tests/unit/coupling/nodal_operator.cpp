@@ -31,7 +31,8 @@ struct Fixture {
     const Eigen::SparseMatrix<double> sites = collocation_matrix(space);
     const Eigen::VectorXd weights = mass.update(sphere) * ones, areas = mass.update(x) * ones;
     NodalOperator nodal;
-    nodal.assemble(own, {sites * x, sites, weights, areas}, reach, [&](std::span<const int> some, stokes::Rows<float>& rows) {
+    const NodalOperator::Surface surface{sites * x, sites, weights, areas, surface::Symmetry(space.n_points)};
+    nodal.assemble(own, surface, reach, [&](std::span<const int> some, stokes::Rows<float>& rows) {
       layer.assemble(x, stokes::Measure::reference, some, rows);
     });
     Net u = Net::Zero(space.n_points, 3);
