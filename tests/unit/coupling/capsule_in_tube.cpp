@@ -52,6 +52,7 @@ struct Confined {
     parameters.law = membrane::NeoHookean{10};
     parameters.solvers.tube = form;
     parameters.solvers.tolerance = 1e-11;
+    parameters.quadrature.tolerance = 1e-5;  // differences of velocities are looked at
     TubeParameters in_tube;
     in_tube.viscosity = 1.3;
     in_tube.viscosity_ratio = viscosity_ratio;
