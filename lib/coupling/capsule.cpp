@@ -294,7 +294,7 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const
 void Capsule::freeze(const Net& x) {
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
-  const auto assemble = [&](std::span<const int> targets, stokes::Rows<float>& rows) {
+  const auto assemble = [&](std::span<const int> targets, auto& rows) {
     layer_.assemble(x, stokes::Measure::reference, targets, rows);
   };
   if (parameters_.solvers.frozen_operator == "nodal") {

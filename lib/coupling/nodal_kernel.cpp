@@ -7,16 +7,16 @@ namespace tanktread::coupling {
 
 namespace {
 
-using Tile = float __attribute__((vector_size(nodal_tile * sizeof(float))));
+using Tile = double __attribute__((vector_size(nodal_tile * sizeof(double))));
 
-Tile load(const float* a) {
+Tile load(const double* a) {
   Tile t;
   std::memcpy(&t, a, sizeof t);
   return t;
 }
 
-float sum(const Tile& t) {
-  float s = 0;
+double sum(const Tile& t) {
+  double s = 0;
   for (int l = 0; l < nodal_tile; ++l) s += t[l];
   return s;
 }
@@ -29,7 +29,7 @@ Tile inverse_root(const Tile& a) {
 
 }  // namespace
 
-void nodal_sum(int n, const float* const (&node)[3], const float* const (&force)[3], const float* x0, float* u) {
+void nodal_sum(int n, const double* const (&node)[3], const double* const (&force)[3], const double* x0, double* u) {
   Tile sums[3 * nodal_block] = {};
   for (int k = 0; k < n; k += nodal_tile) {
     const Tile x = load(node[0] + k), y = load(node[1] + k), z = load(node[2] + k);

@@ -30,7 +30,7 @@ ByRows rows_of(const ByRows& matrix, const std::vector<int>& wanted) {
 
 }  // namespace
 
-void NodalOperator::assemble(const std::vector<int>& targets, const Surface& surface, double reach, const FrozenOperator::Assemble& assemble) {
+void NodalOperator::assemble(const std::vector<int>& targets, const Surface& surface, double reach, const Assemble& assemble) {
   constexpr std::size_t at_a_time = 64;
   targets_ = targets;
   const Eigen::Index n = surface.sites.rows(), padded = (n + nodal_tile - 1) / nodal_tile * nodal_tile;
@@ -44,11 +44,11 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   for (int c = 0; c < 3; ++c) {
     node_[c].assign(static_cast<std::size_t>(padded), 0);
     force_[c].assign(static_cast<std::size_t>(padded), 0);
-    for (Eigen::Index b = 0; b < n; ++b) node_[c][static_cast<std::size_t>(b)] = static_cast<float>(surface.sites(b, c));
+    for (Eigen::Index b = 0; b < n; ++b) node_[c][static_cast<std::size_t>(b)] = surface.sites(b, c);
   }
   blocks_.clear();
   first_block_.assign(1, 0);
-  stokes::Rows<float> rows;
+  stokes::Rows<double> rows;
   for (std::size_t first = 0; first < targets.size(); first += at_a_time) {
     const std::span<const int> some(targets.data() + first, std::min(at_a_time, targets.size() - first));
     assemble(some, rows);
@@ -57,7 +57,7 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
 }
 
 /// K_iC of one target.
-void NodalOperator::correct(int target, const Surface& surface, double reach, const stokes::Rows<float>& rows, Eigen::Index row) {
+void NodalOperator::correct(int target, const Surface& surface, double reach, const stokes::Rows<double>& rows, Eigen::Index row) {
   const Vec3 x0 = surface.sites.row(target).transpose();
   for (int point = 0; point < surface.sites.rows(); ++point) {
     if ((surface.sites.row(point).transpose() - x0).squaredNorm() > reach * reach * surface.areas[point]) continue;
@@ -66,7 +66,7 @@ void NodalOperator::correct(int target, const Surface& surface, double reach, co
       rule += weights_[entry.row()] * entry.value() * stokeslet(surface.sites.row(entry.row()).transpose() - x0);
     Block block{point, {}};
     for (int c = 0; c < 6; ++c)
-      block.a[c] = static_cast<float>(rows(row + upper[c][0], 3 * point + upper[c][1]) - rule(upper[c][0], upper[c][1]));
+      block.a[c] = rows(row + upper[c][0], 3 * point + upper[c][1]) - rule(upper[c][0], upper[c][1]);
     blocks_.push_back(block);
   }
   first_block_.push_back(blocks_.size());
@@ -78,15 +78,15 @@ void NodalOperator::spread(const Net& f) const {
   for (std::size_t b = 0; b < row_.size(); ++b)
     for (int c = 0; c < 3; ++c) {
       const auto node = static_cast<Eigen::Index>(b);
-      force_[c][b] = static_cast<float>(weights_[node] * symmetry_.signs()(node, c) * values(row_[b], c));
+      force_[c][b] = weights_[node] * symmetry_.signs()(node, c) * values(row_[b], c);
     }
 }
 
 void NodalOperator::apply(const Net& f, Net& u) const {
   spread(f);
-  const float* const node[3] = {node_[0].data(), node_[1].data(), node_[2].data()};
-  const float* const force[3] = {force_[0].data(), force_[1].data(), force_[2].data()};
-  float x0[3 * nodal_block], sums[3 * nodal_block];
+  const double* const node[3] = {node_[0].data(), node_[1].data(), node_[2].data()};
+  const double* const force[3] = {force_[0].data(), force_[1].data(), force_[2].data()};
+  double x0[3 * nodal_block], sums[3 * nodal_block];
   for (std::size_t first = 0; first < targets_.size(); first += nodal_block) {
     const std::size_t used = std::min<std::size_t>(nodal_block, targets_.size() - first);
     for (std::size_t l = 0; l < nodal_block; ++l)  // idle lanes repeat the last target

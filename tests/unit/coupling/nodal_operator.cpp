@@ -32,7 +32,7 @@ struct Fixture {
     const Eigen::VectorXd weights = mass.update(sphere) * ones, areas = mass.update(x) * ones;
     NodalOperator nodal;
     const NodalOperator::Surface surface{sites * x, sites, weights, areas, surface::Symmetry(space.n_points)};
-    nodal.assemble(own, surface, reach, [&](std::span<const int> some, stokes::Rows<float>& rows) {
+    nodal.assemble(own, surface, reach, [&](std::span<const int> some, stokes::Rows<double>& rows) {
       layer.assemble(x, stokes::Measure::reference, some, rows);
     });
     Net u = Net::Zero(space.n_points, 3);
