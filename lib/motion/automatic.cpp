@@ -80,7 +80,12 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   if (bytes > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
     choice.scheme = rkc2;
   } else {
+    const bool first = choice.points == 0;
     measure(dynamics, state, choice);
+    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would be bound already
+      choice.scheme = tr_bdf2;
+      choice.then = choice.stiffness;
+    }
   }
 
   // The scheme sees its own part of history and memory only.

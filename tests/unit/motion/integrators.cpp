@@ -199,6 +199,16 @@ TEST(Integrators, AutoIsExplicitWhereThatIsStableAndImplicitWhereItIsNot) {
   }
 }
 
+TEST(Integrators, AutoTakesAFirstStepThatAnExplicitOneCannot) {
+  for (const double rate : {1.0, 1e4}) {
+    Model model(rate);
+    State state = start(1e-2);
+    integrator(with("auto"))->advance(model, state, 1);
+    EXPECT_EQ(model.solves > 0, rate > 1e3);
+    EXPECT_NEAR(state.time, 1e-2, 1e-12) << rate;
+  }
+}
+
 TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
   TimeOptions options = with("auto");
   options.largest_operator = 1e-9;  // one point takes 12 bytes
