@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "quadrature/ellipse.hpp"
 #include "quadrature/gauss.hpp"
@@ -59,6 +60,9 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
 /// Parts below this share of the element's side are not cut again: the target is as good as on the element.
 constexpr double smallest = 1e-8;
 
+/// Far more than a target on the element takes (some hundreds): the shape is beyond repair.
+constexpr int most_parts = 100'000;
+
 }  // namespace
 
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
@@ -66,11 +70,15 @@ void graded(std::span<const double> bezier, int degree, const Vec3& target, cons
   const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
   const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
   std::vector<Part> parts{{0, 0, 1, 1}};
-  while (!parts.empty()) {
+  for (int looked_at = 0; !parts.empty(); ++looked_at) {
     const Part p = parts.back();
     parts.pop_back();
     const auto [flat, bulge] = element.patch(p);
     const Sight seen = sight(flat, target);
+    if (looked_at > most_parts || !std::isfinite(bulge) || !std::isfinite(seen.distance)) {
+      rule.add(p.s, p.t, std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
     const double error = demand.error(flat.area(), std::max(seen.distance, smallest * flat.u.norm()));
     const int n_s = std::max(order_for(error, seen.rho_u), order_for(demand.tolerance, rho_smooth / p.width));
     const int n_t = std::max(order_for(error, seen.rho_v), order_for(demand.tolerance, rho_smooth / p.height));

@@ -24,7 +24,8 @@ struct Demand {
 
 /// Adds to `rule` tensor Gauss rules on parts of the unit square, halved along the longer physical edge until moderate orders are
 /// enough: the order of each direction from the Bernstein ellipse of the part.
-/// `bezier`: Bezier points of the element, component c of point b at c (p + 1)^2 + b.
+/// `bezier`: Bezier points of the element, component c of point b at c (p + 1)^2 + b. A weight that is no number ends the rule of an element that is
+/// not finite, or so crumpled that no reasonable number of parts is enough.
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule);
 
 }  // namespace tanktread::quadrature

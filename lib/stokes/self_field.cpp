@@ -15,8 +15,8 @@ namespace {
 /// Radial points for a tolerance. The integrand is smooth along a ray; measured on the cube mesh, n = 3 and up (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
-/// Rules kept at a time: metrics come and go in a long run.
-constexpr std::size_t most_tables = 1000;
+/// Rules kept at a time, and their points, of 136 bytes: metrics come and go in a long run, and a wild shape asks for rules of 25,000 points.
+constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
 
 quadrature::Rule whole_square(int order) {
   const auto& gauss = quadrature::tensor_gauss(order);
@@ -95,10 +95,12 @@ quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degre
 }
 
 const PointTable& SelfField::made(const SelfPair& pair, int degree) {
-  if (tables_.size() > most_tables) forget_rules();
-  auto& table = tables_[{degree, pair.s, pair.t, pair.shear, pair.orders}];
-  if (table) return *table;
-  table = std::make_unique<PointTable>();
+  const Key key{degree, pair.s, pair.t, pair.shear, pair.orders};
+  if (const auto found = tables_.find(key); found != tables_.end()) return *found->second;
+  std::size_t points = 0;
+  for (const auto& [other, kept] : tables_) points += static_cast<std::size_t>(kept->points);
+  if (tables_.size() > most_tables || points > most_points) forget_rules();
+  auto& table = tables_[key] = std::make_unique<PointTable>();
   const auto& [s, t, shear, orders] = std::tie(pair.s, pair.t, pair.shear, pair.orders);
   if (options_.rule == "fixed")
     tabulate(quadrature::lachat_watson(s, t, options_.points), degree, *table);

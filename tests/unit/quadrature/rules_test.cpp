@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <vector>
@@ -105,6 +106,15 @@ TEST(Graded, CostsTheLogarithmOfTheDistance) {
     return rule.size();
   };
   EXPECT_LT(points(1e-6) - points(1e-4), 1.5 * (points(1e-4) - points(1e-2)));
+}
+
+TEST(Graded, EndsOnAnElementThatIsNotFiniteOrTooCrumpledForAnyRule) {
+  for (const double size : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 1e200}) {  // 1e200: squares overflow
+    Rule rule;
+    graded(rectangle(1, size), 1, Vec3(0.4, 0.3, 0.1), {.allowed = 1e-8, .tolerance = 1e-8}, rule);
+    EXPECT_TRUE(std::isnan(rule.weights.back())) << size;
+    EXPECT_LT(rule.size(), 1e6);
+  }
 }
 
 TEST(Ellipse, TellsTheErrorOfGauss) {
