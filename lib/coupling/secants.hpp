@@ -27,7 +27,6 @@ class Secants {
   /// E w.
   Net operator()(const Net& w) const;
 
-  bool empty() const { return pairs_.empty(); }
   const std::vector<Net>& pairs() const { return pairs_; }
 
  private:

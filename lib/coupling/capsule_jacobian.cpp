@@ -1,0 +1,128 @@
+// The Jacobian of Capsule: frozen operators, the membrane's tangent, and the systems of an implicit step.
+
+#include <utility>
+
+#include "coupling/capsule.hpp"
+#include "coupling/collocation.hpp"
+
+namespace tanktread::coupling {
+
+void Capsule::freeze(const Net& x) {
+  const auto clock = phases_.time("assembly");
+  ++work_.assemblies;
+  const auto assemble = [&](std::span<const int> targets, auto& rows) {
+    layer_.assemble(x, stokes::Measure::reference, targets, rows);
+  };
+  if (parameters_.solvers.frozen_operator == "nodal") {
+    const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
+    const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
+    nodal_.assemble(own_points_, {sites * x, sites, row_sums(unstressed_), row_sums(x), parameters_.symmetry}, 3, assemble);
+  } else {
+    frozen_.assemble(own_points_, space_.n_points, assemble);
+  }
+  if (tube_) {
+    place(x);
+    tube_->freeze();
+  }
+  if (!double_layer_) return;
+  frozen_double_.assemble(own_points_, space_.n_points,
+                          [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(x, targets, rows); });
+}
+
+void Capsule::linearise(const Net& x) {
+  const auto clock = phases_.time("tangent");
+  ++work_.tangents;
+  tangent_.update(x, own_elements_);
+  if (interface_) interface_->linearise(x);
+  if (!tube_) return;
+  gradients_ = flow_.gradients(sites_ * x);
+  if (interface_) {
+    linearised_ = x;
+    linearised_flux_ = flux_vector(x);
+  }
+}
+
+/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
+Net Capsule::energy_part(const Net& delta) {
+  Net h(delta.rows(), 3), u(delta.rows(), 3);
+  tangent_.apply(delta, h);
+  replicate(h);
+  const Net f = solved(mass_.reference(), std::move(h));
+  if (nodal_.empty())
+    frozen_.apply(f, u);
+  else
+    nodal_.apply(f, u);
+  replicate(u);
+  if (tube_) {
+    u = tube_->frozen_response(f) - u / parameters_.viscosity;
+    const Net at_sites = sites_ * delta;
+    for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
+    return solved(collocation_, std::move(u));
+  }
+  return delta * flow_.gradient(Vec3::Zero()).transpose() - solved(collocation_, std::move(u)) / parameters_.viscosity;
+}
+
+/// B v with B frozen.
+Net Capsule::frozen_viscous(const Net& v) {
+  if (!double_layer_) return v;
+  Net hv(v.rows(), 3);
+  frozen_double_.apply(v, hv);
+  replicate(hv);
+  if (!tube_) return viscous(v, hv);
+  return v - collocation_.solve((1 - parameters_.viscosity_ratio) * hv + tube_->frozen_response({}, v));
+}
+
+/// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
+Net Capsule::fluid_velocity_change(const Net& delta) {
+  const Net rhs = energy_part(delta);
+  if (!double_layer_) return rhs;
+  const Eigen::Index n = delta.rows();
+  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = frozen_viscous(Eigen::Map<const Net>(in, n, 3)); };
+  Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
+  const Eigen::VectorXd right = v;
+  work_.solver_iterations += inner_krylov_.solve(apply, right, v, 1e-3).iterations;
+  return Eigen::Map<const Net>(v.data(), n, 3);
+}
+
+/// Material motion: (B - shift (B J + E)) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6).
+Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
+  const auto clock = phases_.time("implicit solve");
+  const Eigen::Index n = r.rows();
+  const auto apply = [&](const double* in, double* out) {
+    const Net delta = Eigen::Map<const Net>(in, n, 3);
+    Eigen::Map<Net> result(out, n, 3);
+    if (interface_)
+      result = delta - shift * (interface_change(fluid_velocity_change(delta), delta) + secants(delta));
+    else
+      result = frozen_viscous(delta) - shift * (energy_part(delta) + secants(delta));
+  };
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
+  const Net rhs = interface_ ? r : frozen_viscous(r);
+  const SolveReport report = krylov_.solve(apply, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
+  ++work_.solves;
+  work_.solver_iterations += report.iterations;
+  return symmetric(Eigen::Map<const Net>(solution.data(), n, 3));
+}
+
+Net Capsule::missed(const Net& dv, const Net& delta) {
+  const auto clock = phases_.time("implicit solve");
+  if (interface_) return dv - interface_change(fluid_velocity_change(delta), delta);
+  return frozen_viscous(dv) - energy_part(delta);
+}
+
+Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
+  if (frozen_.empty() && nodal_.empty()) return difference(x, v, delta);
+  const auto clock = phases_.time("stiffness");
+  linearise(x);
+  const Net dv = fluid_velocity_change(delta);
+  return symmetric(interface_ ? interface_change(dv, delta) : dv);
+}
+
+/// Change of the velocity of an interface's control points.
+Net Capsule::interface_change(const Net& dv, const Net& delta) {
+  if (!tube_) return interface_->derivative(dv, delta);
+  const Eigen::RowVector3d carried = drift(linearised_, linearised_flux_, dv);
+  return interface_->derivative(dv.rowwise() - carried, delta).rowwise() + carried;
+}
+
+}  // namespace tanktread::coupling
