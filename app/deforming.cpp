@@ -113,15 +113,12 @@ class Deforming : public Moving {
   std::vector<output::Field> fields(const output::Nodes& nodes, const motion::State& state, const Net& load) const {
     const std::vector<surface::Jet> before = nodes.jets(body_->unstressed), now = nodes.jets(state.x);
     const auto n = static_cast<Eigen::Index>(now.size());
-    const Net at_nodes = nodes.values(load);
-    std::vector<output::Field> fields;
-    fields.push_back({"load", at_nodes});
-    if (capsule_->measure() == stokes::Measure::reference) {
-      Net traction = at_nodes;  // the load per present area
+    Net traction = nodes.values(load);
+    std::vector<output::Field> fields{{"load", traction}};
+    if (capsule_->measure() == stokes::Measure::reference)  // a load per unstressed area
       for (Eigen::Index i = 0; i < n; ++i)
         traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
-      fields.push_back({"traction", traction});
-    }
+    fields.push_back({"traction", traction});
     fields.push_back({"displacement", nodes.values(state.x - body_->unstressed)});
     if (!state.history.empty()) fields.push_back({"velocity", nodes.values(state.history.front())});
     const Eigen::MatrixX2d tensions = membrane::tensions(body_->law, before, now);

@@ -21,7 +21,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", help="directory of a run's results")
     parser.add_argument("-o", "--output", default="animation.gif", metavar="FILE", help="the animation (default: %(default)s)")
-    parser.add_argument("--field", default="traction", help="field that colours the surface (default: %(default)s, or the load where there is none)")
+    parser.add_argument("--field", default="traction", help="field that colours the surface (default: %(default)s)")
     parser.add_argument("--view", type=float, nargs=2, default=[-75, 20], metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     parser.add_argument("--rate", type=float, default=8, help="frames a second (default: %(default)s)")
     parser.add_argument("--width", type=int, default=720, help="of the animation, in pixels (default: %(default)s)")
@@ -30,8 +30,8 @@ def main():
 
     run = read.run(arguments.results)
     shots = run.snapshots() if arguments.frame is None else [run.snapshot_at(arguments.frame)]
-    field = arguments.field if arguments.field in shots[0].fields else "load"
-    if field != arguments.field and arguments.field != "traction":
+    field = arguments.field
+    if field not in shots[0].fields:
         sys.exit(f"{shots[0].path} holds no field {arguments.field}; there are: {', '.join(sorted(shots[0].fields))}")
     film = Film(run, run.snapshots(), field, arguments.view)
     if arguments.frame is not None:
