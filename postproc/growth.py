@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """How a velocity evaluation grows with the mesh: seconds by part, interactions and bytes, with fitted exponents.
 
-    build/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json
+    build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json
     postproc/growth.py growth.json
 
 Exponents are fitted by least squares to the meshes from --from control points on.
@@ -83,7 +83,7 @@ def main():
         axis.legend(loc="upper left")
     left.set_ylim(top=left.get_ylim()[1] * 1000)  # room for the legend
     error = max(one["far error"] for one in trees)
-    figure.supxlabel("\\$ build/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json; postproc/growth.py growth.json\n"
+    figure.supxlabel("\\$ build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json; postproc/growth.py growth.json\n"
                      f"a capsule in shear on one core, tolerance 1e-5; far sum against the dense one: at most {error:.1e} of the largest velocity",
                      x=0.01, ha="left", fontsize=7.5)
     style.save(figure, arguments.output)

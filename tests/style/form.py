@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What a reader expects of every file: lines of at most 150 characters in C++ (140 is the aim), #pragma once in headers, Debian's Python in scripts,
-bash that stops at the first error.
+scripts that can be started, bash that stops at the first error.
 
 Usage: form.py <source directory>
 """
@@ -24,6 +24,8 @@ def script_errors(path, text):
     executable = os.access(path, os.X_OK)
     if path.suffix == ".py" and (executable or first.startswith("#!")) and first != "#!/usr/bin/python3":
         yield f"{path}: starts with '{first}' instead of #!/usr/bin/python3"
+    if first.startswith("#!") and path.parent.name == "postproc" and not executable:
+        yield f"{path}: not executable"
     if first.startswith("#!") and "bash" in first and "set -euo pipefail" not in text:
         yield f"{path}: no set -euo pipefail"
 
