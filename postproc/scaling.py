@@ -1,9 +1,15 @@
 #!/usr/bin/python3
 """How the phases of a run scale with the number of ranks.
 
-    postproc/scaling.py [deck] [--ranks 2] [--set "Section/key=value"]
+    postproc/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
 
-Runs the deck on one rank and on several, in turns, and prints seconds a phase and their ratio: medians over the repetitions, of the first rank.
+Runs the deck on one rank, on several, and as that many one-rank runs at the same time, in turns, and prints medians over the repetitions:
+
+    ratio       seconds a phase of one rank alone over those of the first of several ranks
+    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side. No program scales better
+                there: cores that share memory, cache, power or a host slow each other down
+    efficiency  ratio over capacity
+
 Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; the last lines say whether both runs did the same.
 The machine should have a free core for every rank.
 """
@@ -21,23 +27,28 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
-def summary(program, deck, settings, ranks):
-    """Text of summary.yaml after a run."""
+def summaries(program, deck, settings, ranks, copies):
+    """Text of summary.yaml after each of some runs at the same time."""
     with tempfile.TemporaryDirectory() as where:
-        words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output", where]
-        for setting in settings:
-            words += ["--set", setting]
-        done = subprocess.run(words, capture_output=True, text=True, env=os.environ | ENVIRONMENT, check=False)
-        path = pathlib.Path(where) / "summary.yaml"
-        if not path.exists():
-            sys.exit(done.stderr.strip() or "the run wrote no summary")
-        return path.read_text()
+        places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
+        runs = []
+        for place in places:
+            words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output", str(place)]
+            for setting in settings:
+                words += ["--set", setting]
+            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=os.environ | ENVIRONMENT))
+        said = [run.communicate()[1] for run in runs]
+        for place, error in zip(places, said):
+            if not (place / "summary.yaml").exists():
+                sys.exit(error.strip() or "the run wrote no summary")
+        return [(place / "summary.yaml").read_text() for place in places]
 
 
 def seconds(text):
-    """By phase."""
+    """By phase, and of all of them."""
     block = re.search(r"^seconds:\n((?:  .*\n)*)", text, re.M)[1]
-    return {name: float(value) for name, value in re.findall(r"^  (.+): (\S+)$", block, re.M)}
+    times = {name: float(value) for name, value in re.findall(r"^  (.+): (\S+)$", block, re.M)}
+    return times | {"total": sum(times.values())}
 
 
 def value(text, key):
@@ -51,23 +62,32 @@ def main():
     parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
     parser.add_argument("--set", dest="settings", action="append", metavar="KEY=VALUE",
                         help="(default: 24 elements a side, to time 0.4)")
+    parser.add_argument("--capacity", action=argparse.BooleanOptionalAction, default=True, help="measure what the machine gives (default: do)")
     parser.add_argument("--program", default=SOURCE / "build/release/app/tanktread")
     arguments = parser.parse_args()
     settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]
-    runs = {1: [], arguments.ranks: []}
+    many = arguments.ranks
+    kinds = {"one": (1, 1), "many": (many, 1)} | ({"side": (1, many)} if arguments.capacity else {})
+    runs = {kind: [] for kind in kinds}
     for _ in range(arguments.repeat):
-        for ranks, texts in runs.items():
-            texts.append(summary(arguments.program, arguments.deck, settings, ranks))
-    one, many = ([seconds(text) for text in runs[ranks]] for ranks in (1, arguments.ranks))
-    for times in one + many:
-        times["total"] = sum(times.values())
-    print(f"{'seconds':>18}{'1 rank':>12}{f'{arguments.ranks} ranks':>12}{'ratio':>8}")
-    for phase in one[0]:
-        first, last = (statistics.median(times.get(phase, 0) for times in kind) for kind in (one, many))
-        print(f"{phase:>18}{first:>12.4g}{last:>12.4g}{first / last if last > 0 else 0:>8.2f}")
+        for kind, (ranks, copies) in kinds.items():
+            runs[kind] += summaries(arguments.program, arguments.deck, settings, ranks, copies)
+    times = {kind: [seconds(text) for text in texts] for kind, texts in runs.items()}
+    titles = ["1 rank", f"{many} ranks", "ratio"] + (["capacity", "efficiency"] if arguments.capacity else [])
+    print(f"{'seconds':>18}" + "".join(f"{title:>11}" for title in titles))
+    for phase in times["one"][0]:
+        middle = {kind: statistics.median(run.get(phase, 0) for run in all_runs) for kind, all_runs in times.items()}
+        if min(middle.values()) <= 0:
+            continue
+        ratio = middle["one"] / middle["many"]
+        line = f"{phase:>18}{middle['one']:>11.4g}{middle['many']:>11.4g}{ratio:>11.2f}"
+        if arguments.capacity:
+            capacity = many * middle["one"] / middle["side"]
+            line += f"{capacity:>11.2f}{ratio / capacity:>11.2f}"
+        print(line)
     for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
-        print(f"{key:>24}{value(runs[1][0], key):>16.10g}{value(runs[arguments.ranks][0], key):>16.10g}")
-    difference = abs(value(runs[1][0], "taylor_inertia") - value(runs[arguments.ranks][0], "taylor_inertia"))
+        print(f"{key:>24}{value(runs['one'][0], key):>16.10g}{value(runs['many'][0], key):>16.10g}")
+    difference = abs(value(runs["one"][0], "taylor_inertia") - value(runs["many"][0], "taylor_inertia"))
     print(f"{'difference of D':>24}{difference:>16.1e}")
 
 
