@@ -9,6 +9,7 @@
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
+#include "coupling/departure.hpp"
 #include "coupling/ranks.hpp"
 #include "deck/document.hpp"
 
@@ -103,10 +104,11 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// The whole program on one rank; only the first one speaks.
-int guarded(int argc, char** argv, bool speaks) {
-  const auto report = [speaks](const char* text, Exit code) {
-    if (speaks) std::cerr << "tanktread: " << one_line(text) << std::endl;
+/// The whole program on one rank; only the first one speaks. `message`: what an error is, for others.
+int guarded(int argc, char** argv, bool speaks, std::string& message) {
+  const auto report = [speaks, &message](const char* text, Exit code) {
+    message = one_line(text);
+    if (speaks) std::cerr << "tanktread: " << message << std::endl;
     return code;
   };
   try {
@@ -132,5 +134,8 @@ int guarded(int argc, char** argv, bool speaks) {
 
 int main(int argc, char** argv) {
   const coupling::Session session(&argc, &argv);
-  return guarded(argc, argv, session.rank() == 0);
+  std::string message;
+  const int code = guarded(argc, argv, session.rank() == 0, message);
+  coupling::leave_together(code, message);
+  return code;
 }

@@ -1,6 +1,7 @@
 #include "app/results.hpp"
 
 #include <cstdio>
+#include <stdexcept>
 #include <utility>
 
 #include "app/duct_picture.hpp"
@@ -11,6 +12,7 @@
 #include "output/file.hpp"
 #include "output/progress.hpp"
 #include "output/state.hpp"
+#include "spline/iga.hpp"
 
 namespace tanktread {
 
@@ -66,20 +68,31 @@ std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const o
   return body;
 }
 
+Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
+  return {output::stored_state(checkpoint), stored_standing(checkpoint), stored_body(scene, first, checkpoint)};
+} catch (const std::out_of_range&) {
+  throw UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
+}
+
 }  // namespace
 
-/// The first rank acts; if it fails, every rank throws.
+/// The first rank acts; if it fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else.
 template <class Write>
 void Results::write(const Write& action) {
   std::string error;
+  bool mistake = false;
   if (writes_) {
     try {
       action();
     } catch (const std::exception& exception) {
       error = exception.what();
+      mistake = dynamic_cast<const UserError*>(&exception) != nullptr;
     }
   }
-  if (ranks_.any(!error.empty())) throw RunFailure(error.empty() ? "the first rank could not write" : error);
+  if (!ranks_.any(!error.empty())) return;
+  if (error.empty()) error = "the first rank could not write";
+  if (ranks_.any(mistake)) throw UserError(error);
+  throw RunFailure(error);
 }
 
 std::map<std::string, std::string> Results::origin() const {
@@ -91,20 +104,20 @@ std::map<std::string, std::string> Results::origin() const {
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns,
                  const coupling::Ranks& ranks)
     : scene_(scene), request_(request), body_(&body), columns_(columns), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
-  if (!writes_) return;
-  if (request.resume) {
-    output::tidy_directory(directory_);
-  } else {
-    output::start_directory(directory_);
-    if (scene.tube.outline)  // a run goes on without its deck
-      std::filesystem::copy_file(*scene.tube.outline, directory_ / std::filesystem::path(*scene.tube.outline).filename(),
-                                 std::filesystem::copy_options::overwrite_existing);
-    if (body.duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body.duct));
-    record_.emplace(directory_ / "run.h5", request.deck_text, origin());
-    series_.emplace(directory_);
-    declare_columns();
-  }
+  write([&] { request.resume ? output::tidy_directory(directory_) : begin(); });
   remesh(body);
+}
+
+/// The files of a new run.
+void Results::begin() {
+  output::start_directory(directory_);
+  if (scene_.tube.outline)  // a run goes on without its deck
+    std::filesystem::copy_file(*scene_.tube.outline, directory_ / std::filesystem::path(*scene_.tube.outline).filename(),
+                               std::filesystem::copy_options::overwrite_existing);
+  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
+  record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
+  series_.emplace(directory_);
+  declare_columns();
 }
 
 void Results::declare_columns() {
@@ -120,15 +133,15 @@ std::optional<Resumed> Results::resumed() {
   if (!request_.resume) return {};
   const auto saved = output::newest_checkpoint(directory_);  // every rank reads it: one file, read-only
   if (!saved) throw UserError("--resume " + directory_.string() + ": there is no checkpoint in this directory");
-  Resumed resumed{output::stored_state(saved->checkpoint), stored_standing(saved->checkpoint), stored_body(scene_, *body_, saved->checkpoint)};
+  Resumed resumed = stored_run(scene_, *body_, saved->checkpoint, directory_);
   last_saved_ = resumed.standing.step;
-  if (writes_) {
+  write([&] {
     record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
     record_->truncate(static_cast<size_t>(resumed.standing.step) + 1);
     record_->describe(request_.deck_text, origin());
     declare_columns();
     series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_));
-  }
+  });
   return resumed;
 }
 
@@ -139,6 +152,10 @@ void Results::record(const std::vector<double>& row) {
 void Results::warn(const std::string& sentence) {
   warnings_.push_back(sentence);
   if (writes_) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
+}
+
+void Results::write_surface(const Net& surface) {
+  write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
 }
 
 void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
@@ -164,7 +181,8 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
 
 int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,
                    const output::Entries<Vec3>& vectors) {
-  const std::string missed = finish(plan, counts, phases, vectors);
+  std::string missed;
+  write([&] { missed = finish(plan, counts, phases, vectors); });
   if (writes_) {
     if (!request_.quiet) std::fputs(output::closing_table(phases, counts, directory_).c_str(), stdout);
     const std::string line = remark + (remark.empty() || missed.empty() ? "" : "; ") + missed;
@@ -176,7 +194,6 @@ int Results::close(const output::Entries<std::string>& plan, const output::Entri
 /// Writes the summary; returns what was expected and missed, in one line.
 std::string Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
                             const output::Entries<Vec3>& vectors) {
-  if (!writes_) return {};
   output::Summary summary;
   deck::SeriesTable table;
   for (const output::Series& series : record_->series()) {

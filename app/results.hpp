@@ -8,17 +8,17 @@
 
 #include "app/body.hpp"
 #include "app/moving.hpp"
+#include "app/scene.hpp"
+#include "app/simulation.hpp"
 #include "motion/integrator.hpp"
 #include "output/lagrange.hpp"
 #include "output/run_record.hpp"
 #include "output/snapshot_series.hpp"
-#include "app/scene.hpp"
-#include "app/simulation.hpp"
 
 namespace tanktread {
 
-/// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw
-/// RunFailure when the disk refuses.
+/// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw: RunFailure when the
+/// disk refuses, UserError where a run cannot begin in its directory.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns, const coupling::Ranks& ranks);
@@ -38,6 +38,9 @@ class Results {
   /// Checkpoint of the present step and a picture, of the same moment or of one within the step.
   void save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
 
+  /// The surface as Bezier-extraction text, `surface.iga`.
+  void write_surface(const Net& surface);
+
   /// Holds the record against `Expect`, writes the summary and the closing table. `vectors`: for `final`, made of the last row. Returns the exit
   /// code: 0 every expectation was met, 1 one was missed.
   /// `remark`: why the run ended before its time, if it did; it shares the one line on standard error with the expectations missed.
@@ -51,6 +54,7 @@ class Results {
  private:
   template <class Write>
   void write(const Write& action);
+  void begin();
   void declare_columns();
   void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
   std::string finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,

@@ -19,7 +19,6 @@
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
 #include "output/progress.hpp"
-#include "spline/iga.hpp"
 
 namespace tanktread {
 
@@ -219,10 +218,7 @@ class Run {
   }
 
   int end(const std::string& reason) {
-    if (scene_.output.surface_text) {
-      const Portrait portrait = particle_->portrait(state_);
-      if (ranks_.rank() == 0) spline::write_iga(results_.directory() / "surface.iga", particle_->body().space, portrait.surface);
-    }
+    if (scene_.output.surface_text) results_.write_surface(particle_->portrait(state_).surface);
     const output::Entries<long> work = counts(standing_, particle_->work(), particle_->kernel_evaluations());
     std::ostringstream remark;
     if (!reason.empty()) remark << reason << " at time " << state_.time;

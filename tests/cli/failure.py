@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# ranks: 2
 # A run that fails, is stopped or runs out of time leaves a checkpoint from which it goes on with another scheme or tolerance.
 import pathlib
 import signal
@@ -66,6 +67,27 @@ def a_run_stops_at_its_wall_clock_limit():
     steps = len(series("out", "time"))
     run("--resume", "out", "--quiet")  # the limit is for each part
     check(len(series("out", "time")) > steps, "no step more")
+
+
+def what_only_the_first_rank_meets_ends_all_of_them():
+    pathlib.Path("file").write_text("")
+    said = run(deck(DECK), "--output", "file/out", "--quiet", ranks=2, code=2, timeout=60).stderr
+    ours = [line for line in said.splitlines() if line.startswith("tanktread:")]
+    check(len(ours) == 1 and "file/out cannot be used" in ours[0], said)
+    pathlib.Path("out/run.h5.part").mkdir(parents=True)  # where the record is written first
+    said = run(deck(DECK), "--output", "out", "--quiet", ranks=2, code=3, timeout=60).stderr
+    check(sum(line.startswith("tanktread: cannot write") for line in said.splitlines()) == 1, said)
+
+
+def a_checkpoint_of_another_version_is_refused():
+    import h5py
+
+    run(deck(DECK), "--set", "Time/final time=0.1", "--output", "out", "--quiet")
+    for snapshot in pathlib.Path("out").glob("snapshot_*.hdf"):
+        with h5py.File(snapshot, "r+") as file:
+            del file["checkpoint/numbers/tangents"]
+    said = run("--resume", "out", "--quiet", code=2).stderr
+    check("another version" in said, said)
 
 
 main()
