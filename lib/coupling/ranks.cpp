@@ -20,14 +20,16 @@ using MultiVector = Tpetra::MultiVector<>;
 namespace {
 
 /// A process that no launcher started needs no daemon of Open MPI beside it, which would take a tenth of a second to start, no look for fast
-/// networks, which takes two more, and no look at the machine's devices nor collectives of many: a hundredth each. What the environment says
-/// already stays.
+/// networks, which takes two more, and no look at the machine's devices nor collectives of many: a hundredth each. Without a daemon all runs
+/// of a user would share one directory of Open MPI for temporary files, which the first to end takes from the others; it stays empty, so
+/// there is none. What the environment says already stays.
 void prepare_for_one() {
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK")) return;
   constexpr std::pair<const char*, const char*> settings[] = {{"OMPI_MCA_pml", "ob1"},
                                                               {"OMPI_MCA_btl", "self"},
                                                               {"OMPI_MCA_coll", "self,basic,libnbc"},
+                                                              {"OMPI_MCA_orte_create_session_dirs", "0"},
                                                               {"HWLOC_COMPONENTS", "no_os,stop"},
                                                               {"HWLOC_PLUGINS_PATH", "/"}};
   for (const auto& [name, value] : settings) setenv(name, value, 0);

@@ -2,7 +2,7 @@
 # The command line does what it promises: every option, every exit code, where results go and what is stored with them.
 import pathlib
 
-from harness import SOURCE, check, deck, main, run, summary
+from harness import SOURCE, check, deck, main, run, start, summary
 
 SMALL = """Tanktread:
   Membrane: {capillary number: 0.3}
@@ -25,6 +25,13 @@ def version_and_help_are_printed():
     run("--kokkos-num-devices=1", "--version")
     for option in ("--set", "--output", "--check", "--resume", "--reference", "--quiet", "deck"):
         check(option in text, f"{option} is not in the help")
+
+
+def runs_at_the_same_time_do_not_disturb_one_another():
+    for _ in range(15):
+        for process in [start("--version") for _ in range(6)]:
+            _, said = process.communicate(timeout=60)
+            check(process.returncode == 0 and not said, process.returncode, said)
 
 
 def check_prints_the_effective_deck_and_the_plan_and_writes_nothing():
