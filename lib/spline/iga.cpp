@@ -1,5 +1,7 @@
 #include "spline/iga.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <limits>
@@ -7,12 +9,14 @@
 #include <string>
 
 #include "base/errors.hpp"
-#include "spline/bernstein.hpp"
 #include "spline/closed_surface.hpp"
 
 namespace tanktread::spline {
 
 namespace {
+
+/// What the integrals over the surface and the membrane have rules and room for.
+constexpr int least_degree = 2, largest_degree = 6, most_functions = 64;
 
 /// Words of the file, with the number of the line for messages.
 class Reader {
@@ -63,8 +67,12 @@ class Reader {
 Element read_element(Reader& in, int n_points) {
   Element e;
   const int functions = in.word<int>("the number of functions"), ps = in.word<int>("a degree"), pt = in.word<int>("a degree");
-  if (ps != pt || ps < 1 || ps > max_degree) in.fail("degrees must be equal and between 1 and " + std::to_string(max_degree) + ".");
-  if (functions < 1 || functions > n_points) in.fail("the number of functions must be between 1 and that of the nodes.");
+  if (ps != pt || ps < least_degree || ps > largest_degree)
+    in.fail("degrees must be equal and between " + std::to_string(least_degree) + " and " + std::to_string(largest_degree) + ", but are " +
+            std::to_string(ps) + " and " + std::to_string(pt) + ".");
+  if (functions < 1 || functions > std::min(n_points, most_functions))
+    in.fail("the number of functions must be between 1 and " + std::to_string(std::min(n_points, most_functions)) + ", but is " +
+            std::to_string(functions) + ".");
   e.degree = ps;
   in.need("a list of nodes");
   for (int i = 0; i < functions; ++i) {

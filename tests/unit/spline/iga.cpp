@@ -82,6 +82,18 @@ TEST(Iga, SurfacesWithPolesAreClosedToo) {
   EXPECT_EQ(read_iga(file.path).space.n_points, s.n_points);
 }
 
+/// What read_iga says against a file; "read" if nothing.
+std::string refusal(const std::filesystem::path& file) {
+  try {
+    read_iga(file);
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return "read";
+}
+
+bool says(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
+
 /// The message for a file made from the cube's text by a change.
 std::string complaint(const std::function<void(std::string&)>& change) {
   const TMesh mesh = cube(3);
@@ -90,12 +102,7 @@ std::string complaint(const std::function<void(std::string&)>& change) {
   std::string text = file.text();
   change(text);
   file.write(text);
-  try {
-    read_iga(file.path);
-  } catch (const UserError& e) {
-    return e.what();
-  }
-  return "read";
+  return refusal(file.path);
 }
 
 void replace(std::string& text, const std::string& from, const std::string& to) {
@@ -106,7 +113,6 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 
 TEST(Iga, EveryFaultGetsOneSentence) {
   EXPECT_EQ(complaint([](std::string&) {}), "read");
-  auto says = [](const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; };
   // A missing element, announced and not.
   EXPECT_TRUE(says(complaint([](std::string& t) { t.erase(t.rfind("belem")); }), "elemN says 54 elements, the file has 53"));
   EXPECT_TRUE(says(complaint([](std::string& t) {
@@ -118,6 +124,8 @@ TEST(Iga, EveryFaultGetsOneSentence) {
   EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, "type surface", "type volume"); }), "`surface` expected"));
   EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, "nodeN 56", "nodeN 57"); }), "nodeN and as many nodes"));
   EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, "belem 19 4 4", "belem 19 4 3"); }), "degrees must be equal"));
+  EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, "belem 19 4 4", "belem 19 7 7"); }), "between 2 and 6, but are 7 and 7"));
+  EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, "belem 19 4 4", "belem 65 4 4"); }), "between 1 and 56, but is 65"));
   EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, "belem", "element"); }), "no keyword"));
   EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, " 1\nnode", " 0.5\nnode"); }), "weights must be 1"));
   EXPECT_TRUE(says(complaint([](std::string& t) { t.resize(t.size() / 2); }), "Surface file"));
@@ -143,29 +151,11 @@ TEST(Iga, InvertedElementsAndSurfacesAreRefused) {
   const Scratch file;
   s.elements[7] = turned_over(s.elements[7]);
   write_iga(file.path, s, net);
-  EXPECT_THROW(
-      {
-        try {
-          read_iga(file.path);
-        } catch (const UserError& e) {
-          EXPECT_NE(std::string(e.what()).find("inverted"), std::string::npos);
-          throw;
-        }
-      },
-      UserError);
+  EXPECT_TRUE(says(refusal(file.path), "inverted"));
   s.elements[7] = turned_over(s.elements[7]);
   for (Element& e : s.elements) e = turned_over(e);
   write_iga(file.path, s, net);
-  EXPECT_THROW(
-      {
-        try {
-          read_iga(file.path);
-        } catch (const UserError& e) {
-          EXPECT_NE(std::string(e.what()).find("inside out"), std::string::npos);
-          throw;
-        }
-      },
-      UserError);
+  EXPECT_TRUE(says(refusal(file.path), "inside out"));
 }
 
 }  // namespace
