@@ -18,7 +18,7 @@ SUBDIVISION = 3  # of every curved element when it is drawn; ParaView's own defa
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", help="directory of a run's results")
-    parser.add_argument("--field", default="load", help="what colours the surface (default: %(default)s)")
+    parser.add_argument("--field", default="traction", help="what colours the surface (default: %(default)s)")
     parser.add_argument("--time", type=float, help="simulated time to show (default: the last)")
     parser.add_argument("--state", metavar="FILE", help="save a state file for the ParaView program")
     parser.add_argument("-o", "--output", metavar="FILE", help="save a picture")

@@ -6,7 +6,7 @@
     run.series["taylor_inertia"]       # one value a step, with .units[...] and .descriptions[...]
     run.deck["Flow"]["type"]           # the effective deck
     last = run.snapshots()[-1]         # a saved step
-    last.fields["load"]                # at the nodes of its cells
+    last.fields["traction"]            # at the nodes of its cells
 """
 
 import argparse

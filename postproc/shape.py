@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The deformed surface with its load, and its section in the x1 x3 plane with the axis of inertia."""
+"""The deformed surface with its traction, and its section in the x1 x3 plane with the axis of inertia."""
 
 import argparse
 import sys
@@ -22,7 +22,7 @@ def main():
     parser.add_argument("results", nargs="+", help="directories of runs' results; their sections share one panel")
     parser.add_argument("-o", "--output", default="shape.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--time", type=float, help="simulated time of the snapshot (default: the last one)")
-    parser.add_argument("--field", default="load", help="field of the snapshot that colours the surface (default: %(default)s)")
+    parser.add_argument("--field", default="traction", help="field of the snapshot that colours the surface (default: %(default)s)")
     parser.add_argument("--view", type=float, nargs=2, default=[-60, 25], metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     arguments = parser.parse_args()
 

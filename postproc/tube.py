@@ -53,16 +53,16 @@ def shapes(runs, ducts, times):
         shots = shots_of(run, times)
         colours = plt.get_cmap(style.FIELD)(numpy.linspace(0.0, 0.88, len(shots)))
         upper, lower = part.subfigures(2, 1, height_ratios=[0.42, 0.58])
-        norm = Normalize(0, max(numpy.linalg.norm(shot.fields["load"], axis=1).max() for shot in shots[1:] or shots))
+        norm = Normalize(0, max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots))
         axes = upper.subplots(1, len(shots))
         for axis, shot, colour in zip(numpy.atleast_1d(axes), shots, colours):
-            shape.draw_surface(axis, shot, "load", norm, style.FIELD, -60, 20)
+            shape.draw_surface(axis, shot, "traction", norm, style.FIELD, -60, 20)
             axis.set_title(f"t = {shot.time:g}", color=colour, loc="center")
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
         left, middle = lower.subplots(1, 2, width_ratios=[2.1, 1])
         along(left, run, d, shots, colours)
         across(middle, run, d, shots, colours)
-        upper.colorbar(ScalarMappable(norm, style.FIELD), ax=axes, label="load / (μ vₘ/R_T)", shrink=0.8)
+        upper.colorbar(ScalarMappable(norm, style.FIELD), ax=axes, label="traction / (μ vₘ/R_T)", shrink=0.8)
     return figure
 
 
