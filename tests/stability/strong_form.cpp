@@ -2,7 +2,6 @@
 //
 // Second derivatives of a cubic surface are of second order only, and the load that they give is not the gradient of an energy. The capsule is
 // drawn out, faster than the flow can do it, until steps vanish. The paper reports it for its structured mesh with poles; here there are none.
-// A prototype in the same space stalled at t = 1.31 (Ca = 0.3).
 
 #include <algorithm>
 #include <limits>
