@@ -1,5 +1,6 @@
 #include "deck/section.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Teuchos_ParameterList.hpp>
@@ -22,10 +23,14 @@ std::string rule_text(const Rule& rule, const std::string& kind) {
   return rule.text == any().text ? "a " + kind : "a " + kind + ", " + rule.text;
 }
 
-/// Unit of a number whose value the message repeats: checks type, finiteness and rule.
+/// Powers of a larger number, or of a smaller one, leave the range of double precision.
+bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-60 && std::abs(number) < 1e60)); }
+
+/// Unit of a number whose value the message repeats: checks type, size and rule.
 double checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit) {
   const auto number = as_number(entry);
   if (!number || !std::isfinite(*number) || !rule.holds(*number)) refuse(path, rule_text(rule, "number"), unit, description(entry));
+  if (!computable(*number)) refuse(path, "between 1e-60 and 1e60 in size", unit, description(entry));
   return *number;
 }
 
@@ -37,6 +42,8 @@ Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, cons
   bool good = fits;
   if (fits)
     for (const double number : *numbers) good = good && std::isfinite(number) && each.holds(number);
+  if (good && !std::all_of(numbers->begin(), numbers->end(), computable))
+    refuse(path, "between 1e-60 and 1e60 in size", unit, description(entry));
   if (!good) {
     const std::string wording = std::string(rows * columns == 2 ? "two" : columns == 1 ? "three" : "nine") + " numbers in brackets";
     refuse(path, each.text == any().text ? wording : wording + ", each " + each.text, unit, description(entry));

@@ -56,6 +56,12 @@ std::string reduced(const std::string& error, const std::vector<std::string>& li
   return ", line " + std::to_string(number) + ": this is not YAML that can be read: `" + line + "`";
 }
 
+/// Without the blanks around it.
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
 void check_root(const std::vector<std::string>& keys, const std::string& origin) {
   if (keys.empty()) throw UserError(origin + " is empty; a deck holds one list named `" + root_name + "`.");
   if (keys.size() == 1 && keys.front() == root_name) return;
@@ -82,12 +88,16 @@ std::string file_text(const std::string& file) {
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) throw UserError("The deck " + file + " does not exist.");
   if (fs::is_directory(status)) throw UserError(file + " is a directory, not a deck.");
-  if (fs::is_regular_file(status) && fs::file_size(file, error) > 10'000'000) throw UserError(file + " is larger than 10 MB, so no deck.");
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw UserError("The deck " + file + " cannot be read.");
-  return text.str();
+  constexpr std::size_t most = 10'000'000;
+  std::string text(most + 1, '\0');  // no more is read, of a device or a pipe neither
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.eof() && (stream.fail() || stream.bad())) throw UserError("The deck " + file + " cannot be read.");
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > most) throw UserError(file + " is larger than 10 MB, so no deck.");
+  const std::string byte_order_mark = "\xEF\xBB\xBF";  // which some editors begin UTF-8 with
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  return text;
 }
 
 std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin) {
@@ -115,11 +125,11 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {
   const std::string origin = "--set '" + setting + "'";
   const std::size_t equals = setting.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size())
+  if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size() || setting.find('\n') != std::string::npos)
     throw UserError(origin + " must be of the form Section/key=value.");
   std::istringstream path(setting.substr(0, equals));
   std::vector<std::string> keys;
-  for (std::string key; std::getline(path, key, '/');) keys.push_back(key);
+  for (std::string key; std::getline(path, key, '/');) keys.push_back(trimmed(key));
   if (keys.front() == root_name) keys.erase(keys.begin());
   if (keys.size() < 2 || std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key.empty(); }))
     throw UserError(origin + " must be of the form Section/key=value.");

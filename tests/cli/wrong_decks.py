@@ -54,6 +54,10 @@ SETTINGS = [
     (["Output/wall-clock limit=-5"], ["Output/wall-clock limit", "positive", "seconds", "-5"]),
     (["Adaptation/enabled=true", "Adaptation/minimum length=0.6"], ["Adaptation/minimum length", "below", "0.482", "0.6"]),
     (["Adaptation/enabled=true", "Adaptation/largest number of points=56"], ["Adaptation/largest number of points", "above", "56"]),
+    # values beyond what can be computed with
+    (["Particle/radius=1e300"], ["Particle/radius", "between 1e-60 and 1e60", "1e+300"]),
+    (["Flow/shear rate=1e-300"], ["Flow/shear rate", "between 1e-60 and 1e60", "1e-300"]),
+    (["Particle/center=[0, 0, 1e300]"], ["Particle/center", "between 1e-60 and 1e60", "1.0e+300"]),
     # contradictory keys
     (["Adaptation/enabled=true", "Adaptation/reference traction variation=8"], ["reference traction variation", "`variation`", "`error`"]),
     (["Adaptation/enabled=true", "Adaptation/indicator=variation", "Adaptation/load tolerance=8"], ["Adaptation/load tolerance", "`error`"]),
@@ -84,6 +88,8 @@ SETTINGS = [
     (["Flow/viscosity"], ["Flow/viscosity", "Section/key=value"]),
     (["viscosity=1"], ["viscosity=1", "Section/key=value"]),
     (["Flow/viscosity=[1"], ["Flow/viscosity=[1", "not YAML"]),
+    (["Flow/viscosity=1\nFlow: 2"], ["Section/key=value"]),
+    (["Flow/shaer rate = 1"], ["Flow/shaer rate is not a key"]),
 ]
 
 # (text of the deck, what the sentence must hold)
@@ -137,6 +143,7 @@ def wrong_files_are_refused():
     _refused(["folder.yaml", "directory"], "folder.yaml")
     pathlib.Path("binary.yaml").write_bytes(bytes(range(256)))
     _refused(["binary.yaml", "not text"], "binary.yaml")
+    _refused(["/dev/zero", "10 MB"], "/dev/zero")
     _refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
     _refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
     if os.geteuid() != 0:
@@ -165,6 +172,13 @@ def several_ranks_speak_once():
 def the_good_deck_is_good():
     result = run(deck(GOOD), "--check")
     check("capillary number: 0.3" in result.stdout and "final time: 0.01" in result.stdout, result.stdout)
+
+
+def decks_of_other_editors_and_roomy_settings_are_good():
+    for text in ("\ufeff" + GOOD, GOOD.replace("\n", "\r\n")):
+        pathlib.Path("other.yaml").write_text(text, encoding="utf-8", newline="")
+        result = run("other.yaml", "--set", " Time/final time = 0.02", "--check")
+        check("final time: 0.02" in result.stdout, result.stdout)
 
 
 def shipped_decks_are_good_and_so_is_what_they_effectively_say():
