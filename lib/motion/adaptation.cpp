@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::motion {
@@ -52,14 +52,11 @@ void AdaptationOptions::check(int first_points, double first_length) const {
   } else if (load_tolerance) {
     throw UserError("Adaptation/load tolerance belongs to Adaptation/indicator `error`, but that is `variation`.");
   }
-  const auto number = [](double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return std::string(text);
-  };
   if (minimum_length >= first_length)
-    throw UserError("Adaptation/minimum length must be below the length of the elements that the run starts with, " + number(first_length) +
-                    ", or nothing is ever cut, but is " + number(minimum_length) + ".");
+    throw UserError(
+        formatted("Adaptation/minimum length must be below the length of the elements that the run starts with, %.3g, or nothing is ever "
+                  "cut, but is %.3g.",
+                  first_length, minimum_length));
   if (largest_number_of_points <= first_points)
     throw UserError("Adaptation/largest number of points must be above the " + std::to_string(first_points) +
                     " that the run starts with, or nothing is ever cut, but is " + std::to_string(largest_number_of_points) + ".");

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "quadrature/gauss.hpp"
 
 namespace tanktread::surface {
@@ -52,18 +53,13 @@ std::optional<Vec2> meeting(const Vec2& a, const Vec2& b, const Vec2& c, const V
   return from_c == from_d ? c : Vec2(c + from_c / (from_c - from_d) * (d - c));
 }
 
-std::string text_of(const Vec2& x) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.4g, %.4g)", x[0], x[1]);
-  return text;
-}
-
 }  // namespace
 
 Outline::Outline(std::vector<PlaneCurve> sides, const std::string& name) : sides_(std::move(sides)) {
   for (int k = 0; k < n_sides(); ++k) add_chords(k);
   measure();
-  if (const auto crossing = first_crossing()) throw UserError(name + " crosses itself near (x2, x3) = " + text_of(*crossing) + ".");
+  if (const auto crossing = first_crossing())
+    throw UserError(name + " crosses itself near (x2, x3) = " + formatted("(%.4g, %.4g)", (*crossing)[0], (*crossing)[1]) + ".");
   if (area_ <= 0) throw UserError(name + " must run counter-clockwise, from x2 towards x3, but runs clockwise.");
 }
 

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "spline/knots.hpp"
 
 namespace tanktread::surface {
@@ -155,10 +154,8 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
   }
   wall.space = product(along, around);
   wall.n_along = along.n, wall.n_around = around.n;
-  std::ostringstream text;
-  text << "tube, " << options.azimuthal_elements << " x " << options.axial_elements << " cubic elements, " << wall.space.n_points
-       << " control points";
-  wall.space.description = text.str();
+  wall.space.description =
+      formatted("tube, %d x %d cubic elements, %d control points", options.azimuthal_elements, options.axial_elements, wall.space.n_points);
   wall.net.resize(wall.space.n_points, 3);
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, options.axial_elements))]; };
   for (int i = 0; i < along.n; ++i) {
@@ -178,12 +175,10 @@ double tube_length(const TubeOptions& options, double radius, double particle_le
 void check_length(const TubeWall& wall, double first, double last) {
   const double margin = 1.7 * wall.radius(), needed = 2 * (std::max(-first, last) + margin);
   if (wall.length() >= needed) return;
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "Tube/length must be at least %.4g for this particle, which reaches from x1 = %.4g to %.4g seen from its centroid, but is "
+  throw UserError(
+      formatted("Tube/length must be at least %.4g for this particle, which reaches from x1 = %.4g to %.4g seen from its centroid, but is "
                 "%.4g: 1.7 R_T = %.4g must be left at either end.",
-                needed, first, last, wall.length(), margin);
-  throw UserError(text);
+                needed, first, last, wall.length(), margin));
 }
 
 }  // namespace tanktread::surface

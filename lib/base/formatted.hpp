@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace tanktread {
+
+/// What printf would print.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* pattern, ...);
+
+}  // namespace tanktread
