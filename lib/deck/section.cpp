@@ -24,13 +24,13 @@ std::string rule_text(const Rule& rule, const std::string& kind) {
 }
 
 /// Powers of a larger number, or of a smaller one, leave the range of double precision.
-bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-60 && std::abs(number) < 1e60)); }
+bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-75 && std::abs(number) < 1e75)); }
 
 /// Unit of a number whose value the message repeats: checks type, size and rule.
 double checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit) {
   const auto number = as_number(entry);
   if (!number || !std::isfinite(*number) || !rule.holds(*number)) refuse(path, rule_text(rule, "number"), unit, description(entry));
-  if (!computable(*number)) refuse(path, "between 1e-60 and 1e60 in size", unit, description(entry));
+  if (!computable(*number)) refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
   return *number;
 }
 
@@ -43,7 +43,7 @@ Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, cons
   if (fits)
     for (const double number : *numbers) good = good && std::isfinite(number) && each.holds(number);
   if (good && !std::all_of(numbers->begin(), numbers->end(), computable))
-    refuse(path, "between 1e-60 and 1e60 in size", unit, description(entry));
+    refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
   if (!good) {
     const std::string wording = std::string(rows * columns == 2 ? "two" : columns == 1 ? "three" : "nine") + " numbers in brackets";
     refuse(path, each.text == any().text ? wording : wording + ", each " + each.text, unit, description(entry));

@@ -55,9 +55,9 @@ SETTINGS = [
     (["Adaptation/enabled=true", "Adaptation/minimum length=0.6"], ["Adaptation/minimum length", "below", "0.482", "0.6"]),
     (["Adaptation/enabled=true", "Adaptation/largest number of points=56"], ["Adaptation/largest number of points", "above", "56"]),
     # values beyond what can be computed with
-    (["Particle/radius=1e300"], ["Particle/radius", "between 1e-60 and 1e60", "1e+300"]),
-    (["Flow/shear rate=1e-300"], ["Flow/shear rate", "between 1e-60 and 1e60", "1e-300"]),
-    (["Particle/center=[0, 0, 1e300]"], ["Particle/center", "between 1e-60 and 1e60", "1.0e+300"]),
+    (["Particle/radius=1e300"], ["Particle/radius", "between 1e-75 and 1e75", "1e+300"]),
+    (["Flow/shear rate=1e-300"], ["Flow/shear rate", "between 1e-75 and 1e75", "1e-300"]),
+    (["Particle/center=[0, 0, 1e300]"], ["Particle/center", "between 1e-75 and 1e75", "1.0e+300"]),
     # contradictory keys
     (["Adaptation/enabled=true", "Adaptation/reference traction variation=8"], ["reference traction variation", "`variation`", "`error`"]),
     (["Adaptation/enabled=true", "Adaptation/indicator=variation", "Adaptation/load tolerance=8"], ["Adaptation/load tolerance", "`error`"]),
