@@ -76,11 +76,23 @@ LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options
       self_field(space, how) {}
 
 void LayerSurface::place(const Net& x) {
+  place_lazily(x);
+  for (int e = 0; e < panels.size(); ++e) locate(e);
+}
+
+void LayerSurface::place_lazily(const Net& x) {
   if (x.rows() == placed_.rows() && x == placed_) return;
   placed_ = x;
   panels.bezier(x, bezier);
-  node_values(panels, bezier, node);
+  for (auto& component : node) component.resize(panels.n_nodes());
+  located_.assign(panels.size(), 0);
   if (options.rule == "adaptive") near_field.update(bezier);
+}
+
+void LayerSurface::locate(int e) {
+  if (located_[e]) return;
+  node_values(panels, e, bezier, node);
+  located_[e] = 1;
 }
 
 void LayerSurface::collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const {

@@ -25,6 +25,10 @@ class LayerSurface {
   /// Takes a shape; the one that it has already, at no cost.
   void place(const Net& x);
 
+  /// The same without far nodes: those of panel e are there after locate(e).
+  void place_lazily(const Net& x);
+  void locate(int e);
+
   /// Collocation points of the shape.
   void collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const;
 
@@ -52,6 +56,7 @@ class LayerSurface {
 
  private:
   Net placed_;
+  std::vector<char> located_;  // panels whose far nodes are there
   std::vector<int> near_;
 };
 

@@ -47,21 +47,23 @@ Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
 
 void Panels::bezier(const Net& net, std::vector<double>& points) const {
   points.resize(bezier_size_);
-  for (int e = 0; e < size(); ++e) {
-    const Panel& p = panels_[e];
-    extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
-  }
+  for (int e = 0; e < size(); ++e) bezier(e, net, points);
+}
+
+void Panels::bezier(int e, const Net& net, std::vector<double>& points) const {
+  const Panel& p = panels_[e];
+  extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
 }
 
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
-  for (int c = 0; c < 3; ++c) {
-    value[c].resize(panels.n_nodes());
-    for (int e = 0; e < panels.size(); ++e) {
-      const NodeTable& t = *panels[e].table;
-      combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein],
-              &value[c][panels[e].first_node]);
-    }
-  }
+  for (auto& component : value) component.resize(panels.n_nodes());
+  for (int e = 0; e < panels.size(); ++e) node_values(panels, e, bezier, value);
+}
+
+void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
+  const NodeTable& t = *panels[e].table;
+  for (int c = 0; c < 3; ++c)
+    combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
 }
 
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]) {

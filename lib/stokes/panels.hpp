@@ -39,8 +39,9 @@ class Panels {
   const int* points(int e) const { return &points_[panels_[e].first_point]; }
   const double* extraction(int e) const { return &extraction_[panels_[e].first_extraction]; }
 
-  /// Bezier points of all panels from a control net of any field.
+  /// Bezier points of all panels from a control net of any field; or of one of them, in an array for all.
   void bezier(const Net& net, std::vector<double>& points) const;
+  void bezier(int e, const Net& net, std::vector<double>& points) const;
 
  private:
   std::deque<NodeTable> tables_;
@@ -51,8 +52,9 @@ class Panels {
   std::size_t bezier_size_ = 0;
 };
 
-/// Values of a field at all far nodes, one array a component, from its Bezier points.
+/// Values of a field at all far nodes, one array a component, from its Bezier points; or at those of one panel, in arrays for all.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
+void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 
 /// Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that a node stands for.
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]);

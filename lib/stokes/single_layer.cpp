@@ -50,10 +50,10 @@ void SingleLayer::set_reference(const Net& unstressed) {
   surface_.self_field.forget_weights();
 }
 
-void SingleLayer::place(const Net& x, Measure measure, std::span<const int> targets) {
+void SingleLayer::place(const Net& x, Measure measure, std::span<const int> targets, bool lazily) {
   assert((measure == Measure::current || !weight_unstressed_.empty()) && "set_reference() comes first");
   measure_ = measure;
-  surface_.place(x);
+  lazily ? surface_.place_lazily(x) : surface_.place(x);
   if (measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_present_);
   if (surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
   surface_.collocation_points(targets, at_);
@@ -72,20 +72,38 @@ PointForces SingleLayer::forces() const {
   return {n_nodes(), node[0].data(), node[1].data(), node[2].data(), force_[0].data(), force_[1].data(), force_[2].data()};
 }
 
+/// Bezier points, values and weights of the density on panel e, where it is asked for the first time.
+void SingleLayer::load(int e) {
+  if (loaded_[e]) return;
+  loaded_[e] = 1;
+  surface_.locate(e);
+  surface_.panels.bezier(e, *density_, bezier_f_);
+  node_values(surface_.panels, e, bezier_f_, force_);
+  const auto& weight = measure_ == Measure::current ? weight_present_ : weight_unstressed_;
+  const int first = surface_.panels[e].first_node, last = first + surface_.panels[e].table->n_nodes;
+  for (auto& component : force_)
+    for (int k = first; k < last; ++k) component[k] *= weight[k];
+}
+
 void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
+  for (const int e : fundamental_) surface_.locate(e);
   surface_.place(*tree_, fundamental_);
-  std::vector<double> carried[3];
-  for (std::size_t k = 0; k < fundamental_.size(); ++k) {
-    const Panel& panel = surface_.panels[fundamental_[k]];
-    for (int c = 0; c < 3; ++c)
-      for (int q = 0; q < panel.table->n_nodes; ++q) carried[c].push_back(weight_[k] * force_[c][panel.first_node + q]);
-  }
   const std::span<const int> rows = this->rows(targets);
   std::vector<int> wanted(rows.begin(), rows.end());
   for (const surface::Image& g : images_)
     for (const int i : rows) wanted.push_back(g.point[i]);
+  tree_->want(wanted);
+  std::vector<double> carried[3];
+  for (std::size_t k = 0; k < fundamental_.size(); ++k) {
+    const Panel& panel = surface_.panels[fundamental_[k]];
+    const int first = panel.first_node, n = panel.table->n_nodes;
+    const bool asked = tree_->asks(static_cast<int>(carried[0].size()));  // panels are not split
+    if (asked) load(fundamental_[k]);
+    for (int c = 0; c < 3; ++c)
+      for (int q = 0; q < n; ++q) carried[c].push_back(asked ? weight_[k] * force_[c][first + q] : 0);
+  }
   Net there(surface_.n_points, 3);
-  tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, wanted, there.data());
+  tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, there.data());
   for (const int i : rows) u.row(i) = there.row(i);
   for (const surface::Image& g : images_)
     for (const int i : rows) u.row(i) += there.row(g.point[i]).cwiseProduct(g.signs.transpose());
@@ -121,6 +139,7 @@ void SingleLayer::add_near(std::span<const int> targets, const Sum& own_sum, Net
     for (const int e : surface_.near(targets[k], at_[k])) {
       const Panel& panel = surface_.panels[e];
       const PointTable& table = surface_.near_field.rule(e, at_[k]);
+      load(e);
       node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
       u.row(targets[k]) += (own_sum(e, table, nullptr, at_[k]) - far).transpose();
       evaluations_.near += table.points + panel.table->n_nodes;
@@ -136,6 +155,7 @@ void SingleLayer::add_self(std::span<const int> targets, const Sum& own_sum, Net
     for (SelfPair& pair : surface_.own(targets[k])) {
       const Panel& panel = surface_.panels[pair.panel];
       const PointTable& table = surface_.self_field.rule(pair, surface_.panels, surface_.bezier);
+      load(pair.panel);
       node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
       u.row(targets[k]) += (own_sum(pair.panel, table, &pair, at_[k]) - far).transpose();
       evaluations_.self += table.points + panel.table->n_nodes;
@@ -156,12 +176,14 @@ const Pack* SingleLayer::area_weights_of(int e, const PointTable& table, SelfPai
 void SingleLayer::apply(const Net& x, const Net& f, Measure measure, std::span<const int> targets, Net& u) {
   {
     const auto clock = phases_.time("setup");
-    place(x, measure, targets);
-    surface_.panels.bezier(f, bezier_f_);
-    node_values(surface_.panels, bezier_f_, force_);
-    const auto& weight = measure == Measure::current ? weight_present_ : weight_unstressed_;
-    for (auto& component : force_)
-      for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
+    const bool lazily = tree_ && surface_.options.rule != "desingularised";
+    place(x, measure, targets, lazily);
+    density_ = &f;
+    loaded_.assign(surface_.panels.size(), 0);
+    bezier_f_.resize(surface_.panels.bezier_size());
+    for (auto& component : force_) component.resize(n_nodes());
+    if (!lazily)
+      for (int e = 0; e < surface_.panels.size(); ++e) load(e);
   }
   const auto own_sum = [&](int e, const PointTable& table, SelfPair* pair, const Vec3& x0) {
     const std::size_t bezier = surface_.panels[e].first_bezier;
@@ -184,6 +206,7 @@ void SingleLayer::apply_to_normal(const Net& x, std::span<const int> targets, Ne
     const auto clock = phases_.time("setup");
     place(x, Measure::current, targets);
     node_normals(surface_.panels, surface_.bezier, force_);
+    loaded_.assign(surface_.panels.size(), 1);
   }
   const auto own_sum = [&](int e, const PointTable& table, SelfPair*, const Vec3& x0) {
     Vec3 sum;

@@ -66,7 +66,8 @@ class SingleLayer {
 
  private:
   struct Moments;
-  void place(const Net& x, Measure measure, std::span<const int> targets);
+  void place(const Net& x, Measure measure, std::span<const int> targets, bool lazily = false);
+  void load(int e);
   void add_far(std::span<const int> targets, Net& u);
   void add_by_tree(std::span<const int> targets, Net& u);
   template <class Sum>
@@ -89,6 +90,8 @@ class SingleLayer {
   std::vector<double> bezier_unstressed_, bezier_f_;        // Bezier points: unstressed surface, density
   std::vector<double> weight_unstressed_, weight_present_;  // of the far nodes, areas included
   std::vector<double> force_[3], normal_[3];                // far nodes: density times weight, normal times weight
+  const Net* density_ = nullptr;                            // of this call
+  std::vector<char> loaded_;                                // panels whose far nodes and density are there
   std::vector<Vec3> at_;                                    // the targets of this call
   std::vector<Pack> point_weights_;
   Evaluations evaluations_;

@@ -46,21 +46,52 @@ void TreeSum::place(const double* x, const double* y, const double* z, std::span
                 &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
 }
 
-void TreeSum::sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
+void TreeSum::want(std::span<const int> rows) {
+  mark(rows);
+  pairs_.clear();
+  meet(targets_.all().front(), sources_.all().front());
+  if (parts_ > 1) take_part();
+  ask();
+}
+
+/// Keeps the pairs of this part: as many as make up its share of the work, of source clusters that are next to each other, so that what nodes carry
+/// is collected by few parts.
+void TreeSum::take_part() {
+  std::ranges::stable_sort(pairs_, {}, &Pair::source);
+  long long before = 0, all = 0;
+  for (const Pair& pair : pairs_) all += work(pair);
+  std::erase_if(pairs_, [&](const Pair& pair) {
+    const bool mine = before * parts_ / std::max(all, 1LL) == part_;
+    before += work(pair);
+    return !mine;
+  });
+}
+
+/// Which Chebyshev nodes, and which nodes, the pairs need.
+void TreeSum::ask() {
+  const std::vector<Cluster>& all = sources_.all();
+  in_use_.assign(all.size(), 0);
+  asked_.assign(sources_.order().size(), 0);
+  const auto ask_points = [&](const Cluster& c) {
+    for (int k = c.first; k < c.last; ++k) asked_[sources_.order()[k]] = 1;
+  };
+  for (const Pair& pair : pairs_) pair.source_nodes ? void(in_use_[pair.source] = 1) : ask_points(all[pair.source]);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (!in_use_[c]) continue;
+    if (all[c].leaf())
+      ask_points(all[c]);
+    else
+      for (const int child : all[c].child) in_use_[child] = 1;
+  }
+}
+
+void TreeSum::sum(const std::array<const double*, 6>& carried, double* values) {
   interactions_ = 0;
   collect(carried);
-  mark(wanted);
   target_u_.assign(target_at_.size() / 3 * out_, 0);
   node_u_.assign(node_at_.size() / 3 * out_, 0);
   has_nodes_.assign(targets_.all().size(), 0);
-  pairs_.clear();
-  meet(targets_.all().front(), sources_.all().front());
-  long long before = 0, all = 0;
-  for (const Pair& pair : pairs_) all += work(pair);
-  for (const Pair& pair : pairs_) {
-    if (before * parts_ / std::max(all, 1LL) == part_) add(pair);
-    before += work(pair);
-  }
+  for (const Pair& pair : pairs_) add(pair);
   hand_down();
   for (std::size_t k = 0; k < targets_.order().size(); ++k)
     if (const int i = targets_.order()[k]; row_[i])
@@ -84,7 +115,7 @@ Charges TreeSum::nodes() const {
           {node_q_[0].data(), node_q_[1].data(), node_q_[2].data(), node_q_[3].data(), node_q_[4].data(), node_q_[5].data()}};
 }
 
-/// What is carried, in the order of the tree, and at the Chebyshev nodes of all clusters, from the leaves up.
+/// What is carried, in the order of the tree, and at the Chebyshev nodes of all clusters in use, from the leaves up.
 void TreeSum::collect(const std::array<const double*, 6>& carried) {
   for (int c = 0; c < in_; ++c) {
     q_[c].resize(sources_.order().size());
@@ -100,6 +131,7 @@ void TreeSum::collect(const std::array<const double*, 6>& carried) {
     spread(in_, c, from, scratch_.data(), to);
   };
   for (auto c = all.rbegin(); c != all.rend(); ++c) {
+    if (!in_use_[&*c - all.data()]) continue;
     if (c->leaf())
       take(*c, points.part(c->first, c->n_points()));
     else

@@ -22,24 +22,39 @@ class TreeSum {
   /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all targets.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets);
 
-  /// Rows `wanted` of the sum for what the nodes carry; values[Kernel::out i + c]. A row does not depend on which others are wanted.
+  /// States which rows are wanted of the sums to come. A row does not depend on which others are wanted.
+  void want(std::span<const int> rows);
+
+  /// Whether these sums ask what node k carries: not all do where they are shared.
+  bool asks(int k) const { return asked_[k]; }
+
+  /// Rows wanted of the sum for what the nodes carry; values[Kernel::out i + c].
   template <class Kernel>
-  void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
+  void sum(const std::array<const double*, 6>& carried, double* values) {
     in_ = Kernel::in, out_ = Kernel::out, kernel_ = Kernel::sum;
-    sum(carried, wanted, values);
+    sum(carried, values);
   }
 
-  /// The next sums are of one part of the interactions; those of parts 0 .. parts - 1, of the same places, charges and wanted rows, add up to the
-  /// whole. Parts are of equal work.
+  /// Both at once.
+  template <class Kernel>
+  void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
+    want(wanted);
+    sum<Kernel>(carried, values);
+  }
+
+  /// The sums to come are of one part of the interactions; those of parts 0 .. parts - 1, of the same places, charges and wanted rows, add up to the
+  /// whole. Parts are of equal work, each of few clusters of nodes.
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
   long long interactions() const { return interactions_; }  ///< of the last sum
   std::size_t bytes() const;
 
  private:
-  void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values);
+  void sum(const std::array<const double*, 6>& carried, double* values);
   void collect(const std::array<const double*, 6>& carried);
   void mark(std::span<const int> wanted);
+  void take_part();
+  void ask();
   /// Clusters that meet, each as its Chebyshev nodes or as its points.
   struct Pair {
     int target, source;
@@ -61,7 +76,8 @@ class TreeSum {
   std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
   std::vector<double> target_u_, node_u_;       // values there
   std::vector<char> row_, wanted_, has_nodes_;  // targets wanted; of target clusters: any of them wanted; values at Chebyshev nodes
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_;                     // of this part
+  std::vector<char> asked_, in_use_;            // nodes that carry something to a target; source clusters whose Chebyshev nodes do
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };
