@@ -1,9 +1,8 @@
 #include "app/body.hpp"
 
-#include <cstdio>
-
 #include "app/prescribed.hpp"
 #include "app/tube.hpp"
+#include "base/formatted.hpp"
 #include "spline/extraction.hpp"
 #include "stokes/layer_surface.hpp"
 #include "surface/shapes.hpp"
@@ -16,12 +15,6 @@ membrane::Law law(const membrane::Options& options, double modulus) {
   if (options.law == "Skalak") return membrane::Skalak{modulus, options.area_dilatation.value_or(1.0)};
   if (options.law == "surface tension") return membrane::SurfaceTension{modulus};
   return membrane::NeoHookean{modulus};
-}
-
-std::string text(const char* format, auto... values) {
-  char line[400];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
 }
 
 }  // namespace
@@ -104,13 +97,13 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
   if (body.wall) fluid = tube_plan(scene, body);
   output::Entries<std::string> lines = {
-      {"surface", text("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
-                       body.space.description.c_str())},
-      {"unknowns", text("%d positions", 3 * body.space.n_points)},
+      {"surface", formatted("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
+                            body.space.description.c_str())},
+      {"unknowns", formatted("%d positions", 3 * body.space.n_points)},
       {"viscosity", scene.particle.viscosity_ratio == 1
                         ? std::string("ratio 1: no double layer, no system for the velocity")
-                        : text("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
-                               scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * body.space.n_points)},
+                        : formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
+                                    scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * body.space.n_points)},
       {"membrane", scene.membrane.law + ", load " + scene.membrane.load +
                        (scene.membrane.load == "strong"              ? " at the collocation sites (P-3)"
                         : scene.membrane.law == "surface tension"    ? " per current area (3.6)"
@@ -123,15 +116,16 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
            (!implicit ? std::string(", explicit in the fluid: nothing is assembled")
             : scene.solvers.frozen_operator == "nodal"
                 ? std::string(", frozen single layer by one node a control point, not assembled")
-                : text(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : ""))},
+                : formatted(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : ""))},
       {"mesh", !scene.adaptation.enabled               ? "fixed"
                : scene.adaptation.indicator == "error" ? "refined as the particle deforms, by estimated errors (1.5)"
                                                        : "refined as the particle deforms (P-37)"},
-      {"symmetry", body.symmetry.order() == 1 ? std::string("none") + (scene.symmetry.use == "none" ? " used"
-                                                                       : body.wall                  ? " looked for in a tube"
-                                                                                                    : " found")
-                                              : body.symmetry.description() + text(": %d of %d control points evaluated, %.2g times less",
-                                                                                   n_evaluated, body.space.n_points, points / n_evaluated)},
+      {"symmetry", body.symmetry.order() == 1
+                       ? std::string("none") + (scene.symmetry.use == "none" ? " used"
+                                                : body.wall                  ? " looked for in a tube"
+                                                                             : " found")
+                       : body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less", n_evaluated,
+                                                                 body.space.n_points, points / n_evaluated)},
   };
   lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
   return lines;

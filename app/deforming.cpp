@@ -1,12 +1,12 @@
 // The capsule or drop in the time loop, on a mesh that may change.
 
-#include <cstdio>
 #include <utility>
 
 #include "app/adaptation.hpp"
 #include "app/drift.hpp"
 #include "app/moving.hpp"
 #include "app/tube.hpp"
+#include "base/formatted.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 
@@ -87,27 +87,24 @@ class Deforming : public Moving {
     capsule_->work() = work;
   }
 
-  static std::string text(const char* format, auto... values) {
-    char line[300];
-    std::snprintf(line, sizeof line, format, values...);
-    return line;
-  }
-
   /// What a change of the mesh lacks, once of each kind.
   void remark_on(const Adapted& change, double time) {
     const motion::AdaptationOptions& options = scene_.adaptation;
     const auto once = [&](bool lacks, bool& said, const std::string& sentence) {
-      if (lacks && !said) remarks_.push_back(text("at time %.4g ", time) + sentence);
+      if (lacks && !said) remarks_.push_back(formatted("at time %.4g ", time) + sentence);
       said = said || lacks;
     };
     once(change.refused > 0, remarked_on_levels_,
-         text("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows", options.levels));
+         formatted("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows",
+                   options.levels));
     once(change.full, remarked_on_size_,
-         text("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all their cuts",
-              options.largest_number_of_points));
+         formatted("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all "
+                   "their cuts",
+                   options.largest_number_of_points));
     once(change.body && change.finer && change.change > 1e-12, remarked_on_change_,
-         text("refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
-              change.change));
+         formatted(
+             "refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
+             change.change));
   }
 
   std::vector<output::Field> fields(const output::Nodes& nodes, const motion::State& state, const Net& load) const {

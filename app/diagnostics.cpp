@@ -49,6 +49,12 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<std::string_view> names) {
+  std::vector<Column> found;
+  for (const std::string_view name : names) found.push_back(*std::ranges::find(all, name, &Column::name));
+  return found;
+}
+
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
                         const motion::StepReport& report, double wall_seconds) {
   const surface::Measures measures = capsule.geometry().measures(state.x);

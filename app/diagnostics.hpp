@@ -1,7 +1,9 @@
 #pragma once
 // The series of a run: their names, units, descriptions, and one row of them.
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/body.hpp"
@@ -15,6 +17,9 @@ struct Column {
   std::string name, unit, description;
 };
 const std::vector<Column>& columns();
+
+/// Those of these names, for a particle of another kind that records the same.
+std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<std::string_view> names);
 
 /// One row, in the order of `columns`. Collective.
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,

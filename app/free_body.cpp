@@ -1,6 +1,8 @@
 // The free rigid body in the time loop.
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "app/moving.hpp"
 #include "app/tube.hpp"
@@ -11,50 +13,32 @@ namespace tanktread {
 
 namespace {
 
-const std::vector<Column>& rigid_columns() {
-  static const std::vector<Column> all = {
-      {"time", "time", "simulated time"},
-      {"time_step", "time", "size of the step that ended here"},
-      {"inclination", "degree", "angle of the long axis of inertia with x1"},
-      {"center_x1", "length", "centre of the body, component 1"},
-      {"center_x2", "length", "centre of the body, component 2"},
-      {"center_x3", "length", "centre of the body, component 3"},
-      {"velocity_x1", "length/time", "of the centre, component 1"},
-      {"velocity_x2", "length/time", "of the centre, component 2"},
-      {"velocity_x3", "length/time", "of the centre, component 3"},
-      {"angular_velocity_x1", "1/time", "component 1"},
-      {"angular_velocity_x2", "1/time", "component 2"},
-      {"angular_velocity_x3", "1/time", "component 3"},
-      {"quaternion_0", "1", "scalar part of the turn from the initial place"},
-      {"quaternion_1", "1", "vector part, component 1"},
-      {"quaternion_2", "1", "vector part, component 2"},
-      {"quaternion_3", "1", "vector part, component 3"},
-      {"stresslet_11", "force length", "particle stresslet, component 11"},
-      {"stresslet_22", "force length", "particle stresslet, component 22"},
-      {"stresslet_33", "force length", "particle stresslet, component 33"},
-      {"stresslet_12", "force length", "particle stresslet, component 12"},
-      {"stresslet_13", "force length", "particle stresslet, component 13"},
-      {"stresslet_23", "force length", "particle stresslet, component 23"},
-      {"length_x1", "length", "extent along x1"},
-      {"length_x2", "length", "extent along x2"},
-      {"length_x3", "length", "extent along x3"},
-      {"n_control_points", "1", "control points of the surface"},
-      {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"},
-      {"rejected_steps", "1", "attempts given up in this step"},
-      {"evaluations", "1", "velocity evaluations so far"},
-      {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"},
-  };
+std::vector<Column> rigid_columns() {
+  std::vector<Column> all = named(columns(), {"time", "time_step", "inclination"});
+  all.insert(all.end(), {{"center_x1", "length", "centre of the body, component 1"},
+                         {"center_x2", "length", "centre of the body, component 2"},
+                         {"center_x3", "length", "centre of the body, component 3"},
+                         {"velocity_x1", "length/time", "of the centre, component 1"},
+                         {"velocity_x2", "length/time", "of the centre, component 2"},
+                         {"velocity_x3", "length/time", "of the centre, component 3"},
+                         {"angular_velocity_x1", "1/time", "component 1"},
+                         {"angular_velocity_x2", "1/time", "component 2"},
+                         {"angular_velocity_x3", "1/time", "component 3"},
+                         {"quaternion_0", "1", "scalar part of the turn from the initial place"},
+                         {"quaternion_1", "1", "vector part, component 1"},
+                         {"quaternion_2", "1", "vector part, component 2"},
+                         {"quaternion_3", "1", "vector part, component 3"}});
+  std::ranges::copy(
+      named(columns(), {"stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "length_x1",
+                        "length_x2", "length_x3", "n_control_points", "step_error", "rejected_steps", "evaluations", "wall_seconds"}),
+      std::back_inserter(all));
   return all;
 }
 
 /// Further ones in a tube.
-const std::vector<Column>& rigid_tube_columns() {
-  static const std::vector<Column> all = {
-      {"migration_velocity", "length/time", "speed of the centre in the x2 x3 plane, positive towards the axis"},
-      {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
-      {"gap", "length", "smallest distance between particle and wall"},
-      {"solver_iterations", "1", "iterations of the linear solver so far"},
-  };
+std::vector<Column> rigid_tube_columns() {
+  std::vector<Column> all = named(tube_columns(), {"migration_velocity", "disturbed_pressure_drop", "gap"});
+  std::ranges::copy(named(columns(), {"solver_iterations"}), std::back_inserter(all));
   return all;
 }
 
@@ -69,7 +53,7 @@ class Free : public Moving {
       free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers);
     else
       free_ = std::make_unique<coupling::FreeBody>(resistance_, centre, body_.radius, body_.flow);
-    if (tube_) columns_.insert(columns_.end(), rigid_tube_columns().begin(), rigid_tube_columns().end());
+    if (tube_) std::ranges::copy(rigid_tube_columns(), std::back_inserter(columns_));
   }
 
   coupling::Dynamics& dynamics() override { return *free_; }

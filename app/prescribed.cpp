@@ -7,6 +7,7 @@
 #include "app/results.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
@@ -126,15 +127,11 @@ Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) 
 
 output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
   const bool free = scene.particle.motion == "free";
-  char unknowns[200], memory[200];
-  std::snprintf(unknowns, sizeof unknowns, "%d of the traction: single layer of the first kind, its null space made regular",
-                3 * body.space.n_points);
-  std::snprintf(memory, sizeof memory, "%.1f MB on %d rank%s", 72e-6 * body.space.n_points * body.space.n_points, ranks, ranks > 1 ? "s" : "");
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
   if (body.wall) fluid = tube_plan(scene, body);
   output::Entries<std::string> lines =
          {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
-          {"unknowns", unknowns},
+          {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * body.space.n_points)},
           {"particle", free && body.wall ? "rigid and free, no membrane: its motion is solved for with the traction, at each place"
                        : free ? "rigid and free, no membrane: six rigid motions and five strains, solved once, are all that it can meet"
                             : "rigid, its motion prescribed: no membrane, nothing moves in time"},
@@ -142,7 +139,7 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
                      : scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves"
                                                              : "integrals of the traction"},
           {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},
-          {"assembled", memory},
+          {"assembled", formatted("%.1f MB on %d rank%s", 72e-6 * body.space.n_points * body.space.n_points, ranks, ranks > 1 ? "s" : "")},
           {"symmetry", "none used"}};
   lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
   return lines;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread {
@@ -50,32 +51,42 @@ void Scene::declare(deck::Section& root) {
 
 namespace {
 
-/// Bytes of the assembled single layer that an implicit step needs: dense, single precision, three rows and columns a control point.
-double assembled_bytes(double n_points) { return 9.0 * sizeof(float) * n_points * n_points; }
+constexpr double most_bytes = 64e9;  // of one assembled operator, on all ranks together
+constexpr double doubles = 72;       // bytes of three rows and columns of one
 
-void check_size(const Scene& scene) {
-  constexpr double limit = 64e9;
-  const auto& imported = scene.particle.shape.imported;
-  const double n_points = imported ? imported->space.n_points : scene.surface.n_points(), most = std::sqrt(limit / assembled_bytes(1));
-  if (scene.solvers.frozen_operator == "nodal" && scene.particle.viscosity_ratio == 1) return;
-  if ((!scene.time.assembles() && scene.time.scheme != "auto") || n_points <= most) return;  // auto measures stiffness with it
-  const auto number = [](double x) { return std::to_string(std::lround(x)); };
-  const std::string size =
-      number(n_points) + " control points takes " + number(assembled_bytes(n_points) / 1e9) + " GB assembled, more than 64.";
-  if (imported)
-    throw UserError("Particle/file must hold at most " + number(std::floor(most)) + " control points with Time/scheme `" + scene.time.scheme +
-                    "`: the single layer of " + size);
-  if (scene.surface.polar())
-    throw UserError("Surface/azimuthal elements and Surface/meridional elements must give at most " + number(std::floor(most)) +
-                    " control points with Time/scheme `" + scene.time.scheme + "`: the single layer of " + size);
-  throw UserError("Surface/elements per side must be at most " + number(std::floor(std::sqrt((most - 2) / 6))) +
-                  " with Time/scheme `" + scene.time.scheme + "`, but is " + std::to_string(*scene.surface.elements_per_side) +
-                  ": the single layer of its " + size);
+/// Bytes a pair of control points of what the particle's layers are assembled in: rows of doubles, and frozen operators of six entries of 16 bits.
+/// `auto` assembles nothing that is too large.
+double bytes_a_pair(const Scene& scene) {
+  if (scene.particle.rigid()) return doubles;
+  const bool viscous = scene.particle.viscosity_ratio != 1;
+  const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
+  return (viscous && scene.solvers.double_layer == "assembled" ? doubles : 0) + 12 * (frozen + (scene.interface_motion() == "relaxed"));
 }
 
-}  // namespace
+/// `keys` say how many points there are: `must` is what they must be.
+void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
+  if (bytes * n_points * n_points > most_bytes)
+    throw UserError(keys + " must " + must +
+                    formatted(": the layers of %.0f control points take %.0f GB assembled, more than %.0f.", n_points,
+                              bytes * n_points * n_points / 1e9, most_bytes / 1e9));
+}
 
-namespace {
+void check_size(const Scene& scene) {
+  const double bytes = bytes_a_pair(scene), most = std::floor(std::sqrt(most_bytes / bytes));
+  const std::string points = formatted("give at most %.0f control points", most);
+  if (const auto& imported = scene.particle.shape.imported)
+    check_bytes("Particle/file", points, imported->space.n_points, bytes);
+  else if (scene.surface.polar())
+    check_bytes("Surface/azimuthal elements and Surface/meridional elements", points, scene.surface.n_points(), bytes);
+  else
+    check_bytes("Surface/elements per side",
+                formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
+                scene.surface.n_points(), bytes);
+  if (scene.tube.present)
+    check_bytes("Tube/azimuthal elements and Tube/axial elements",
+                formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / doubles))),
+                scene.tube.azimuthal_elements * (scene.tube.axial_elements + 3.0), doubles);
+}
 
 void check_motion(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
@@ -94,10 +105,6 @@ void check_motion(const Scene& scene) {
     throw UserError("Time/steady tolerance and " + motion + " contradict each other: it ends runs of a particle that deforms.");
 }
 
-}  // namespace
-
-namespace {
-
 void check_tube(const Scene& scene) {
   const std::string flow = "Flow/type `" + scene.flow.type + "`";
   if (!scene.tube.present) {
@@ -110,10 +117,6 @@ void check_tube(const Scene& scene) {
   if (scene.quadrature.rule == "desingularised")
     throw UserError("Quadrature/rule `desingularised` and Tube contradict each other: the wall is not closed.");
 }
-
-}  // namespace
-
-namespace {
 
 void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;

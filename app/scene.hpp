@@ -65,7 +65,7 @@ struct Scene {
   double snapshot_interval() const;  ///< simulated time between snapshots
 };
 
-/// Paths of the keys that must not differ when a run goes on: what the checkpoint is made of.
+/// Whether the key at this path may differ when a run goes on: one that the checkpoint is not made of.
 bool may_change_on_resume(const std::string& path);
 
 }  // namespace tanktread

@@ -15,6 +15,7 @@
 #include "app/tube.hpp"
 #include "app/warnings.hpp"
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
@@ -145,19 +146,18 @@ class Run {
   /// Across a gap that is narrower than 0.6 of the wall's elements its traction is off by more than 1e-4.
   void warn_of_coarse_wall(double gap) {
     const double widest = particle_->body().wall->widest;
-    if (warned_ || gap > 0.6 * widest) return;
-    warned_ = true;
-    if (ranks_.rank() == 0)
-      std::fprintf(stderr, "tanktread: at time %.6g the gap of %.4g is narrower than 0.6 of the wall's elements, %.4g: smaller ones resolve it\n",
-                   state_.time, gap, widest);
+    if (warned_of_wall_ || gap > 0.6 * widest) return;
+    warned_of_wall_ = true;
+    results_.warn(
+        formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
+                  "Tube/azimuthal elements and Tube/axial elements",
+                  state_.time, gap, widest));
   }
 
   [[noreturn]] void fail(const std::string& reason) {
     if (results_.last_saved() != standing_.step) save();
-    char where[300];
-    std::snprintf(where, sizeof where, " at time %.6g, step %d; the checkpoint of the last good step is in %s", state_.time, standing_.step,
-                  results_.directory().c_str());
-    throw RunFailure(reason + where);
+    throw RunFailure(reason + formatted(" at time %.6g, step %d; the checkpoint of the last good step is in %s", state_.time,
+                                        standing_.step, results_.directory().c_str()));
   }
 
   /// The last snapshot's time within the step just made, and the state there.
@@ -244,7 +244,7 @@ class Run {
   motion::StepReport report_;
   Standing standing_;
   std::vector<double> row_;
-  bool warned_ = false;
+  bool warned_of_wall_ = false;
   bool snapshot_due_ = false;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
   Soundness soundness_;

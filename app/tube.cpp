@@ -1,9 +1,9 @@
 #include "app/tube.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "deck/words.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
@@ -12,12 +12,6 @@
 namespace tanktread {
 
 namespace {
-
-std::string text(const char* format, auto... values) {
-  char line[400];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 /// The place of the particle's surface that is nearest to the wall, or farthest beyond it, among 5 x 5 points an element.
 struct Closest {
@@ -42,16 +36,18 @@ void check_fit(const Scene& scene, const Body& body, const surface::Outline& out
   const Vec3& centre = scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
   if (from_axis <= 0)
-    throw UserError(text("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
+    throw UserError(
+        formatted("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
   const Closest nearest = closest(body, outline);
-  const std::string where = text("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
+  const std::string where = formatted("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
   if (nearest.gap <= 0)
-    throw UserError(text("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.", where.c_str(),
-                         -nearest.gap, body.radius, outline.radius()));
+    throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
+                              where.c_str(), -nearest.gap, body.radius, outline.radius()));
   const double least = scene.tube.contact_gap * body.radius;
   if (nearest.gap < least)
-    throw UserError(text("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
-                         where.c_str(), nearest.gap, scene.tube.contact_gap, least));
+    throw UserError(
+        formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
+                  where.c_str(), nearest.gap, scene.tube.contact_gap, least));
 }
 
 }  // namespace
@@ -137,23 +133,25 @@ output::Entries<std::string> tube_plan(const Scene& scene, const Body& body) {
   const double unknowns = 3.0 * wall.space.n_points;
   std::string own_flow = "quiescent fluid";
   if (scene.flow.type == "duct")
-    own_flow = text("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
+    own_flow =
+        formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   const bool system = scene.particle.viscosity_ratio != 1 || scene.solvers.tube != "schur";
   const std::string solved = scene.particle.rigid()            ? std::string("eliminated from the system of the traction")
                              : scene.solvers.tube != "schur"   ? "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube
                              : system                          ? std::string("eliminated from the system of the velocity")
                                                                : std::string("solved for directly");
-  return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : text(" by %d boundary elements", scene.tube.flow_elements))},
-          {"tube", text("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
-                        wall.space.description.c_str())},
-          {"wall", text("%.0f unknowns of the traction and the pressure drop, %s; factored once, %.1f MB", unknowns, solved.c_str(),
-                        8e-6 * unknowns * unknowns)}};
+  return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements))},
+          {"tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
+                             wall.space.description.c_str())},
+          {"wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once, %.1f MB", unknowns, solved.c_str(),
+                             8e-6 * unknowns * unknowns)}};
 }
 
 std::string contact(const Scene& scene, double gap) {
   const double least = scene.tube.contact_gap * scene.radius();
   if (gap >= least) return {};
-  return text("the particle touches the wall: the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g,", gap, scene.tube.contact_gap, least);
+  return formatted("the particle touches the wall: the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g,", gap,
+                   scene.tube.contact_gap, least);
 }
 
 }  // namespace tanktread

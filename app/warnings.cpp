@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "base/formatted.hpp"
 
 namespace tanktread {
 
@@ -14,12 +15,6 @@ constexpr int limited_steps = 10;   // in a row: fewer are the start
 constexpr double folding = 0.05;    // jacobian_ratio; even elements have 0.5 and more, those at a plain pole 0.1
 constexpr double slenderness = 10;  // aspect_ratio
 constexpr double lost_volume = 1e-3;
-
-std::string text(const char* format, auto... values) {
-  char line[400];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 double rate(const Scene& scene) {
   const double of_flow = scene.speed() / scene.radius();
@@ -51,7 +46,7 @@ std::vector<std::string> Warnings::look(const Signs& signs) {
   std::vector<std::string> fresh;
   const auto add = [&](const char* kind, const std::string& sentence) {
     if (sentence.empty() || !kinds_.insert(kind).second) return;
-    fresh.push_back(text("at time %.4g ", signs.time) + sentence);
+    fresh.push_back(formatted("at time %.4g ", signs.time) + sentence);
     said_.push_back(fresh.back());
   };
   add("choice", choice());
@@ -85,7 +80,7 @@ std::string Warnings::compression(const Signs& signs) {
   waves_ = std::max(0.0, waves_ + (growth - rate(scene_)) * signs.step);
   if (waves_ < grown) return {};
   const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
-  return text(
+  return formatted(
       "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; "
       "set Membrane/bending modulus%s or Membrane/pre-inflation",
       100 * signs.compressed_area, signs.smallest_tension, resistance, bending > 0 ? " higher" : "");
@@ -99,8 +94,8 @@ std::string Warnings::stiffness(const Signs& signs) {
   limited_ = reached > 0.8 * limit ? limited_ + 1 : 0;
   if (!(fixed && reached > limit) && limited_ < limited_steps) return {};
   const char* what = explicit_scheme ? "explicit step" : "sub-iterated step";
-  return text("the %s times the membrane's stiffness is %.2g, where about %.2g is the limit: %s; set Time/scheme to auto", what, reached,
-              limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
+  return formatted("the %s times the membrane's stiffness is %.2g, where about %.2g is the limit: %s; set Time/scheme to auto", what,
+                   reached, limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
 }
 
 std::string Warnings::fold(const Signs& signs) const {
@@ -108,25 +103,25 @@ std::string Warnings::fold(const Signs& signs) const {
   const std::string cure = scene_.membrane.load == "strong" && elastic(scene_)           ? "set Membrane/load to weak"
                            : scene_.interface_motion() == "material" && !elastic(scene_) ? "set Interface/motion to relaxed"
                                                                                          : finer_mesh(scene_);
-  return text("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure;
+  return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure;
 }
 
 std::string Warnings::stretch(const Signs& signs) const {
   if (signs.aspect_ratio < slenderness) return {};
-  return text("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
+  return formatted("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
          (elastic(scene_) || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
 }
 
 std::string Warnings::gap(const Signs& signs) const {
   if (!signs.gap || *signs.gap > signs.element / 2) return {};
-  return text(
+  return formatted(
       "the gap to the wall (%.2g) is less than half an element (%.2g): set finer meshes of particle and tube, or Adaptation/enabled",
       *signs.gap, signs.element);
 }
 
 std::string Warnings::volume(const Signs& signs) const {
   if (scene_.particle.rigid() || std::abs(signs.volume_error) < lost_volume) return {};
-  return text("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
+  return formatted("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
 }
 
 surface::Quality Soundness::operator()(const Body& body, const Net& x) {

@@ -86,73 +86,92 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
 
 int log2_of(int power) { return std::countr_zero(unsigned(power)); }
 
-}  // namespace
+/// Elements in the order of the tiles, those of tile t from first[t] on.
+struct TileElements {
+  std::vector<Element> all;
+  std::vector<int> first;
 
-Space space(const TMesh& mesh, ExtraordinaryRule rule) {
+  bool one(int tile) const { return first[tile + 1] - first[tile] == 1; }
+};
+
+/// Those at extraordinary points complete, the others with their places and room for their functions.
+TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
-  const TileFunctions b = tile_functions(mesh);
   const std::vector<int> point = control_points(mesh);
-  Space out;
-  out.n_points = int(b.anchor.size());
-  out.collocation.resize(out.n_points);
-  for (int A = 0; A < out.n_points; ++A) out.collocation[A] = tiles_around(mesh, b.tiling, greville(mesh, b.anchor[A], b.knots[A]));
-
   const int tiles = int(b.tiling.tiles.size());
-  std::vector<int> count(tiles, 0), first(tiles + 1, 0);  // functions of a tile; its first element
+  std::vector<int> count(tiles, 0);  // functions of a tile
   for (const Contribution& c : b.entries) ++count[c.tile];
-  out.elements.reserve(tiles);
   // The averaged square keeps its side, 2^-max(levels, 4) of a base element, however often the rings around it are refined.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
   std::map<std::pair<int, int>, std::vector<Element>> patterns;  // by corner and spacing, with ring numbers for points
   std::array<int, OneRing::size> numbers;
   std::iota(numbers.begin(), numbers.end(), 0);
+  TileElements out;
+  out.all.reserve(tiles);
   for (int t = 0; t < tiles; ++t) {
     const Rectangle& r = b.tiling.tiles[t];
-    first[t] = int(out.elements.size());
+    out.first.push_back(int(out.all.size()));
     if (b.irregular[t] < 0) {
       Element e;
       e.points.reserve(count[t]);
       e.extraction.resize(count[t], 16);
-      out.elements.push_back(std::move(e));
+      out.all.push_back(std::move(e));
     } else {
       const auto ring = ring_of(l, b, point, t);
       auto& pattern = patterns[{b.irregular[t], r.width}];
       if (pattern.empty()) pattern = around_point(numbers, b.irregular[t], rule, below_unit + log2_of(r.width));
       for (Element e : pattern) {
         for (int& p : e.points) p = ring[p];
-        out.elements.push_back(std::move(e));
+        out.all.push_back(std::move(e));
       }
     }
-    for (std::size_t k = first[t]; k < out.elements.size(); ++k) {
-      Element& e = out.elements[k];
+    for (std::size_t k = out.first[t]; k < out.all.size(); ++k) {
+      Element& e = out.all[k];
       e.face = r.face;
       e.origin = {(r.x + e.origin[0] * r.width) / l.units, (r.y + e.origin[1] * r.height) / l.units};
       e.size = {e.size[0] * r.width / l.units, e.size[1] * r.height / l.units};
     }
   }
-  first[tiles] = int(out.elements.size());
+  out.first.push_back(int(out.all.size()));
+  return out;
+}
+
+/// Sites on tiles as sites on all elements that hold them.
+std::vector<Site> on_elements(const Lattice& l, const Tiling& tiling, const TileElements& elements, const std::vector<Site>& on_tiles) {
+  std::vector<Site> found;
+  for (const Site& site : on_tiles) {
+    const int first = elements.first[site.element];
+    if (elements.one(site.element)) {
+      found.push_back({first, site.s, site.t});
+      continue;
+    }
+    const Rectangle& r = tiling.tiles[site.element];
+    const double x = (r.x + site.s * r.width) / l.units, y = (r.y + site.t * r.height) / l.units, margin = 1e-9;
+    for (int k = first; k < elements.first[site.element + 1]; ++k) {
+      const Element& e = elements.all[k];
+      const double s = (x - e.origin[0]) / e.size[0], t = (y - e.origin[1]) / e.size[1];
+      if (std::min(s, t) > -margin && std::max(s, t) < 1 + margin) found.push_back({k, std::clamp(s, 0.0, 1.0), std::clamp(t, 0.0, 1.0)});
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+Space space(const TMesh& mesh, ExtraordinaryRule rule) {
+  const Lattice& l = *mesh.lattice;
+  const TileFunctions b = tile_functions(mesh);
+  TileElements elements = laid_out(mesh, b, rule);
   for (const Contribution& c : b.entries) {
-    Element& e = out.elements[first[c.tile]];
+    Element& e = elements.all[elements.first[c.tile]];
     e.extraction.row(Eigen::Index(e.points.size())) = Eigen::Map<const Eigen::Matrix<double, 1, 16>>(c.row.data());
     e.points.push_back(c.anchor);
   }
-  for (auto& sites : out.collocation) {
-    std::vector<Site> found;
-    for (const Site& site : sites) {
-      const Rectangle& r = b.tiling.tiles[site.element];
-      const double x = (r.x + site.s * r.width) / l.units, y = (r.y + site.t * r.height) / l.units;
-      if (first[site.element + 1] - first[site.element] == 1) {
-        found.push_back({first[site.element], site.s, site.t});
-        continue;
-      }
-      for (int k = first[site.element]; k < first[site.element + 1]; ++k) {
-        const Element& e = out.elements[k];
-        const double s = (x - e.origin[0]) / e.size[0], t = (y - e.origin[1]) / e.size[1], margin = 1e-9;
-        if (std::min(s, t) > -margin && std::max(s, t) < 1 + margin) found.push_back({k, std::clamp(s, 0.0, 1.0), std::clamp(t, 0.0, 1.0)});
-      }
-    }
-    sites = std::move(found);
-  }
+  Space out;
+  out.n_points = int(b.anchor.size());
+  for (int A = 0; A < out.n_points; ++A)
+    out.collocation.push_back(on_elements(l, b.tiling, elements, tiles_around(mesh, b.tiling, greville(mesh, b.anchor[A], b.knots[A]))));
+  out.elements = std::move(elements.all);
   out.description = std::to_string(out.elements.size()) + " Bezier elements on a cube, " + std::to_string(out.n_points) +
                     " control points, eight extraordinary points (" + (rule == ExtraordinaryRule::g1 ? "g1" : "catmull-clark") + ")";
   return out;

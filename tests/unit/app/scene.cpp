@@ -124,15 +124,22 @@ TEST(Contradictions, AreOneSentenceEach) {
 TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   const std::string assembled = "  Solvers: {frozen operator: assembled}\n";
   EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"), "");  // nothing is kept but what is near
-  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 83}\n"), "");
-  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 100}\n"),
-            "Surface/elements per side must be at most 83 with Time/scheme `tr-bdf2`, but is 100: the single layer of its 60002 control "
-            "points takes "
-            "130 GB assembled, more than 64.");
-  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 100}\n  Time: {scheme: bs3}\n"), "");
-  EXPECT_EQ(refusal(assembled + "  Surface: {mesh: polar, azimuthal elements: 300, meridional elements: 150}\n"),
-            "Surface/azimuthal elements and Surface/meridional elements must give at most 42163 control points with Time/scheme `tr-bdf2`: "
-            "the single layer of 45302 control points takes 74 GB assembled, more than 64.");
+  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 110}\n"), "");
+  EXPECT_EQ(
+      refusal(assembled + "  Surface: {elements per side: 120}\n"),
+      "Surface/elements per side must be at most 110, but is 120: the layers of 86402 control points take 90 GB assembled, more than 64.");
+  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 120}\n  Time: {scheme: bs3}\n"), "");
+  EXPECT_EQ(
+      refusal(assembled + "  Surface: {mesh: polar, azimuthal elements: 400, meridional elements: 200}\n"),
+      "Surface/azimuthal elements and Surface/meridional elements must give at most 73029 control points: the layers of 80402 control "
+      "points take 78 GB assembled, more than 64.");
+  EXPECT_EQ(
+      refusal("  Particle: {motion: free}\n  Surface: {elements per side: 80}\n"),
+      "Surface/elements per side must be at most 70, but is 80: the layers of 38402 control points take 106 GB assembled, more than 64.");
+  EXPECT_EQ(
+      refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
+      "Tube/azimuthal elements and Tube/axial elements must give at most 29814 control points: the layers of 40600 control points take 119 "
+      "GB assembled, more than 64.");
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
 }
 
