@@ -31,7 +31,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   if (speed == 0) return std::min(1e-3 * options.final_time, options.maximum_step.value_or(1e300));
   const double trial = 1e-3 / speed;
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
-  const double step = std::cbrt(0.1 * options.tolerance / std::max(speed, change));
+  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(change, speed * speed)));
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 
@@ -41,9 +41,9 @@ double step_factor(double error, double previous, int power) {
 }
 
 void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options) {
-  if (step >= options.minimum_step || time + step >= limit) return;
+  if (options.fixed_step || step >= options.least_step() || time + step >= limit) return;
   std::ostringstream text;
-  text << "the step fell to " << step << ", below Time/minimum step " << options.minimum_step;
+  text << "the step fell to " << step << ", below Time/minimum step " << options.least_step();
   throw RunFailure(text.str());
 }
 

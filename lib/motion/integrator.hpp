@@ -47,7 +47,8 @@ class Integrator {
 std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox = nullptr);
 
 /// A first step for a state whose slope is known, at the cost of one velocity evaluation: the error of a second-order scheme, judged by the
-/// change of slope along a short Euler step (Hairer, Norsett & Wanner, Solving ODEs I, II.4), is about a tenth of the tolerance.
+/// change of slope along a short Euler step (after Hairer, Norsett & Wanner, Solving ODEs I, II.4), is about a tenth of the tolerance. The third
+/// derivative is taken for the rate of the motion times the second, or times its own square: whatever the unit of time, it is the same step.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
 /// Factor for the next step of a PI controller: the error over the tolerance, that of the accepted step before (0: none), and the power of the

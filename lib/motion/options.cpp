@@ -15,7 +15,8 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("initial step", initial_step, deck::positive(), "time", "the first step; if not given, the scheme finds one");
   section.key("fixed step", fixed_step, deck::positive(), "time", "every step, without control of the error");
   section.key("maximum step", maximum_step, deck::positive(), "time", "no step is longer");
-  section.key("minimum step", minimum_step, deck::positive(), "time", "a controlled step that would be shorter ends the run");
+  section.key("minimum step", minimum_step, deck::positive(), "time",
+              "a controlled step that would be shorter ends the run; if not given, 1e-9 over the rate of the flow");
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
               "the run ends when the largest normal velocity over rate x R_C falls below it; if not given, only at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1", "end of the sub-iteration of `crank-nicolson` (4.1)");
@@ -44,8 +45,8 @@ void TimeOptions::declare(deck::Section& section) {
 void TimeOptions::check() const {
   if (fixed_step && initial_step) throw UserError("Time/fixed step and Time/initial step contradict each other: give one of them.");
   if (fixed_step && maximum_step) throw UserError("Time/fixed step and Time/maximum step contradict each other: give one of them.");
-  if (maximum_step && *maximum_step < minimum_step) throw UserError("Time/maximum step must not be shorter than Time/minimum step.");
-  if (initial_step && *initial_step < minimum_step) throw UserError("Time/initial step must not be shorter than Time/minimum step.");
+  if (maximum_step && minimum_step && *maximum_step < *minimum_step) throw UserError("Time/maximum step must not be shorter than Time/minimum step.");
+  if (initial_step && minimum_step && *initial_step < *minimum_step) throw UserError("Time/initial step must not be shorter than Time/minimum step.");
 }
 
 }  // namespace tanktread::motion

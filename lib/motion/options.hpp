@@ -17,7 +17,8 @@ struct TimeOptions {
   std::optional<double> initial_step;      ///< empty: the scheme finds one
   std::optional<double> fixed_step;        ///< steps of this size without error control, the last one shortened
   std::optional<double> maximum_step;      ///< empty: no limit
-  double minimum_step = 1e-9;              ///< a controlled step below this ends the run with a failure
+  std::optional<double> minimum_step;      ///< a controlled step below this ends the run with a failure; empty: 1e-9 of `unit`
+  double unit = 1;                         ///< of time, that goes with the scene: one over the rate of its flow; no key of the deck
   std::optional<double> steady_tolerance;  ///< stop when max |v.n| over (rate R_C) falls below it; empty: never
   double iteration_tolerance = 1e-7;       ///< end of the sub-iteration of crank-nicolson (4.1)
   std::string nonlinear_solver = "plain";   ///< of crank-nicolson: plain, anderson, newton-krylov
@@ -31,6 +32,7 @@ struct TimeOptions {
   int secants = 2;                         ///< corrections remembered by the quasi-Newton iteration (4.13)
   int predictor_order = 1;                 ///< order of the polynomial through known slopes that a stage starts from
 
+  double least_step() const { return minimum_step.value_or(1e-9 * unit); }
   bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< a frozen operator of any size (4.3)
   bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }  ///< of crank-nicolson
 

@@ -301,6 +301,39 @@ TEST(Integrators, AStepBelowTheMinimumStopsTheRunAndKeepsTheState) {
   }
 }
 
+/// The same motion, in a unit of time that is so many times as long.
+class Rescaled : public Model {
+ public:
+  explicit Rescaled(double unit) : Model(30), unit_(unit) {}
+  Net velocity(const Net& x) override { return unit_ * Model::velocity(x); }
+
+ private:
+  double unit_;
+};
+
+TEST(Integrators, TheFirstStepIsTheSameWhateverTheUnitOfTime) {
+  double first = 0;
+  for (const double unit : {1.0, 1e-3, 1e4}) {
+    Rescaled model(unit);
+    State state = start(0);
+    state.history = {model.velocity(state.x)};
+    TimeOptions options = with("tr-bdf2");
+    options.final_time = 1 / unit;
+    const double step = unit * first_step(model, state, options);
+    if (unit == 1) first = step;
+    EXPECT_GT(step, 0);
+    EXPECT_NEAR(step, first, 1e-9 * first) << unit;  // round-off of a difference quotient
+  }
+}
+
+TEST(Integrators, AFixedStepMayBeShorterThanTheLeastOfAControlledOne) {
+  TimeOptions options = with("bs3");
+  options.fixed_step = 1e-12;
+  Model model(1);
+  State state = start(1);
+  EXPECT_EQ(integrator(options)->advance(model, state, 1).step, 1e-12);
+}
+
 TEST(Integrators, StepsTowardsALimitLeaveNoSliver) {
   EXPECT_EQ(step_towards(1, 2, 5), 1);
   EXPECT_EQ(step_towards(1, 2, 0.7), 0.5);
