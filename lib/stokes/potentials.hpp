@@ -7,8 +7,10 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
+#include "stokes/far_kernel.hpp"
 #include "stokes/kernels.hpp"
 #include "stokes/layer_surface.hpp"
+#include "surface/patch.hpp"
 
 namespace tanktread::stokes {
 
@@ -47,8 +49,11 @@ class Potentials {
   const Evaluations& evaluations() const { return evaluations_; }
 
  private:
-  template <class Add>
-  void each_panel(const Vec3& y, const Add& add);
+  template <class Far, class Near>
+  Vec3 integral(const Vec3& y, const Far& far, const Near& near);
+  PointForces forces(const std::vector<double> (&f)[3]) const;
+  surface::Patch patch(int panel, const std::vector<double>& bezier) const;
+  void take(const Net& field);
   Vec3 double_sum_about(const Vec3& y, const Vec3& v0);
 
   LayerSurface surface_;
