@@ -2,55 +2,47 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <optional>
 #include <sstream>
 #include <utility>
 
-#include <BelosSolverFactory_Tpetra.hpp>
-#include <BelosTpetraAdapter.hpp>
+#include <BelosOperator.hpp>
+#include <BelosSolverFactory.hpp>
 #include <Teuchos_ParameterList.hpp>
-#include <Tpetra_Core.hpp>
-#include <Tpetra_Map.hpp>
-#include <Tpetra_MultiVector.hpp>
-#include <Tpetra_Operator.hpp>
 
 #include "base/errors.hpp"
+#include "coupling/belos_vectors.hpp"
 #include "deck/foreign.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
 
-using Map = Tpetra::Map<>;
-using MultiVector = Tpetra::MultiVector<>;
-using Operator = Tpetra::Operator<>;
+using MultiVector = Belos::MultiVec<double>;
+using Operator = Belos::Operator<double>;
 using Problem = Belos::LinearProblem<double, MultiVector, Operator>;
 using Solver = Belos::SolverManager<double, MultiVector, Operator>;
-
-using Vector = Eigen::Map<const Eigen::VectorXd>;
 
 /// Products of a linear operator with orthonormal vectors, as Krylov methods without preconditioner ask for them.
 class KnownProducts {
  public:
-  void keep(const Vector& v, const Vector& av) {
+  void keep(const Vectors::Column& v, const Vectors::Column& av) {
     if (inputs_.size() == most) return;
     inputs_.emplace_back(v);
     outputs_.emplace_back(av);
   }
 
-  /// A x, if x is a sum of the inputs to round-off.
-  std::optional<Eigen::VectorXd> of(const Vector& x) const {
+  /// Whether x is a sum of the inputs to round-off; then y = A x.
+  bool give(const Vectors::Column& x, Vectors::Column y) const {
     const double size = x.norm();
     Eigen::VectorXd shares(inputs_.size());
     for (std::size_t k = 0; k < inputs_.size(); ++k) shares[static_cast<Eigen::Index>(k)] = inputs_[k].dot(x);
-    if (shares.norm() < (1 - 1e-8) * size) return {};
-    Eigen::VectorXd rest = x, product = Eigen::VectorXd::Zero(x.size());
-    for (std::size_t k = 0; k < inputs_.size(); ++k) {
-      rest -= shares[static_cast<Eigen::Index>(k)] * inputs_[k];
-      product += shares[static_cast<Eigen::Index>(k)] * outputs_[k];
-    }
-    if (!(rest.norm() <= 1e-12 * size)) return {};
-    return product;
+    if (shares.norm() < (1 - 1e-8) * size) return false;
+    Eigen::VectorXd rest = x;
+    for (std::size_t k = 0; k < inputs_.size(); ++k) rest -= shares[static_cast<Eigen::Index>(k)] * inputs_[k];
+    if (!(rest.norm() <= 1e-12 * size)) return false;
+    y.setZero();
+    for (std::size_t k = 0; k < inputs_.size(); ++k) y += shares[static_cast<Eigen::Index>(k)] * outputs_[k];
+    return true;
   }
 
  private:
@@ -58,36 +50,22 @@ class KnownProducts {
   std::vector<Eigen::VectorXd> inputs_, outputs_;
 };
 
-/// A Tpetra operator made of a function on flat arrays. Belos multiplies a start of zeros too, and its solution to see the true residual: these
+/// A function on flat arrays as an operator of Belos, which multiplies a start of zeros too, and its solution to see the true residual: these
 /// products are known.
 class FunctionOperator : public Operator {
  public:
-  FunctionOperator(Teuchos::RCP<const Map> map, const Krylov::Apply& apply) : map_(std::move(map)), apply_(apply) {}
-  Teuchos::RCP<const Map> getDomainMap() const override { return map_; }
-  Teuchos::RCP<const Map> getRangeMap() const override { return map_; }
-  void apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp, double alpha, double beta) const override {
-    const auto n = static_cast<Eigen::Index>(map_->getGlobalNumElements());
-    for (size_t c = 0; c < x.getNumVectors(); ++c) {
-      const Vector in(x.getData(c).getRawPtr(), n);
-      const Eigen::VectorXd product = times(in);
-      Eigen::Map<Eigen::VectorXd> out(y.getDataNonConst(c).getRawPtr(), n);
-      if (beta == 0)
-        out = alpha * product;
-      else
-        out = alpha * product + beta * out;
+  explicit FunctionOperator(const Krylov::Apply& apply) : apply_(apply) {}
+  void Apply(const MultiVector& x, MultiVector& y, Belos::ETrans) const override {
+    for (int c = 0; c < x.GetNumberVecs(); ++c) {
+      const Vectors::Column in = Vectors::of(x).column(c);
+      Vectors::Column out = Vectors::of(y).column(c);
+      if (known_.give(in, out)) continue;
+      apply_(in.data(), out.data());
+      known_.keep(in, out);
     }
   }
 
  private:
-  Eigen::VectorXd times(const Vector& in) const {
-    if (const auto known = known_.of(in)) return *known;
-    Eigen::VectorXd out(in.size());
-    apply_(in.data(), out.data());
-    known_.keep(in, Vector(out.data(), out.size()));
-    return out;
-  }
-
-  Teuchos::RCP<const Map> map_;
   const Krylov::Apply& apply_;
   mutable KnownProducts known_;
 };
@@ -112,16 +90,7 @@ struct Krylov::Impl {
   Teuchos::RCP<Solver> solver;
   std::string name;
   std::ostringstream log;
-  double tolerance = -1;                  // as the solver knows it
-  Teuchos::RCP<const Map> map;            // of the latest system, as are
-  Teuchos::RCP<MultiVector> left, right;  // its solution and right-hand side
-
-  void resize(Eigen::Index n) {
-    if (map != Teuchos::null && static_cast<Eigen::Index>(map->getGlobalNumElements()) == n) return;
-    map = Teuchos::rcp(new Map(static_cast<Tpetra::global_size_t>(n), 0, Tpetra::getDefaultComm(), Tpetra::LocallyReplicated));
-    left = Teuchos::rcp(new MultiVector(map, 1)), right = Teuchos::rcp(new MultiVector(map, 1));
-  }
-
+  double tolerance = -1;  // as the solver knows it
   void ask(double wanted) {
     if (tolerance == wanted) return;
     const auto now = Teuchos::rcp(new Teuchos::ParameterList(*list));
@@ -163,19 +132,17 @@ SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::V
     x.setZero();
     return {0, true, 0, {}};
   }
-  impl_->resize(b.size());
-  const auto op = Teuchos::rcp(new FunctionOperator(impl_->map, apply));
-  std::copy_n(x.data(), x.size(), impl_->left->getDataNonConst(0).getRawPtr());
-  std::copy_n(b.data(), b.size(), impl_->right->getDataNonConst(0).getRawPtr());
-
-  const auto problem = Teuchos::rcp(new Problem(op, impl_->left, impl_->right));
-  if (precondition) problem->setRightPrec(Teuchos::rcp(new FunctionOperator(impl_->map, precondition)));
+  const auto left = Teuchos::rcp(new Vectors(b.size(), 1)), right = Teuchos::rcp(new Vectors(b.size(), 1));
+  left->column(0) = x;
+  right->column(0) = b;
+  const auto problem = Teuchos::rcp(new Problem(Teuchos::rcp(new FunctionOperator(apply)), left, right));
+  if (precondition) problem->setRightPrec(Teuchos::rcp(new FunctionOperator(precondition)));
   problem->setProblem();
   impl_->log.str({});
   impl_->ask(tolerance);
   impl_->solver->setProblem(problem);
   const bool converged = impl_->solver->solve() == Belos::Converged;
-  std::copy_n(impl_->left->getData(0).getRawPtr(), x.size(), x.data());
+  x = left->column(0);
   return {impl_->solver->getNumIters(), converged, impl_->solver->achievedTol(), residuals(impl_->log.str())};
 }
 

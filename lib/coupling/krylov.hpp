@@ -25,7 +25,7 @@ struct SolveReport {
 /// Throws RunFailure with the residual history when `report` is of a solve of `system` that did not reach `tolerance`.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
-/// Belos, called through its factory, on locally replicated Tpetra vectors: every rank does the same arithmetic on the whole short
+/// Belos, called through its factory, on short vectors that every rank holds whole (Vectors): every rank does the same arithmetic on the whole short
 /// vector, so dot products need no message and an iteration count cannot differ between ranks or rank counts. The operator may be
 /// distributed inside; it must return the same vector on every rank.
 class Krylov {

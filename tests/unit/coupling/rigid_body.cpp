@@ -62,7 +62,7 @@ TEST(FreeBody, SphereGoesWithTheFlow) {
   const Fixture f(Vec3::Constant(0.8));
   const RigidMotion motion = f.body->motion(f.turned(0.7, Vec3(1, 2, 3)));
   const Mat3 l = some_gradient();
-  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-10);  // the mesh is symmetric
+  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-9);  // the mesh is symmetric, its system is solved to 1e-8
   EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-10);
   const Mat3 strain = 0.5 * (l + l.transpose()), exact = 20 * pi / 3 * viscosity * 0.8 * 0.8 * 0.8 * strain;  // Einstein 1906
   EXPECT_LT((f.body->stresslet(placed(f.shape.center)) - exact).norm() / exact.norm(), 5e-5);  // fourth order: 2.4e-5
