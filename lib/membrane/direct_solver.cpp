@@ -26,6 +26,9 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double residual_allowed = 1e-8;
 
+// Rows up to which the inverse is kept, and multiplied by: what Amesos2 does about a solve takes longer than the product. Measured as below.
+constexpr Eigen::Index worth_inverting = 256;
+
 // Rows from which columns are solved for together. One by one they read the factors again, but for several Amesos2 makes maps and an import in every
 // solve, which takes longer than a small system itself. Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_sharing = 200;
@@ -65,6 +68,7 @@ struct DirectSolver::Impl {
   Teuchos::RCP<Matrix> matrix;
   std::array<Teuchos::RCP<MultiVector>, 3> x, b;  // of one, two and three columns
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
+  Eigen::MatrixXd inverse;  // of a small matrix, else empty
 
   // Everything that depends on the pattern only.
   void analyse() {
@@ -100,6 +104,22 @@ struct DirectSolver::Impl {
       matrix->replaceLocalValues(row, n, a.valuePtr() + first, a.innerIndexPtr() + first);
     }
     matrix->fillComplete(map, map);
+  }
+
+  // By the factors.
+  void invert() {
+    inverse.resize(0, 0);
+    const Eigen::Index n = a.rows();
+    if (n > worth_inverting) return;
+    Eigen::MatrixXd all(n, n);
+    Columns unit = Columns::Zero(n, 1), one(n, 1);
+    for (Eigen::Index c = 0; c < n; ++c) {
+      unit(c, 0) = 1;
+      solve(unit, one);
+      unit(c, 0) = 0;
+      all.col(c) = one;
+    }
+    inverse = std::move(all);
   }
 
   // Up to three columns.
@@ -146,6 +166,7 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
     else
       impl_->analyse();
     impl_->solver->numericFactorization();
+    impl_->invert();
     const double left = impl_->residual(*this);
     if (!(left < residual_allowed)) trouble = "it leaves a relative residual of " + std::to_string(left);
   } catch (const UserError&) {
@@ -162,6 +183,12 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
 }
 
 void DirectSolver::solve(const Columns& b, Columns& x) const {
+  if (impl_->inverse.size() > 0) {
+    const Eigen::MatrixXd right = b;  // by columns
+    x.resize(b.rows(), b.cols());
+    for (Eigen::Index c = 0; c < b.cols(); ++c) x.col(c) = impl_->inverse * right.col(c);
+    return;
+  }
   x.resize(b.rows(), b.cols());
   const Eigen::Index at_once = b.rows() < worth_sharing ? 1 : b.cols();
   for (Eigen::Index first = 0; first < b.cols(); first += at_once) impl_->solve(b.middleCols(first, at_once), x.middleCols(first, at_once));
