@@ -5,6 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include <fcntl.h>
+
 #include "base/errors.hpp"
 
 namespace tanktread::output {
@@ -33,14 +35,27 @@ void remove_where(const fs::path& directory, const Test& test) {
 
 [[noreturn]] void fail(const fs::path& path) { throw RunFailure("cannot write " + path.string() + ": " + std::strerror(errno)); }
 
-}  // namespace
-
-void write_whole(const fs::path& path, std::string_view bytes) {
-  const fs::path part = path.string() + std::string(kUnfinished);
+/// The unfinished file beside `path`, with all bytes.
+fs::path written_beside(const fs::path& path, std::string_view bytes) {
+  fs::path part = path.string() + std::string(kUnfinished);
   std::FILE* file = std::fopen(part.c_str(), "wb");
   if (!file) fail(path);
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  if (std::fclose(file) != 0 || !written || std::rename(part.c_str(), path.c_str()) != 0) fail(path);
+  if (std::fclose(file) != 0 || !written) fail(path);
+  return part;
+}
+
+}  // namespace
+
+void write_whole(const fs::path& path, std::string_view bytes) {
+  const fs::path part = written_beside(path, bytes);
+  if (std::rename(part.c_str(), path.c_str()) != 0) fail(path);
+}
+
+void rewrite_whole(const fs::path& path, std::string_view bytes) {
+  const fs::path part = written_beside(path, bytes);
+  const bool exchanged = renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0;
+  if ((exchanged ? std::remove(part.c_str()) : std::rename(part.c_str(), path.c_str())) != 0) fail(path);
 }
 
 void start_directory(const fs::path& directory) {

@@ -11,6 +11,11 @@ namespace tanktread::output {
 /// Throws RunFailure (disk full, no permission).
 void write_whole(const std::filesystem::path& path, std::string_view bytes);
 
+/// The same for a file that is written many times a second. Old and new file change places, which no file system takes as a reason to go to the disk
+/// at once, as some do for a file renamed over (0.2 ms and more); so it is the system's own time of writing, not this one, that a power failure
+/// goes back to, maybe to no file.
+void rewrite_whole(const std::filesystem::path& path, std::string_view bytes);
+
 /// Makes `directory` ready for a run: creates it, and removes the results of an earlier run and unfinished files (only names that
 /// a run writes). Throws UserError where it cannot.
 void start_directory(const std::filesystem::path& directory);

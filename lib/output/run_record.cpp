@@ -1,6 +1,7 @@
 #include "output/run_record.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <stdexcept>
 
@@ -9,6 +10,10 @@
 #include "output/hdf.hpp"
 
 namespace tanktread::output {
+
+namespace {
+constexpr std::chrono::milliseconds often(50);  // between rows: then a way to the disk with each is more than a hundredth of the run's time
+}
 
 struct RunRecord::Image {
   hdf::Id file;
@@ -61,7 +66,9 @@ void RunRecord::append(std::span<const double> row) {
     lay_out();
   else
     hdf::append(image_->columns, before, row);
-  write_whole(path_, hdf::image(image_->file));
+  const auto now = std::chrono::steady_clock::now();
+  (now - written_ < often ? rewrite_whole : write_whole)(path_, hdf::image(image_->file));
+  written_ = now;
 }
 
 void RunRecord::truncate(std::size_t rows) {

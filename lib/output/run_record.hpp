@@ -1,6 +1,7 @@
 #pragma once
 // The record of a run, `run.h5`: one row a finished step, whole at every moment.
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -21,9 +22,9 @@ struct Series {
 /// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks).
 ///
 /// The columns live here, and so does an image of the file, which every `append` extends and writes beside the file on disk, to be renamed
-/// to it: some tenth of a millisecond. A process killed at any moment leaves a file with every row whose `append` returned. Columns are one
-/// chunk each, with room for an eighth more rows, or for some dozens, than when they were made; then the file is laid out anew. Serial: on
-/// several ranks only the first holds one.
+/// to it or, where rows come quickly, to change places with it: some tenth of a millisecond. A process killed at any moment leaves a file with every
+/// row whose `append` returned. Columns are one chunk each, with room for an eighth more rows, or for some dozens, than when they were made; then the
+/// file is laid out anew. Serial: on several ranks only the first holds one.
 class RunRecord {
  public:
   /// A record without rows. Nothing is written before the first `append`.
@@ -62,6 +63,7 @@ class RunRecord {
   std::map<std::string, std::string> provenance_;
   std::vector<Series> series_;
   std::unique_ptr<Image> image_;  // of the file; none when it must be laid out anew
+  std::chrono::steady_clock::time_point written_;
 };
 
 }  // namespace tanktread::output
