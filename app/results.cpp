@@ -104,7 +104,10 @@ std::map<std::string, std::string> Results::origin() const {
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns,
                  const coupling::Ranks& ranks)
     : scene_(scene), request_(request), body_(&body), columns_(columns), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
-  write([&] { request.resume ? output::tidy_directory(directory_) : begin(); });
+  write([&] {
+    occupation_.emplace(directory_);
+    request.resume ? output::tidy_directory(directory_) : begin();
+  });
   remesh(body);
 }
 

@@ -12,6 +12,7 @@
 #include "app/simulation.hpp"
 #include "motion/integrator.hpp"
 #include "output/lagrange.hpp"
+#include "output/occupation.hpp"
 #include "output/run_record.hpp"
 #include "output/snapshot_series.hpp"
 
@@ -68,6 +69,7 @@ class Results {
   const coupling::Ranks& ranks_;
   bool writes_;
   std::filesystem::path directory_;
+  std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // of the pictures, on the first rank

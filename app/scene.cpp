@@ -165,6 +165,11 @@ double Scene::radius() const { return particle.shape.equivalent_radius(); }
 
 double Scene::speed() const { return flow.speed(radius()); }
 
+double Scene::rate() const {
+  if (speed() > 0) return speed() / radius();
+  return particle.rigid() ? 1 : modulus() / (flow.viscosity * radius());
+}
+
 double Scene::modulus() const {
   if (particle.rigid()) return 0;
   return tube.present ? membrane.modulus(flow.viscosity, speed(), 1.0) : membrane.modulus(flow.viscosity, flow.rate(), radius());

@@ -58,6 +58,7 @@ struct Scene {
 
   bool reciprocal_forces() const;    ///< `Particle/forces`, or its default
   double radius() const;             ///< R_C: of the sphere of equal volume
+  double rate() const;               ///< speed over radius; of the membrane at rest, modulus/(viscosity x radius), where nothing else moves
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "app/body.hpp"
+#include "app/heeding.hpp"
 #include "app/moving.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
@@ -26,10 +27,18 @@ namespace tanktread {
 namespace {
 
 volatile std::sig_atomic_t asked_to_stop = 0;
+constexpr const char* by_signal = "stopped by a signal";
 
+/// A signal to end asks for a checkpoint first; the second of a kind ends at once. What is ignored stays so (nohup).
 void heed_signals() {
   asked_to_stop = 0;
-  for (const int signal : {SIGTERM, SIGINT}) std::signal(signal, [](int) { asked_to_stop = 1; });
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+    const auto before = std::signal(signal, [](int number) {
+      asked_to_stop = 1;
+      std::signal(number, SIG_DFL);
+    });
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
 /// Wall clock of this run, earlier parts of a resumed one included.
@@ -72,6 +81,7 @@ double next_snapshot(const Scene& scene, double time) {
 /// Steps that do not land on snapshots are no longer than the time between two of them, so that each has its own step.
 motion::TimeOptions time_options(const Scene& scene) {
   motion::TimeOptions time = scene.time;
+  time.unit = 1 / scene.rate();
   if (!scene.lands_on_snapshots() && !time.fixed_step)
     time.maximum_step = std::min(scene.snapshot_interval(), time.maximum_step.value_or(scene.snapshot_interval()));
   return time;
@@ -88,15 +98,18 @@ class Run {
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particle_->body(), ranks_.size())).c_str(), stdout);
     begin();
+    heed_signals();
     output::Progress progress(state_.time, scene_.time.final_time, request_.quiet || ranks_.rank() != 0);
     std::string reason;
     while (reason.empty() && state_.time < scene_.time.final_time) {
       step();
+      if (stopped_) break;
       progress.show({state_.time, standing_.step, report_.iterations, entry("taylor_inertia")});
       reason = reason_to_stop();
       if (!reason.empty() || snapshot_due_) save();
     }
     progress.close();
+    if (stopped_) reason = by_signal;
     if (results_.last_saved() != standing_.step) save();
     return end(reason);
   }
@@ -124,9 +137,15 @@ class Run {
     const bool lands = scene_.lands_on_snapshots();
     const motion::State before = state_;
     pictured_.reset();
+    standing_.work = particle_->work();
+    Heeding motion(particle_->dynamics(), [this] { return ranks_.any(asked_to_stop != 0); });
     try {
-      report_ = scheme_->advance(particle_->dynamics(), state_, lands ? snapshot : scene_.time.final_time);
+      report_ = scheme_->advance(motion, state_, lands ? snapshot : scene_.time.final_time);
       judge();
+    } catch (const Stopped&) {
+      state_ = before;
+      stopped_ = true;
+      return;
     } catch (const RunFailure& failure) {
       state_ = before;
       fail(failure.what());
@@ -202,14 +221,14 @@ class Run {
 
   void save() {
     const auto clock = phases_.time("output");
-    standing_.work = particle_->work();
+    if (!stopped_) standing_.work = particle_->work();
     standing_.wall_seconds = watch_.seconds();
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     results_.save(state_, standing_, particle_->portrait(pictured), pictured.time);
   }
 
   std::string reason_to_stop() {
-    if (ranks_.any(asked_to_stop != 0)) return "stopped by a signal";
+    if (ranks_.any(asked_to_stop != 0)) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;
     if (limit && ranks_.first(watch_.here()) > *limit) return "stopped at the wall-clock limit";
     const auto steady = scene_.time.steady_tolerance;
@@ -246,6 +265,7 @@ class Run {
   std::vector<double> row_;
   bool warned_of_wall_ = false;
   bool snapshot_due_ = false;
+  bool stopped_ = false;  // within a step, of which nothing is kept
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
   Soundness soundness_;
   surface::Quality quality_;
@@ -255,7 +275,7 @@ class Run {
 }  // namespace
 
 int simulate(const Scene& scene, const RunRequest& request) {
-  heed_signals();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is then an error like any other of writing
   if (scene.particle.motion == "prescribed") return resist(scene, request);
   return Run(scene, request).go();
 }

@@ -16,11 +16,6 @@ constexpr double folding = 0.05;    // jacobian_ratio; even elements have 0.5 an
 constexpr double slenderness = 10;  // aspect_ratio
 constexpr double lost_volume = 1e-3;
 
-double rate(const Scene& scene) {
-  const double of_flow = scene.speed() / scene.radius();
-  return of_flow > 0 ? of_flow : scene.modulus() / (scene.flow.viscosity * scene.radius());
-}
-
 bool elastic(const Scene& scene) { return !scene.particle.rigid() && scene.membrane.law != "surface tension"; }
 
 /// Shortest wave that elements of size h carry.
@@ -77,7 +72,7 @@ std::string Warnings::compression(const Signs& signs) {
   const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
   const bool resolved = fastest < mesh / 2;  // a wave that the mesh carries is no failure of the method
   const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));
-  waves_ = std::max(0.0, waves_ + (growth - rate(scene_)) * signs.step);
+  waves_ = std::max(0.0, waves_ + (growth - scene_.rate()) * signs.step);
   if (waves_ < grown) return {};
   const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
   return formatted(

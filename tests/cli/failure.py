@@ -3,9 +3,10 @@
 # A run that fails, is stopped or runs out of time leaves a checkpoint from which it goes on with another scheme or tolerance.
 import pathlib
 import signal
+import subprocess
 import time
 
-from harness import check, deck, main, run, series, start, summary
+from harness import check, command, deck, main, run, series, start, summary
 
 DECK = """
 Tanktread:
@@ -58,6 +59,38 @@ def a_stopped_run_has_a_checkpoint_and_goes_on():
     _, said = process.communicate(timeout=60)
     check(process.returncode == 0 and "signal" in said, process.returncode, said)
     check(summary("out")["final"]["time"] == series("out", "time")[-1], "the summary is not of the last step")
+
+
+def a_run_in_a_long_step_stops_before_its_end_and_goes_on_to_the_same_bits():
+    fine = ["--set", "Surface/elements per side=8", "--set", "Particle/viscosity ratio=5", "--set", "Time/final time=0.1"]
+    run(deck(DECK), *fine, "--output", "whole", "--quiet")
+    process = start(deck(DECK), *fine, "--output", "out", "--quiet")
+    while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 2):
+        time.sleep(0.001)
+    process.send_signal(signal.SIGHUP)
+    _, said = process.communicate(timeout=60)
+    check(process.returncode == 0 and "signal" in said, process.returncode, said)
+    run("--resume", "out", "--quiet")
+    for name in "time", "energy", "evaluations":
+        check((series("out", name) == series("whole", name)).all(), f"{name} is not that of the run that was left alone")
+
+
+def a_directory_belongs_to_one_run_at_a_time():
+    process = start(deck(DECK), "--set", "Time/tolerance=1e-9", "--set", "Time/final time=50", "--output", "out", "--quiet")
+    while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
+        time.sleep(0.02)
+    for arguments in ([deck(DECK), "--output", "out"], ["--resume", "out"]):
+        said = run(*arguments, "--quiet", code=2).stderr
+        check("another run" in said and "out" in said, said)
+    process.kill()
+    process.communicate()
+    run("--resume", "out", "--set", "Time/final time=0.5", "--set", "Time/tolerance=1e-4", "--quiet")
+
+
+def a_file_beyond_the_limit_is_an_error_of_writing():
+    words = " ".join(f"'{word}'" for word in command(deck(DECK), "--output", "out", "--quiet"))
+    result = subprocess.run(["bash", "-c", f"ulimit -f 40; {words}"], capture_output=True, text=True, timeout=60)
+    check(result.returncode == 3 and "cannot write" in result.stderr, result.returncode, result.stderr)
 
 
 def a_run_stops_at_its_wall_clock_limit():
