@@ -18,7 +18,7 @@ class Vectors : public Belos::MultiVec<double> {
   using Column = Eigen::Map<Eigen::VectorXd>;
   using Small = Teuchos::SerialDenseMatrix<int, double>;
 
-  /// Zeros.
+  /// Of any numbers: a solver asks for many more columns than it comes to.
   Vectors(Eigen::Index length, int columns);
 
   Eigen::Index length() const { return length_; }

@@ -90,10 +90,12 @@ std::string file_text(const std::string& file) {
   if (fs::is_directory(status)) throw UserError(file + " is a directory, not a deck.");
   std::ifstream stream(file, std::ios::binary);
   constexpr std::size_t most = 10'000'000;
-  std::string text(most + 1, '\0');  // no more is read, of a device or a pipe neither
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.eof() && (stream.fail() || stream.bad())) throw UserError("The deck " + file + " cannot be read.");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::string text, block(1 << 14, '\0');
+  while (stream && text.size() <= most) {  // no more is read, of a device or a pipe neither
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream && !stream.eof()) throw UserError("The deck " + file + " cannot be read.");
   if (text.size() > most) throw UserError(file + " is larger than 10 MB, so no deck.");
   const std::string byte_order_mark = "\xEF\xBB\xBF";  // which some editors begin UTF-8 with
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
