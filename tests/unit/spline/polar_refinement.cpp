@@ -21,12 +21,7 @@ TEST(PolarRefinement, RandomSequencesStayNestedAndIndependent) {
     Findings found;
     auto options = on_poles(poles);
     for (unsigned seed = 0; seed < 8; ++seed) run_sequence(seed % 2 ? polar(8, 4, 4) : polar(7, 6, 4), seed, options, found);
-    EXPECT_EQ(found.crossings, 0);
-    EXPECT_EQ(found.overlaps, 0);
-    EXPECT_EQ(found.straddling, 0);
-    EXPECT_EQ(found.wrong_counts, 0);
-    EXPECT_LT(found.unity, 1e-13);
-    EXPECT_LT(found.residual, 1e-12);
+    expect_nested(found);
     // The column of the one function of a plain pole is as long as many points around see it: 13 on 8 elements around, 19 on 32, without cuts.
     EXPECT_LT(found.condition, poles == PoleRule::c1 ? 15 : 25);
     EXPECT_LT(found.scaled, 15);

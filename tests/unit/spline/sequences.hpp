@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <Eigen/SparseLU>
+#include <gtest/gtest.h>
 
 #include "samples.hpp"
 #include "spline/extended_mesh.hpp"
@@ -28,6 +29,17 @@ struct Findings {
   int finest = 1 << 30;       // lattice units
   int control_points = 0;
 };
+
+/// What every sequence must have kept.
+inline void expect_nested(const Findings& found) {
+  EXPECT_EQ(found.crossings, 0);
+  EXPECT_EQ(found.overlaps, 0);
+  EXPECT_EQ(found.broken_zones, 0);
+  EXPECT_EQ(found.straddling, 0);
+  EXPECT_EQ(found.wrong_counts, 0);
+  EXPECT_LT(found.unity, 1e-13);
+  EXPECT_LT(found.residual, 1e-12);  // of fields of size 1; 1e-14 measured; a broken rule gives 1e-3 to 1
+}
 
 /// Condition number of a square matrix in the 2-norm, by power iteration on C^T C and its inverse.
 inline double condition_number(const Eigen::SparseMatrix<double>& C) {
