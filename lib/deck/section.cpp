@@ -34,6 +34,10 @@ double checked(const std::string& path, const Teuchos::ParameterEntry& entry, co
   return *number;
 }
 
+/// How many numbers an array has, in words.
+template <int rows, int columns>
+constexpr const char* count = rows * columns == 2 ? "two" : rows * columns == 3 ? "three" : "nine";
+
 template <int rows, int columns>
 Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& each,
                                                    std::string_view unit) {
@@ -45,7 +49,7 @@ Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, cons
   if (good && !std::all_of(numbers->begin(), numbers->end(), computable))
     refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
   if (!good) {
-    const std::string wording = std::string(rows * columns == 2 ? "two" : columns == 1 ? "three" : "nine") + " numbers in brackets";
+    const std::string wording = std::string(count<rows, columns>) + " numbers in brackets";
     refuse(path, each.text == any().text ? wording : wording + ", each " + each.text, unit, description(entry));
   }
   Eigen::Matrix<double, rows, columns> out;
@@ -80,10 +84,6 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
   list.entries.push_back(std::move(entry));
 }
 
-std::string array_rule(const Rule& each, const char* count) {
-  return each.text == any().text ? std::string(count) + " numbers" : std::string(count) + " numbers, each " + each.text;
-}
-
 template <class Field>
 void state_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked(path, entry, rule, unit); };
@@ -101,28 +101,31 @@ void state_whole_number(List& list, std::string_view name, Field& field, const R
   state<int>(list, name, field, "whole, " + rule.text, unit, meaning, read, [](int value) { return std::to_string(value); });
 }
 
-template <class Field>
-void state_vector(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+template <int rows, int columns, class Field>
+void state_array(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    return checked_array<3, 1>(path, entry, each, unit);
+    return checked_array<rows, columns>(path, entry, each, unit);
   };
-  state<Vec3>(list, name, field, array_rule(each, "three"), unit, meaning, read, array_text<3, 1>);
-}
-
-void state_pair(List& list, std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit,
-                std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    return checked_array<2, 1>(path, entry, each, unit);
-  };
-  state<Eigen::Vector2d>(list, name, field, array_rule(each, "two"), unit, meaning, read, array_text<2, 1>);
+  const std::string values = std::string(count<rows, columns>) + " numbers" + (each.text == any().text ? "" : ", each " + each.text);
+  state<Eigen::Matrix<double, rows, columns>>(list, name, field, values, unit, meaning, read, array_text<rows, columns>);
 }
 
 template <class Field>
-void state_matrix(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
+void state_text(List& list, std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    return checked_array<3, 3>(path, entry, each, unit);
+    const auto text = as_text(entry);
+    if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
+    bool known = choice.empty();
+    for (const std::string& word : choice) known = known || (text && word == *text);
+    if (known) return *text;
+    const std::string meant = text ? guess(*text, choice) : std::string();
+    const std::string hint = meant.empty() ? "" : "; was `" + meant + "` meant?";
+    throw UserError(path + " must be " + alternatives(choice) + ", but is " + description(entry) + (hint.empty() ? "." : hint));
   };
-  state<Mat3>(list, name, field, array_rule(each, "nine"), unit, meaning, read, array_text<3, 3>);
+  const auto write = [](const std::string& text) { return is_plain(text) ? text : in_quotes(text); };
+  std::string values;
+  for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
+  state<std::string>(list, name, field, choice.empty() ? "text" : values, "", meaning, read, write);
 }
 
 }  // namespace
@@ -147,23 +150,23 @@ void Section::key(std::string_view name, std::optional<int>& field, const Rule& 
 
 void Section::key(std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit,
                   std::string_view meaning) {
-  state_pair(*state_->list, name, field, each, unit, meaning);
+  state_array<2, 1>(*state_->list, name, field, each, unit, meaning);
 }
 
 void Section::key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_vector(*state_->list, name, field, each, unit, meaning);
+  state_array<3, 1>(*state_->list, name, field, each, unit, meaning);
 }
 
 void Section::key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_vector(*state_->list, name, field, each, unit, meaning);
+  state_array<3, 1>(*state_->list, name, field, each, unit, meaning);
 }
 
 void Section::key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_matrix(*state_->list, name, field, each, unit, meaning);
+  state_array<3, 3>(*state_->list, name, field, each, unit, meaning);
 }
 
 void Section::key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_matrix(*state_->list, name, field, each, unit, meaning);
+  state_array<3, 3>(*state_->list, name, field, each, unit, meaning);
 }
 
 void Section::key(std::string_view name, bool& field, std::string_view meaning) {
@@ -173,24 +176,6 @@ void Section::key(std::string_view name, bool& field, std::string_view meaning) 
     return *truth;
   };
   state<bool>(*state_->list, name, field, "true or false", "", meaning, read, [](bool value) { return value ? "true" : "false"; });
-}
-
-template <class Field>
-void state_text(List& list, std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    const auto text = as_text(entry);
-    if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
-    bool known = choice.empty();
-    for (const std::string& word : choice) known = known || (text && word == *text);
-    if (known) return *text;
-    const std::string meant = text ? guess(*text, choice) : std::string();
-    const std::string hint = meant.empty() ? "" : "; was `" + meant + "` meant?";
-    throw UserError(path + " must be " + alternatives(choice) + ", but is " + description(entry) + (hint.empty() ? "." : hint));
-  };
-  const auto write = [](const std::string& text) { return is_plain(text) ? text : in_quotes(text); };
-  std::string values;
-  for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
-  state<std::string>(list, name, field, choice.empty() ? "text" : values, "", meaning, read, write);
 }
 
 void Section::key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning) {
