@@ -7,6 +7,8 @@ The curve is a table with the columns `t` and `taylor_inertia`. A line joins run
 """
 
 import argparse
+import pathlib
+import sys
 
 import numpy
 
@@ -42,6 +44,8 @@ def main():
     parser.add_argument("-o", "--output", default="convergence.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
+    if not pathlib.Path(arguments.curve).is_file():
+        sys.exit(f"{arguments.curve} is no file: give a table with named columns")
     curve = numpy.genfromtxt(arguments.curve, delimiter=",", names=True)
     runs = sorted((Errors(read.run(directory), curve, arguments.series) for directory in arguments.results), key=lambda one: one.points)
     families = sorted({one.family for one in runs})

@@ -26,6 +26,8 @@ def main():
     parser.add_argument("-o", "--output", default="refinement_gain.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
+    if len(arguments.uniform) < 3:
+        parser.error("--uniform: three runs at least, coarse to fine")
     uniform = [result(directory) for directory in arguments.uniform]
     refined = [result(directory) for directory in arguments.refined]
     truth = {quantity: extrapolated(uniform, quantity) for quantity in ("D", "traction")}
