@@ -52,7 +52,7 @@ Adapted on_finer_mesh(const Scene& scene, const Body& body, const motion::State&
   double residual = 0;
   Adapted result = carried(body, std::move(target), state, [&](const Net& field) {
     const auto moved = transfer(field);
-    residual = std::max(residual, moved.residual);
+    if (&field == &body.unstressed || &field == &state.x) residual = std::max(residual, moved.residual);
     return moved.net;
   });
   result.change = residual / body.radius;

@@ -42,6 +42,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
   root.section("Interface", interface, "how the mesh of a drop moves along its interface");
+  if (!root.documenting() && particle.shape.sized()) adaptation.radius = radius();
   root.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
@@ -137,6 +138,9 @@ void Scene::check() const {
   check_motion(*this);
   if (!particle.rigid()) membrane.check();
   time.check();
+  if (snapshot_interval() < 1e-6 * time.final_time)
+    throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
+                    deck::number_text(snapshot_interval()) + ".");
   if (adaptation.enabled && !lands_on_snapshots())
     throw UserError("Output/between steps `interpolate` and Adaptation/enabled contradict each other: the mesh may change between two steps.");
   modulus();

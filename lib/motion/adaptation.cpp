@@ -15,11 +15,14 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("enabled", enabled, "refine the mesh as the particle deforms (P-37)");
   section.key("indicator", indicator, deck::Choice{"error", "variation"},
               "what is looked at: estimated `error`s (1.5) against tolerances, or the `variation` of fields against references (P-37)");
-  if (indicator == "variation") reference_length = 0.35, limit_aspect_ratio = 2.5, order = 1;
-  section.key("surface tolerance", surface_tolerance, deck::positive(), "length", "`error`: largest estimated error of the surface on an element");
+  for (double* length : {&surface_tolerance, &minimum_length, &coarsening_tolerance}) *length *= radius;
+  if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
+  section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
+              "`error`: largest estimated error of the surface on an element; the default is in R_C");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
               "`error`: largest estimated error of the load per present area; if not given, the load is not looked at");
-  section.key("reference length", reference_length, deck::positive(), "length", "L_ref: longest element where nothing varies; 0.35 if not given");
+  section.key("reference length", reference_length, deck::positive(), "length",
+              "L_ref: longest element where nothing varies; 0.35 R_C if not given");
   section.key("reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
               "chi_ref; if not given, curvature is not looked at");
   section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
@@ -29,14 +32,15 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
               "D_ref: an element that is longer than this times its width is cut; 2.5 if not given");
   section.key("order", order, deck::positive(), "1", "kappa: how strongly a variation above its reference shortens elements; 1 if not given");
-  section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut");
+  section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut; the default is in R_C");
   section.key("interval", interval, deck::at_least(1), "steps", "accepted steps between two looks at the mesh");
   section.key("levels", levels, deck::between(0, 8), "1", "how often an element of the first mesh may be halved in a direction");
   section.key("largest number of points", largest_number_of_points, deck::at_least(56), "1",
               "no mesh has more control points: only the most urgent cuts are made, and in the end none");
   section.key("coarsen", coarsen, "take cuts back where they are no longer needed");
   section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1", "part of every limit below which a doubled element must stay");
-  section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length", "largest change of a surface by one coarsening");
+  section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
+              "largest change of a surface by one coarsening; the default is in R_C");
 }
 
 void AdaptationOptions::check(int first_points, double first_length) const {

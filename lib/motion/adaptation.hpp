@@ -16,8 +16,9 @@ class Section;
 
 namespace tanktread::motion {
 
-/// Mesh adaptation: `Adaptation/*` of the deck. Lengths and fields in the deck's units.
+/// Mesh adaptation: `Adaptation/*` of the deck. Lengths and fields in the deck's units, defaults of lengths before `declare` in R_C.
 struct AdaptationOptions {
+  double radius = 1;                                       ///< R_C; no key of the deck
   bool enabled = false;
   std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
   double surface_tolerance = 4e-4;                         ///< of e(x), length

@@ -114,6 +114,11 @@ Mat3 ParticleShape::rotation() const {
   return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
 }
 
+bool ParticleShape::sized() const {
+  if (shape == "sphere" || shape == "red cell") return radius.has_value();
+  return imported || (shape != "file" && semi_axes);
+}
+
 double ParticleShape::equivalent_radius() const {
   if (shape == "sphere") return radius.value();
   if (shape == "red cell") {

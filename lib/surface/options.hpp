@@ -61,6 +61,9 @@ struct ParticleShape {
   /// Columns: the particle's own axes in space.
   Mat3 rotation() const;
 
+  /// Whether the keys that give its size are there (check() says what is missing).
+  bool sized() const;
+
   /// R_C: radius of the sphere of equal volume.
   double equivalent_radius() const;
 };

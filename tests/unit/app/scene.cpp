@@ -57,6 +57,18 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
   }
 }
 
+TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
+  const Scene one = scene("  Adaptation: {enabled: true}\n"), other = scene("  Particle: {radius: 1.0e-6}\n  Adaptation: {enabled: true}\n");
+  EXPECT_DOUBLE_EQ(other.adaptation.surface_tolerance, 1e-6 * one.adaptation.surface_tolerance);
+  EXPECT_DOUBLE_EQ(other.adaptation.minimum_length, 1e-6 * one.adaptation.minimum_length);
+  EXPECT_DOUBLE_EQ(other.adaptation.coarsening_tolerance, 1e-6 * one.adaptation.coarsening_tolerance);
+  EXPECT_EQ(scene("  Particle: {radius: 2}\n  Adaptation: {enabled: true, surface tolerance: 0.5}\n").adaptation.surface_tolerance, 0.5);
+}
+
+TEST(Scenes, RefuseSnapshotsWithoutEnd) {
+  EXPECT_NE(refusal("  Time: {final time: 2}\n  Output: {interval: 1.0e-9}\n").find("Output/interval"), std::string::npos);
+}
+
 TEST(Moduli, FollowFromTheCapillaryNumber) {
   EXPECT_DOUBLE_EQ(scene("  Flow: {viscosity: 2, shear rate: 3}\n  Particle: {radius: 4}\n  Membrane: {capillary number: 0.5}\n").modulus(),
                    48.0);
