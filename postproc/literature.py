@@ -79,6 +79,7 @@ def interpolated(t, values, at, order=6):
 
 def difference(t, values, curve_t, curve_values):
     """Largest |values - curve| over the times that both cover. The one that is told at more times is interpolated to the times of the other."""
-    (fine_t, fine), (coarse_t, coarse) = sorted([(t, values), (curve_t, curve_values)], key=lambda one: -len(one[0]))
+    series = [(numpy.asarray(times), numpy.asarray(found)) for times, found in ((t, values), (curve_t, curve_values))]
+    (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda one: -len(one[0]))
     common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])
     return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))
