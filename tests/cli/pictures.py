@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 # The scripts of postproc/ draw what a run wrote, and say in one sentence when they cannot.
+import pathlib
 import subprocess
 
 from harness import SOURCE, check, deck, main, run
@@ -25,8 +26,10 @@ def _script(name, *arguments, code=0):
 def a_run_is_drawn():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet")
-    for name in "deformation.py", "shape.py":
-        _script(name, "results", "-o", f"{name}.png")
+    pathlib.Path("curve.csv").write_text("t,taylor_inertia\n" + "".join(f"{0.05 * k},{0.05 * k}\n" for k in range(5)))
+    words = {"convergence.py": ["--curve", "curve.csv"]}
+    for name in "deformation.py", "shape.py", "meshes.py", "refinement.py", "convergence.py":
+        _script(name, "results", *words.get(name, []), "-o", f"{name}.png")
         with open(f"{name}.png", "rb") as file:
             check(file.read(8) == b"\x89PNG\r\n\x1a\n", f"{name}.png is no picture")
     _script("animation.py", "results", "-o", "animation.gif")
