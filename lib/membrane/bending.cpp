@@ -10,15 +10,13 @@ constexpr int max_values = 15 * max_order * max_order;
 
 }  // namespace
 
-double bending_energy(const Bending& bending, const Part& part, const Net& x) {
-  double sum = 0;
+void add_bending_energies(const Bending& bending, const Part& part, const Net& x, std::vector<double>& energy) {
   part.each_batch([&](const Group& group, const Batch& batch, const ReferencePoint*, std::size_t first, std::size_t g) {
     Pack j[max_values];
     jets(group, batch, x, j);
     const Pack energies = bending_energy(bending.modulus, group.n_gauss(), group.weight.data(), &part.relaxed_curvature[g][first], j);
-    for (int l = 0; l < batch.used; ++l) sum += energies[l];
+    for (int l = 0; l < batch.used; ++l) energy[batch.elements[l]] += energies[l];
   });
-  return sum;
 }
 
 void add_bending_load(const Bending& bending, const Part& part, const Net& x, Net& d) {

@@ -1,6 +1,8 @@
 #pragma once
 // Resistance of a membrane to bending, in the weak form; it needs a surface that is C1, geometrically, across every element side.
 
+#include <vector>
+
 #include "base/types.hpp"
 
 namespace tanktread::membrane {
@@ -14,7 +16,7 @@ struct Bending {
   bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point; otherwise 0
 };
 
-double bending_energy(const Bending& bending, const Part& part, const Net& x);
+void add_bending_energies(const Bending& bending, const Part& part, const Net& x, std::vector<double>& energy);
 
 /// Adds its gradient, dE/dx_A, to d.
 void add_bending_load(const Bending& bending, const Part& part, const Net& x, Net& d);

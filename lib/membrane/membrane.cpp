@@ -34,13 +34,19 @@ std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const 
 double Membrane::energy(const Net& x) const { return energy(x, all_); }
 
 double Membrane::energy(const Net& x, std::span<const int> elements) const {
+  const std::vector<double> energies = element_energies(x, elements);
+  return std::accumulate(energies.begin(), energies.end(), 0.);
+}
+
+std::vector<double> Membrane::element_energies(const Net& x, std::span<const int> elements) const {
   const auto mine = part(elements);
-  double sum = bending_.modulus > 0 ? bending_energy(bending_, *mine, x) : 0;
+  std::vector<double> sum(space_->elements.size(), 0.);
+  if (bending_.modulus > 0) add_bending_energies(bending_, *mine, x, sum);
   mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
     Pack a[max_values];
     tangents(group, batch, x, a);
     const Pack energies = membrane::energy(law_, group.n_gauss(), reference, a);
-    for (int l = 0; l < batch.used; ++l) sum += energies[l];
+    for (int l = 0; l < batch.used; ++l) sum[batch.elements[l]] += energies[l];
   });
   return sum;
 }

@@ -21,6 +21,13 @@ struct TensionSummary {
   double smallest = 0, compressed_area = 0;
 };
 
+/// What it is made of: the smallest tension on some elements, force/length, and of each element of the space the area and that with a negative
+/// tension, zero for elements that were not asked for.
+struct ElementTensions {
+  double smallest = 0;
+  std::vector<double> area, compressed;
+};
+
 /// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Serial; `elements` are those that the caller is to do,
 /// ascending. What a row of a load receives is summed in an order that does not depend on how elements are split over callers.
 ///
@@ -34,6 +41,9 @@ class Membrane {
   double energy(const Net& x) const;
   double energy(const Net& x, std::span<const int> elements) const;
 
+  /// The energy of each element of the space, zero for those that are not asked for.
+  std::vector<double> element_energies(const Net& x, std::span<const int> elements) const;
+
   /// d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, shape (N, 3), zeroed first. (3.6)  P-31, P-32
   /// Complete in the rows whose whole support is in `elements`. Units force.
   void load(const Net& x, std::span<const int> elements, Net& d) const;
@@ -41,6 +51,7 @@ class Membrane {
 
   /// Smallest principal tension over all Gauss points, and where it is compressive.
   TensionSummary tension_summary(const Net& x) const;
+  ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
   /// Principal tensions, smaller first, over the modulus, at the given sites. Shape (sites, 2).
   Eigen::MatrixX2d tensions(const Net& x, std::span<const spline::Site> sites) const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -31,10 +32,18 @@ std::array<double, 2> tensions_of(const Law& law, const Metric& before, const Me
 }  // namespace
 
 TensionSummary Membrane::tension_summary(const Net& x) const {
+  const ElementTensions all = element_tensions(x, all_);
+  const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
+  return {all.smallest / modulus(law_), sum(all.compressed) / sum(all.area)};
+}
+
+ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements) const {
   const double unit = modulus(law_);
-  Pack smallest = Pack{} + std::numeric_limits<double>::infinity(), area{}, compressed{};
-  part(all_)->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
-    Pack a[6 * max_order * max_order], tension[max_order * max_order], share[max_order * max_order];
+  const std::vector<double> none(space_->elements.size(), 0.);
+  ElementTensions result{std::numeric_limits<double>::infinity(), none, none};
+  Pack smallest = Pack{} + result.smallest;
+  part(elements)->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
+    Pack a[6 * max_order * max_order], tension[max_order * max_order], share[max_order * max_order], area{}, compressed{};
     tangents(group, batch, x, a);
     smaller_tensions(law_, group.n_gauss(), reference, a, tension, share);
     for (int q = 0; q < group.n_gauss(); ++q) {
@@ -42,15 +51,9 @@ TensionSummary Membrane::tension_summary(const Net& x) const {
       area += share[q];
       compressed += tension[q] < compressed_below * unit ? share[q] : Pack{};
     }
+    for (int l = 0; l < batch.used; ++l) result.area[batch.elements[l]] = area[l], result.compressed[batch.elements[l]] = compressed[l];
   });
-  TensionSummary result{smallest[0] / unit, 0};
-  double all = 0;
-  for (int l = 0; l < lanes; ++l) {
-    result.smallest = std::min(result.smallest, smallest[l] / unit);
-    all += area[l];
-    result.compressed_area += compressed[l];
-  }
-  result.compressed_area /= all;
+  for (int l = 0; l < lanes; ++l) result.smallest = std::min(result.smallest, smallest[l]);
   return result;
 }
 

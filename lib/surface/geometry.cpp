@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "surface/extremes.hpp"
 #include "surface/integrals_kernel.hpp"
 
 namespace tanktread::surface {
@@ -63,17 +62,27 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
   return mean_curvature(jet(ElementPoints(space, net, site.element).patch(), site.s, site.t));
 }
 
-Geometry::Geometry(const spline::Space& space) : map_(space), all_(space.elements.size()) { std::iota(all_.begin(), all_.end(), 0); }
+Geometry::Geometry(const spline::Space& space) : map_(space), all_(space.elements.size()), all_blocks_(n_blocks()) {
+  std::iota(all_.begin(), all_.end(), 0);
+  std::iota(all_blocks_.begin(), all_blocks_.end(), 0);
+}
 
 double Geometry::volume(const Net& net) const {
+  const std::vector<double> volumes = block_volumes(net, all_blocks_);
+  return std::accumulate(volumes.begin(), volumes.end(), 0.);
+}
+
+std::vector<double> Geometry::block_volumes(const Net& net, std::span<const int> blocks) const {
   Vec3 mean;
-  double sum = 0;
-  each_group(map_, about_mean(net, mean), all_, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
-    double part[kernel::lanes];
-    kernel::volume(degree, points, part);
-    for (std::size_t l = 0; l < group.size(); ++l) sum += part[l];
-  });
-  return sum;
+  const Net here = about_mean(net, mean);
+  std::vector<double> volumes(n_blocks(), 0.);
+  for (const int b : blocks)
+    each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+      double part[kernel::lanes];
+      kernel::volume(degree, points, part);
+      for (std::size_t l = 0; l < group.size(); ++l) volumes[b] += part[l];
+    });
+  return volumes;
 }
 
 void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
@@ -96,22 +105,35 @@ Net Geometry::volume_gradient(const Net& net) const {
   return b;
 }
 
-Measures Geometry::measures(const Net& net) const {
-  Vec3 mean, first = Vec3::Zero();
+Measures Geometry::measures(const Net& net) const { return measures(net, block_moments(net, all_blocks_)); }
+
+std::vector<double> Geometry::block_moments(const Net& net, std::span<const int> blocks) const {
+  Vec3 mean;
+  const Net here = about_mean(net, mean);
+  std::vector<double> moments(static_cast<std::size_t>(n_moments) * n_blocks(), 0.);
+  for (const int b : blocks)
+    each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+      kernel::Moments part;
+      kernel::moments(degree, points, part);
+      double* const sum = &moments[static_cast<std::size_t>(n_moments) * b];
+      for (std::size_t l = 0; l < group.size(); ++l) {
+        sum[0] += part.area[l];
+        sum[1] += part.volume[l];
+        for (int c = 0; c < 3; ++c) sum[2 + c] += part.first[c][l];
+        for (int k = 0; k < 6; ++k) sum[5 + k] += part.second[k][l];
+      }
+    });
+  return moments;
+}
+
+Measures Geometry::measures(const Net& net, std::span<const double> of_blocks) {
+  double all[n_moments] = {};
+  for (std::size_t k = 0; k < of_blocks.size(); ++k) all[k % n_moments] += of_blocks[k];
   Measures result;
-  double second[6] = {};
-  each_group(map_, about_mean(net, mean), all_, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
-    kernel::Moments part;
-    kernel::moments(degree, points, part);
-    for (std::size_t l = 0; l < group.size(); ++l) {
-      result.area += part.area[l];
-      result.volume += part.volume[l];
-      for (int c = 0; c < 3; ++c) first[c] += part.first[c][l];
-      for (int k = 0; k < 6; ++k) second[k] += part.second[k][l];
-    }
-  });
-  const Vec3 centre = first / result.volume;
-  result.centroid = mean + centre;
+  result.area = all[0], result.volume = all[1];
+  const double* const second = &all[5];
+  const Vec3 centre = Vec3(all[2], all[3], all[4]) / result.volume;
+  result.centroid = net.colwise().mean().transpose() + centre;
   result.second_moments << second[0], second[3], second[4], second[3], second[1], second[5], second[4], second[5], second[2];
   result.second_moments -= result.volume * centre * centre.transpose();
   return result;
@@ -125,6 +147,18 @@ Ellipsoid ellipsoid_of_inertia(const Measures& measures) {
 Deformation Geometry::deformation(const Net& net) const { return deformation(net, measures(net)); }
 
 Deformation Geometry::deformation(const Net& net, const Measures& measures) const {
+  constexpr int all[] = {0, 1, 2, 3};
+  return deformation(measures, extremes(net, measures.centroid, all));
+}
+
+std::array<Range, Geometry::n_extremes> Geometry::extremes(const Net& net, const Vec3& centroid, std::span<const int> asked) const {
+  const Patches patches(map_, net);
+  std::array<Range, n_extremes> result{};
+  for (const int k : asked) result[k] = k == 0 ? section_distances(patches, centroid) : coordinate_range(patches, k - 1);
+  return result;
+}
+
+Deformation Geometry::deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes) {
   Deformation result;
   const Mat3& m = measures.second_moments;
   const double mean = (m(0, 0) + m(2, 2)) / 2, difference = (m(0, 0) - m(2, 2)) / 2, radius = std::hypot(difference, m(0, 2));
@@ -132,13 +166,8 @@ Deformation Geometry::deformation(const Net& net, const Measures& measures) cons
   result.taylor_inertia = (longest - shortest) / (longest + shortest);
   result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
 
-  const Patches patches(map_, net);
-  const Range distance = section_distances(patches, measures.centroid);
-  result.taylor_surface = (distance.largest - distance.smallest) / (distance.largest + distance.smallest);
-  for (int c = 0; c < 3; ++c) {
-    const Range range = coordinate_range(patches, c);
-    result.lengths[c] = range.largest - range.smallest;
-  }
+  result.taylor_surface = (extremes[0].largest - extremes[0].smallest) / (extremes[0].largest + extremes[0].smallest);
+  for (int c = 0; c < 3; ++c) result.lengths[c] = extremes[1 + c].largest - extremes[1 + c].smallest;
   return result;
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 // Points, measures and moments of a spline surface. A surface is a space and a control net.
 
+#include <array>
 #include <span>
+#include <vector>
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
 #include "surface/bezier_points.hpp"
+#include "surface/element_blocks.hpp"
+#include "surface/extremes.hpp"
 
 namespace tanktread::surface {
 
@@ -28,6 +32,9 @@ struct Measures {
   Vec3 centroid;        ///< P-42
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
+
+/// What measures are made of: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
+constexpr int n_moments = 11;
 
 /// Semi-axes (descending), axes (columns) of the ellipsoid with the same second moments, a_i = sqrt(5 m_i / V).
 struct Ellipsoid {
@@ -60,15 +67,28 @@ class Geometry {
 
   Measures measures(const Net& net) const;
 
+  /// The same of each block of elements (element_blocks.hpp), block after block: those asked for, zero for the others; and measures from all.
+  std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
+  static Measures measures(const Net& net, std::span<const double> of_blocks);
+
+  /// 1/3 oint x.n dG of each block about the mean of the control points: of those asked for, zero for the others. The volume is the sum of all.
+  std::vector<double> block_volumes(const Net& net, std::span<const int> blocks) const;
+  int n_blocks() const { return surface::n_blocks(map_.n_elements()); }
+
   /// Both Taylor parameters in the x1 x3 plane, inclination and extents. Of inertia: from the second moments M_11, M_13, M_33; of the
   /// surface: from the longest and shortest distance of the centroid to the curve in which the plane x2 = centroid cuts the surface.
   /// Extremal points are found by Newton's method, to round-off.
   Deformation deformation(const Net& net) const;
   Deformation deformation(const Net& net, const Measures& measures) const;
 
+  /// The longest and shortest distance (0) and the extents (1, 2, 3) that it needs: those asked for, zero for the others. Throws as it does.
+  static constexpr int n_extremes = 4;
+  std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> asked) const;
+  static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);
+
  private:
   BezierMap map_;
-  std::vector<int> all_;  ///< 0 .. n_elements - 1
+  std::vector<int> all_, all_blocks_;  ///< 0 .. n_elements - 1, 0 .. n_blocks - 1
 };
 
 /// The same for a single use.

@@ -15,6 +15,9 @@
 namespace tanktread::surface {
 namespace {
 
+/// Partitions to choose from where few points have work: their elements reach far beyond them, and how far is chance.
+constexpr int few_points_seeds = 16;
+
 /// Neighbours of every element in compressed rows, weighted by the number of common control points.
 struct Graph {
   std::vector<idx_t> start, neighbour, weight;
@@ -55,13 +58,13 @@ std::vector<idx_t> scaled(std::span<const double> cost) {
   return result;
 }
 
-std::vector<int> element_owners(Graph graph, int parts, std::span<const double> cost) {
+std::vector<int> element_owners(Graph graph, int parts, std::span<const double> cost, int seed) {
   idx_t n = static_cast<idx_t>(graph.start.size()) - 1, constraints = 1, k = parts, cut = 0;
   std::vector<idx_t> weights = cost.empty() ? std::vector<idx_t>(n, 1) : scaled(cost);
   std::vector<idx_t> owner(n);
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_SEED] = seed;
   options[METIS_OPTION_UFACTOR] = 10;  // parts within one per cent of each other
   const auto method = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k,
@@ -96,7 +99,17 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
+/// Most elements that the points of one part touch.
+int most_elements(const spline::Space& space, const Partition& partition) {
+  std::vector<int> count(partition.parts, 0), latest(partition.parts, -1);
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
+    for (const int a : space.elements[e].points)
+      if (const int part = partition.point_owner[a]; part >= 0 && std::exchange(latest[part], e) != e) ++count[part];
+  return std::ranges::max(count);
+}
+
+/// The best of some partitions.
+Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points, int seeds) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)
     throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) +
@@ -107,9 +120,18 @@ Partition shared(const spline::Space& space, int parts, std::span<const double> 
     return result;
   }
   const std::vector<std::vector<int>> elements_of = elements_of_points(space);
-  result.element_owner = element_owners(common_points(space, elements_of), parts, cost);
-  result.point_owner = point_owners(elements_of, result.element_owner, parts, points);
-  return result;
+  Partition best;
+  const Graph graph = common_points(space, elements_of);
+  for (int seed = 1, least = 0; seed <= seeds; ++seed) {
+    Partition other = result;
+    other.element_owner = element_owners(graph, parts, cost, seed);
+    other.point_owner = point_owners(elements_of, other.element_owner, parts, points);
+    if (const int most = most_elements(space, other); seed == 1 || most < least) {
+      least = most;
+      best = std::move(other);
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -117,7 +139,7 @@ Partition shared(const spline::Space& space, int parts, std::span<const double> 
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
   std::vector<int> all(space.n_points);
   std::iota(all.begin(), all.end(), 0);
-  return shared(space, parts, cost, all);
+  return shared(space, parts, cost, all, 1);
 }
 
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points) {
@@ -128,7 +150,7 @@ Partition partition_of_points(const spline::Space& space, int parts, std::span<c
     const auto n = std::ranges::count_if(e.points, [&](int a) { return wanted[a] != 0; });
     cost.push_back(static_cast<double>(n) / static_cast<double>(e.points.size()));
   }
-  return shared(space, parts, cost, points);
+  return shared(space, parts, cost, points, static_cast<int>(points.size()) < space.n_points ? few_points_seeds : 1);
 }
 
 Share share(const spline::Space& space, const Partition& partition, int rank) {

@@ -1,6 +1,7 @@
 #include "surface/quality.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <vector>
 
@@ -55,6 +56,19 @@ Worst worst(const Eigen::MatrixXd& a1, const Eigen::MatrixXd& a2) {
 }  // namespace
 
 Quality quality(const BezierMap& map, const Net& net) {
+  std::vector<int> all(map.n_elements());
+  std::iota(all.begin(), all.end(), 0);
+  return quality(map, net, all);
+}
+
+Quality worse(const Quality& a, const Quality& b) {
+  Quality result = a.jacobian_ratio <= b.jacobian_ratio ? a : b;
+  const Quality& stretched = a.aspect_ratio >= b.aspect_ratio ? a : b;
+  result.aspect_ratio = stretched.aspect_ratio, result.stretched_element = stretched.stretched_element;
+  return result;
+}
+
+Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements) {
   for (int a = 0; a < net.rows(); ++a)
     if (!net.row(a).allFinite()) throw RunFailure("control point " + std::to_string(a) + " is no longer a number");
   Quality result;
@@ -62,7 +76,8 @@ Quality quality(const BezierMap& map, const Net& net) {
   for (const Block& block : map.blocks().blocks) {
     const Table derivatives = table(block.degree);
     bezier.resize((block.degree + 1) * (block.degree + 1), 3);
-    for (const int e : block.elements) {
+    for (const int e : elements) {
+      if (map.degree(e) != block.degree) continue;
       map.points(e, net, bezier.data());
       a1.noalias() = derivatives.in_s * bezier;
       a2.noalias() = derivatives.in_t * bezier;

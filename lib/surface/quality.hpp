@@ -1,6 +1,8 @@
 #pragma once
 // Is the mesh still sound: folded and stretched elements.
 
+#include <span>
+
 #include "base/types.hpp"
 #include "surface/bezier_points.hpp"
 
@@ -21,6 +23,10 @@ struct Quality {
 
 /// Throws RunFailure when a control point is not a finite number, naming it.
 Quality quality(const BezierMap& map, const Net& net);
+Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
+
+/// The worse of each.
+Quality worse(const Quality& a, const Quality& b);
 
 /// Throws RunFailure, with element and place, when an element is folded: its jacobian_ratio is `least` or below.
 void require_sound(const Quality& quality, double least = 0);
