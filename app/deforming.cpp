@@ -61,7 +61,7 @@ class Deforming : public Moving {
   const std::vector<Column>& columns() const override { return columns_; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    std::vector<double> row = tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds);
+    std::vector<double> row = tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds, ranks_);
     if (!body_->wall) return row;
     const std::vector<double> more = tube_row(*body_, *capsule_, state);
     row.insert(row.end(), more.begin(), more.end());

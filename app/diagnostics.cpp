@@ -1,10 +1,14 @@
 #include "app/diagnostics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "base/errors.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
@@ -55,11 +59,77 @@ std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<
   return found;
 }
 
+namespace {
+
+/// What is summed over elements, or sought on them and at sites.
+struct Whole {
+  surface::Measures measures;
+  membrane::TensionSummary tension;
+  double energy, normal_velocity;
+};
+
+/// One number a rank, of which only this rank's is known yet.
+std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
+  std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
+  all[static_cast<size_t>(ranks.rank())] = mine;
+  return all;
+}
+
+/// Of the ranks that have blocks.
+double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
+  double result = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);
+  return result;
+}
+
+double sum(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.); }
+
+/// Ranks share blocks of elements, and sites.
+Whole whole(const Scene& scene, const Body& body, const coupling::Capsule& capsule, const motion::State& state, const coupling::Ranks& ranks) {
+  const surface::Geometry& geometry = capsule.geometry();
+  const membrane::Membrane& membrane = capsule.membrane();
+  const std::vector<int> blocks = ranks.share(geometry.n_blocks());
+  const std::vector<int> elements = surface::elements_of(blocks, static_cast<int>(body.space.elements.size()));
+  const std::vector<int>& sites = body.symmetry.fundamental();  // the others are images of these
+  std::vector<int> own;
+  for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
+  const membrane::ElementTensions tensions = membrane.element_tensions(state.x, elements);
+  std::vector<double> moments = geometry.block_moments(state.x, blocks);
+  std::vector<double> energy = surface::block_sums(membrane.element_energies(state.x, elements));
+  std::vector<double> area = surface::block_sums(tensions.area), compressed = surface::block_sums(tensions.compressed);
+  std::vector<double> smallest = slots(ranks, elements.empty() ? 0 : tensions.smallest);
+  std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, state, own));
+  ranks.add_all({moments, energy, area, compressed, smallest, fastest});
+  return {surface::Geometry::measures(state.x, moments),
+          {least(smallest, ranks, geometry.n_blocks()) / membrane::modulus(membrane.law()), sum(compressed) / sum(area)},
+          sum(energy),
+          std::ranges::max(fastest)};
+}
+
+/// Ranks share the extremes; all throw where one does.
+surface::Deformation deformation(const surface::Geometry& geometry, const Net& x, const surface::Measures& measures, const coupling::Ranks& ranks) {
+  std::array<surface::Range, surface::Geometry::n_extremes> extremes{};
+  std::string error;
+  try {
+    extremes = geometry.extremes(x, measures.centroid, ranks.share(surface::Geometry::n_extremes));
+  } catch (const RunFailure& failure) {
+    error = failure.what();
+  }
+  double failed = !error.empty();
+  std::vector<double> ends;
+  for (const surface::Range& range : extremes) ends.insert(ends.end(), {range.smallest, range.largest});
+  ranks.add_all({ends, std::span(&failed, 1)});
+  if (failed > 0) throw RunFailure(error.empty() ? "the shape cannot be measured" : error);
+  for (size_t k = 0; k < extremes.size(); ++k) extremes[k] = {ends[2 * k], ends[2 * k + 1]};
+  return surface::Geometry::deformation(measures, extremes);
+}
+
+}  // namespace
+
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
-                        const motion::StepReport& report, double wall_seconds) {
-  const surface::Measures measures = capsule.geometry().measures(state.x);
-  const surface::Deformation shape = capsule.geometry().deformation(state.x, measures);
-  const membrane::TensionSummary tension = capsule.membrane().tension_summary(state.x);
+                        const motion::StepReport& report, double wall_seconds, const coupling::Ranks& ranks) {
+  const auto [measures, tension, energy, normal_velocity] = whole(scene, body, capsule, state, ranks);
+  const surface::Deformation shape = deformation(capsule.geometry(), state.x, measures, ranks);
   const Mat3 stresslet = capsule.stresslet(state.x, state.history.front());
   const coupling::Work& work = capsule.work();
   return {state.time,
@@ -68,9 +138,9 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           shape.taylor_surface,
           shape.inclination,
           measures.volume,
-          capsule.volume_error(state.x),
+          capsule.volume_error(measures.volume),
           measures.area,
-          capsule.membrane().energy(state.x),
+          energy,
           tension.smallest,
           tension.compressed_area,
           stresslet(0, 0),
@@ -82,7 +152,7 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           shape.lengths[0],
           shape.lengths[1],
           shape.lengths[2],
-          normal_velocity(scene, body, capsule.geometry(), state),
+          normal_velocity,
           static_cast<double>(body.space.n_points),
           report.error,
           static_cast<double>(report.rejected),
@@ -94,7 +164,8 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           wall_seconds};
 }
 
-double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state) {
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state,
+                       std::span<const int> sites) {
   if (state.history.empty()) return 0;
   double largest = 0;
   Vec3 frame = Vec3::Zero();
@@ -102,7 +173,7 @@ double normal_velocity(const Scene& scene, const Body& body, const surface::Geom
   const surface::BezierMap& map = geometry.bezier();
   constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
   double points[most], velocities[most];
-  for (const int i : body.symmetry.fundamental()) {  // the other sites are images of these
+  for (const int i : sites) {
     const auto& [element, s, t] = body.space.collocation[static_cast<size_t>(i)].front();
     map.points(element, state.x, points);
     map.points(element, state.history.front(), velocities);

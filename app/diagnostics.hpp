@@ -2,6 +2,7 @@
 // The series of a run: their names, units, descriptions, and one row of them.
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,10 +24,11 @@ std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<
 
 /// One row, in the order of `columns`. Collective.
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
-                        const motion::StepReport& report, double wall_seconds);
+                        const motion::StepReport& report, double wall_seconds, const coupling::Ranks& ranks);
 
-/// Largest |v.n| over the collocation sites, over rate x R_C: zero when the shape is steady. In a tube of the velocity relative to the centroid's
+/// Largest |v.n| over these collocation sites, over rate x R_C: zero when the shape is steady. In a tube of the velocity relative to the centroid's
 /// along the tube, over the mean velocity.
-double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state);
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state,
+                       std::span<const int> sites);
 
 }  // namespace tanktread

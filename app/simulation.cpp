@@ -93,7 +93,9 @@ class Run {
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
         results_(scene, request, particle_->body(), particle_->columns(), ranks_),
-        scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
+        scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
+    ranks_.measure(phases_);
+  }
 
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particle_->body(), ranks_.size())).c_str(), stdout);
@@ -200,7 +202,7 @@ class Run {
     const bool doubtful = quality_.jacobian_ratio < 0.25;
     if (scene_.particle.rigid() || (standing_.step % 4 != 0 && !doubtful)) return;
     const auto clock = phases_.time("soundness");
-    quality_ = soundness_(particle_->body(), state_.x);
+    quality_ = soundness_(particle_->body(), state_.x, ranks_);
   }
 
   /// What the step has come near to.

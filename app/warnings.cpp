@@ -119,10 +119,28 @@ std::string Warnings::volume(const Signs& signs) const {
   return formatted("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
 }
 
-surface::Quality Soundness::operator()(const Body& body, const Net& x) {
+namespace {
+
+/// Over all ranks.
+surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
+  constexpr size_t n = 7;
+  std::vector<double> all(n * static_cast<size_t>(ranks.size()), 0);
+  double* const own = &all[n * static_cast<size_t>(ranks.rank())];
+  own[0] = mine.jacobian_ratio, own[1] = mine.folded_element, own[2] = mine.aspect_ratio, own[3] = mine.stretched_element;
+  Eigen::Map<Vec3>(own + 4) = mine.folded_place;
+  ranks.add(all);
+  surface::Quality result;
+  for (size_t k = 0; k < all.size(); k += n)
+    result = surface::worse(result, {all[k], static_cast<int>(all[k + 1]), Vec3(&all[k + 4]), all[k + 2], static_cast<int>(all[k + 3])});
+  return result;
+}
+
+}  // namespace
+
+surface::Quality Soundness::operator()(const Body& body, const Net& x, const coupling::Ranks& ranks) {
   const bool same = map_ && map_->n_points() == body.space.n_points && map_->n_elements() == static_cast<int>(body.space.elements.size());
   if (!same) map_.emplace(body.space);
-  const surface::Quality quality = surface::quality(*map_, x);
+  const surface::Quality quality = worst(surface::quality(*map_, x, ranks.share(map_->n_elements())), ranks);
   surface::require_sound(quality);
   return quality;
 }

@@ -57,8 +57,8 @@ double stiffness(const Scene& scene, double h);
 /// The quality of a mesh over a run; the extraction is made once a mesh.
 class Soundness {
  public:
-  /// Throws RunFailure where an element is folded or a control point is no number.
-  surface::Quality operator()(const Body& body, const Net& x);
+  /// Throws RunFailure where an element is folded or a control point is no number. Ranks share the elements; all throw. Collective.
+  surface::Quality operator()(const Body& body, const Net& x, const coupling::Ranks& ranks);
 
  private:
   std::optional<surface::BezierMap> map_;

@@ -98,7 +98,8 @@ class Capsule : public Dynamics {
   /// force times length. Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(const Net& x, const Net& v);
 
-  double volume_error(const Net& x) const;  ///< V/V0 - 1
+  double volume_error(const Net& x) const { return volume_error(geometry_.volume(x)); }  ///< V/V0 - 1
+  double volume_error(double volume) const { return volume / volume0_ - 1; }
   Tube* tube() { return tube_.get(); }      ///< nothing without one
 
   /// What the tube answers to load and velocity at x; the tube is left placed there.
@@ -123,6 +124,7 @@ class Capsule : public Dynamics {
   Net solved(const membrane::SymmetricSolver& a, Net field);
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
+  double volume(const Net& x) const;
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
   Net frozen_viscous(const Net& v);

@@ -73,12 +73,16 @@ struct Ranks::Impl {
   surface::Symmetry symmetry;
   Teuchos::RCP<Tpetra::Import<>> import;
   Teuchos::RCP<MultiVector> own, all;
+  Phases* phases = nullptr;
+
+  std::unique_ptr<Phases::Scope> time() const { return phases ? std::make_unique<Phases::Scope>(*phases, "exchange") : nullptr; }
 };
 
 Ranks::Ranks() : impl_(std::make_unique<Impl>()) {}
 Ranks::~Ranks() = default;
 int Ranks::rank() const { return impl_->comm->getRank(); }
 int Ranks::size() const { return impl_->comm->getSize(); }
+void Ranks::measure(Phases& phases) { impl_->phases = &phases; }
 
 void Ranks::own(const std::vector<int>& rows, int n) { own(rows, surface::Symmetry(n)); }
 
@@ -98,6 +102,7 @@ void Ranks::own(const std::vector<int>& rows, surface::Symmetry symmetry) {
 }
 
 void Ranks::replicate(Net& net) const {
+  const auto clock = impl_->time();
   if (size() > 1) {
     for (int c = 0; c < 3; ++c) {
       const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
@@ -116,18 +121,40 @@ void Ranks::replicate(Net& net) const {
 void Ranks::add(std::span<Net* const> nets) const {
   if (size() == 1) return;
   const std::vector<int>& all = impl_->symmetry.fundamental();
-  std::vector<double> mine, together;
+  std::vector<double> numbers;
+  numbers.reserve(3 * all.size() * nets.size());
   for (const Net* net : nets)
     for (const int a : all)
-      for (int c = 0; c < 3; ++c) mine.push_back((*net)(a, c));
-  together.resize(mine.size());
-  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), together.data());
-  const double* next = together.data();
+      for (int c = 0; c < 3; ++c) numbers.push_back((*net)(a, c));
+  add(numbers);
+  const double* next = numbers.data();
   for (Net* net : nets) {
     for (const int a : all)
       for (int c = 0; c < 3; ++c) (*net)(a, c) = *next++;
     impl_->symmetry.complete(*net);
   }
+}
+
+void Ranks::add(std::span<double> numbers) const {
+  if (size() == 1) return;
+  const auto clock = impl_->time();
+  const std::vector<double> mine(numbers.begin(), numbers.end());
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), numbers.data());
+}
+
+void Ranks::add_all(std::initializer_list<std::span<double>> several) const {
+  std::vector<double> numbers;
+  for (const auto& some : several) numbers.insert(numbers.end(), some.begin(), some.end());
+  add(numbers);
+  const double* next = numbers.data();
+  for (const auto& some : several) next = std::ranges::copy_n(next, static_cast<std::ptrdiff_t>(some.size()), some.begin()).in;
+}
+
+std::vector<int> Ranks::share(int n) const {
+  std::vector<int> mine;
+  for (int k = 0; k < n; ++k)
+    if (owner(k, n) == rank()) mine.push_back(k);
+  return mine;
 }
 
 bool Ranks::any(bool mine) const {

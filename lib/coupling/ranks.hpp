@@ -1,10 +1,12 @@
 #pragma once
 // Who computes which rows, and how every rank gets all of them.
 
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "base/timing.hpp"
 #include "base/types.hpp"
 #include "surface/symmetry.hpp"
 
@@ -32,6 +34,9 @@ class Ranks {
   int rank() const;
   int size() const;
 
+  /// Counts the time of replicate and add, waiting included, to the phase `exchange` from now on; `phases` outlives this.
+  void measure(Phases& phases);
+
   /// States the rows that this rank fills, of nets with n rows; each row has one owner. Collective.
   void own(const std::vector<int>& rows, int n);
 
@@ -46,6 +51,13 @@ class Ranks {
 
   /// Adds up the nets of all ranks, whose rows of fundamental points count. Sums of one number and zeros are exact. Collective.
   void add(std::span<Net* const> nets) const;
+
+  /// Adds up the numbers of all ranks, in place. Sums of one number and zeros are exact. Collective.
+  void add(std::span<double> numbers) const;
+  void add_all(std::initializer_list<std::span<double>> several) const;
+
+  /// Which of n items that come in a row this rank is to do; see owner. Ascending.
+  std::vector<int> share(int n) const;
 
   /// Whether any rank says so (a signal, a limit). Collective.
   bool any(bool mine) const;

@@ -101,11 +101,12 @@ TEST(Soundness, EndsARunWhoseElementFolds) {
   deck.declare(scene);
   const Body sphere = body(scene);
   Soundness soundness;
-  EXPECT_GT(soundness(sphere, sphere.rest).jacobian_ratio, 0.4);
+  const coupling::Ranks ranks;
+  EXPECT_GT(soundness(sphere, sphere.rest, ranks).jacobian_ratio, 0.4);
   Net folded = sphere.rest;
   const std::vector<int>& points = sphere.space.elements[14].points;
   folded.row(points[5]) += 3 * (folded.row(points[6]) - folded.row(points[5]));  // pulled over its neighbour
-  EXPECT_THROW(soundness(sphere, folded), RunFailure);
+  EXPECT_THROW(soundness(sphere, folded, ranks), RunFailure);
 }
 
 }  // namespace
