@@ -58,7 +58,7 @@ struct Snapshot {
 /// All of them, by step; readable or not.
 std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
-/// The number "time" of its checkpoint; empty when the file cannot be read or holds none.
+/// The number "picture time" of its checkpoint, or "time"; empty when the file cannot be read or holds none.
 std::optional<double> snapshot_time(const std::filesystem::path& path);
 
 struct Saved {

@@ -78,8 +78,6 @@ Id new_group(hid_t parent, const std::string& name) {
 
 Id group(hid_t parent, const std::string& name) { return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "no group " + name}; }
 
-bool has(hid_t parent, const std::string& name) { return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0; }
-
 std::vector<std::string> names(hid_t group) {
   std::vector<std::string> result;
   const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {

@@ -36,7 +36,6 @@ Id open(const std::filesystem::path& path);
 
 Id new_group(hid_t parent, const std::string& name);
 Id group(hid_t parent, const std::string& name);
-bool has(hid_t parent, const std::string& name);
 std::vector<std::string> names(hid_t group);  ///< of the members, in alphabetical order
 
 using Shape = std::vector<hsize_t>;  ///< empty: a scalar

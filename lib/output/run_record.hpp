@@ -12,7 +12,7 @@
 
 namespace tanktread::output {
 
-/// One quantity over the steps. The names are promises to scripts outside the project (design: "Results").
+/// One quantity over the steps. The names are promises to scripts outside the project.
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one a row; row 0 is the initial state

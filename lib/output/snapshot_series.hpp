@@ -11,8 +11,8 @@ class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
 
-  /// The list that a resumed run goes on with: snapshots up to `step` that can be read. Their number "time" in the checkpoint is
-  /// the time. Files of later steps are removed: the run writes them again.
+  /// The list that a resumed run goes on with: snapshots up to `step` that can be read, each with its snapshot_time().
+  /// Files of later steps are removed: the run writes them again.
   static SnapshotSeries resumed(std::filesystem::path directory, int step);
 
   /// Adds the snapshot of a step, which stands in the directory already, and rewrites the list.
