@@ -3,6 +3,7 @@
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(MPI REQUIRED COMPONENTS CXX)
 find_package(Trilinos REQUIRED)
+set(HDF5_USE_STATIC_LIBRARIES ON) # the shared one loads thirty libraries for files in clouds
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_path(BOOST_MATH_INCLUDE_DIR boost/math/special_functions.hpp REQUIRED)
 find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
@@ -17,6 +18,10 @@ endfunction()
 
 set(teuchos teuchosparameterlist teuchosparser teuchoscomm teuchoscore)
 list(TRANSFORM teuchos PREPEND trilinos_)
+foreach(name noxlapack nox amesos2 belos tpetra kokkoscore) # as files: their targets list all of Trilinos, and the shared HDF5
+  find_library(TRILINOS_${name} trilinos_${name} HINTS ${Trilinos_LIBRARY_DIRS} REQUIRED)
+  list(APPEND trilinos ${TRILINOS_${name}})
+endforeach()
 
 external(BOOST HEADERS ${BOOST_MATH_INCLUDE_DIR})
 external(METIS HEADERS ${METIS_INCLUDE_DIR} LIBRARIES ${METIS_LIBRARY})
@@ -24,4 +29,4 @@ external(HDF5 HEADERS ${HDF5_INCLUDE_DIRS} LIBRARIES ${HDF5_LIBRARIES} MPI::MPI_
 external(TEUCHOS HEADERS ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS} LIBRARIES ${teuchos} MPI::MPI_CXX)
 external(TRILINOS
   HEADERS ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS}
-  LIBRARIES ${Trilinos_LIBRARIES} ${Trilinos_TPL_LIBRARIES} MPI::MPI_CXX)
+  LIBRARIES ${trilinos} ${teuchos} MPI::MPI_CXX)
