@@ -45,7 +45,7 @@ def step_tolerance(study):
         axis.set_ylabel(label)
         axis.invert_xaxis()
     axes[0].plot([], [], ":", color=style.FAINT, label="Volume/constraint `flux`")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="upper right", ncols=5, fontsize=7.5)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="upper right", ncols=3, fontsize=7, bbox_to_anchor=(1, 1.012), labelspacing=0.25)
     return figure, ["scheme", "constraint", "tolerance", "deformation_error", "volume_error", "evaluations"], rows
 
 
