@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/provenance.hpp"
+#include "app/results.hpp"
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
@@ -51,11 +52,12 @@ void check_changes(const std::string& stored, const deck::Document& now) {
                       ", and now is " + value + ".");
 }
 
-/// A file that a deck names: of the run that goes on, from where the program was started, or beside a deck; as it is named where there is none.
-std::string found(const std::string& name, const Arguments& arguments) {
+/// A file that a deck names: what the run that goes on has kept of it, from where the program was started, or beside a deck; as it is named where
+/// there is none.
+std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
-  if (!arguments.resume.empty()) places.push_back(std::filesystem::path(arguments.resume) / path.filename());
+  if (!arguments.resume.empty()) places.push_back(std::filesystem::path(arguments.resume) / kept);
   places.push_back(path);
   for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
   for (const auto& place : places)
@@ -79,7 +81,9 @@ int run(const Arguments& arguments, bool speaks) {
   deck::Document deck = deck::read(arguments.decks, arguments.settings, stored);
   deck.declare(scene);
   if (resume) check_changes(stored, deck);
-  if (scene.tube.outline) scene.tube.outline = found(*scene.tube.outline, arguments);
+  if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
+  if (auto& file = scene.particle.shape.file) file = found(*file, kept_surface, arguments);
+  scene.particle.shape.read();
   scene.check();
 
   if (arguments.check) {

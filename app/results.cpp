@@ -76,6 +76,8 @@ Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoi
 
 }  // namespace
 
+std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
+
 /// The first rank acts; if it fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else.
 template <class Write>
 void Results::write(const Write& action) {
@@ -114,13 +116,19 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
 /// The files of a new run.
 void Results::begin() {
   output::start_directory(directory_);
-  if (scene_.tube.outline)  // a run goes on without its deck
-    std::filesystem::copy_file(*scene_.tube.outline, directory_ / std::filesystem::path(*scene_.tube.outline).filename(),
-                               std::filesystem::copy_options::overwrite_existing);
+  if (scene_.tube.outline) keep(*scene_.tube.outline, kept_outline(scene_));
+  if (scene_.particle.shape.imported) keep(*scene_.particle.shape.file, kept_surface);
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);
   declare_columns();
+}
+
+void Results::keep(const std::filesystem::path& file, const std::filesystem::path& name) {
+  const std::filesystem::path place = directory_ / name;
+  std::error_code absent;
+  if (!std::filesystem::equivalent(file, place, absent))
+    std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing);
 }
 
 void Results::declare_columns() {

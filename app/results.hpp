@@ -18,6 +18,10 @@
 
 namespace tanktread {
 
+/// What a run keeps in its directory of the files that its deck names, for it goes on without them.
+constexpr const char* kept_surface = "particle.iga";
+std::string kept_outline(const Scene& scene);  ///< the name of Tube/outline, without its folder
+
 /// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw: RunFailure when the
 /// disk refuses, UserError where a run cannot begin in its directory.
 class Results {
@@ -56,6 +60,7 @@ class Results {
   template <class Write>
   void write(const Write& action);
   void begin();
+  void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_columns();
   void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
   std::string finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,

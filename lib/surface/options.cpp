@@ -72,7 +72,8 @@ void ParticleShape::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
               "resting shape; `red cell`: the biconcave disc of Evans and Fung; `file`: the closed surface in Particle/file");
   section.key("file", file, deck::Choice{},
-              "name of a Bezier-extraction text (.iga) whose surface and spline space are taken; the length unit is the deck's");
+              "name of a Bezier-extraction text (.iga), looked for where the program is started and beside the deck; its surface and spline space are "
+              "taken, in the deck's unit of length");
   const bool round = shape == "sphere" || shape == "red cell";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length", "of the sphere (1 if not given), or of the red cell's disc");
@@ -81,6 +82,9 @@ void ParticleShape::declare(deck::Section& section) {
   section.key("center", center, deck::any(), "length", "centroid of the resting shape");
   section.key("orientation", orientation, deck::any(), "degrees",
               "rotation vector (axis times angle) that turns the particle's own axes into place");
+}
+
+void ParticleShape::read() {
   if (shape == "file" && file) imported = std::make_shared<const spline::SplineSurface>(spline::read_iga(*file));
 }
 

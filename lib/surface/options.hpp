@@ -61,7 +61,10 @@ struct ParticleShape {
   /// Columns: the particle's own axes in space.
   Mat3 rotation() const;
 
-  /// Whether the keys that give its size are there (check() says what is missing).
+  /// Takes `imported` from the file, if there is one. Throws UserError when it holds no closed surface.
+  void read();
+
+  /// Whether the keys that give its size are there and the file is read.
   bool sized() const;
 
   /// R_C: radius of the sphere of equal volume.

@@ -67,4 +67,26 @@ def keys_of_other_shapes_and_meshes_are_refused():
     check("nowhere.iga" in result.stderr, result.stderr)
 
 
+def a_file_is_found_beside_the_deck_and_a_run_goes_on_without_it():
+    file = _written()
+    pathlib.Path("decks").mkdir()
+    file.rename("decks/surface.iga")  # the name that the run's own last surface has
+    more = ["--set", "Output/surface text=true", "--quiet"]
+    run(deck(IMPORT % "surface.iga", "decks/deck.yaml"), *more, "--output", "whole", "--set", "Time/final time=0.1")
+    run("decks/deck.yaml", *more, "--output", "part")
+    pathlib.Path("decks/surface.iga").unlink()
+    run("--resume", "part", *more, "--set", "Time/final time=0.1")
+    for name in "taylor_inertia", "volume_error", "energy":
+        close(series("part", name)[-1], series("whole", name)[-1], 1e-6, name)  # steps land on other snapshots
+
+
+def a_file_in_the_directory_of_results_stays():
+    file = _written()
+    text = file.read_text()
+    pathlib.Path("second").mkdir()
+    pathlib.Path("second/particle.iga").write_text(text)
+    run(deck(IMPORT % "second/particle.iga"), "--output", "second", "--quiet")
+    check(pathlib.Path("second/particle.iga").read_text() == text, "the file is another")
+
+
 main()
