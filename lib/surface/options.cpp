@@ -72,8 +72,8 @@ void ParticleShape::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
               "resting shape; `red cell`: the biconcave disc of Evans and Fung; `file`: the closed surface in Particle/file");
   section.key("file", file, deck::Choice{},
-              "name of a Bezier-extraction text (.iga), looked for where the program is started and beside the deck; its surface and spline space are "
-              "taken, in the deck's unit of length");
+              "name of a Bezier-extraction text (.iga), looked for where the program is started and beside the deck; its surface and spline space "
+              "are taken, in the deck's unit of length");
   const bool round = shape == "sphere" || shape == "red cell";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length", "of the sphere (1 if not given), or of the red cell's disc");
