@@ -138,6 +138,15 @@ TEST(Ranks, WhatTheyHaveAddsUp) {
   }
 }
 
+TEST(Ranks, EveryItemIsDoneByOneRankAndNumbersAddUpInPlace) {
+  const Ranks ranks;
+  std::vector<double> done(7, 0), weight(3, 1);
+  for (const int k : ranks.share(7)) done[static_cast<std::size_t>(k)] = 0.1 * k;
+  ranks.add_all({done, weight});
+  for (std::size_t k = 0; k < done.size(); ++k) EXPECT_EQ(done[k], 0.1 * static_cast<double>(k));  // one number and zeros
+  for (const double w : weight) EXPECT_EQ(w, ranks.size());
+}
+
 TEST(Ranks, OneRankSpeaksForAll) {
   Ranks ranks;
   EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));

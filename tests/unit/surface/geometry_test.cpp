@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -130,6 +133,25 @@ TEST(Geometry, AShareOfTheElementsGivesItsRowsToTheLastBit) {
     geometry.volume_gradient(net, elements, part);
     for (int a = first; a < first + 30; ++a) EXPECT_EQ(part.row(a), all.row(a)) << "row " << a;
   }
+}
+
+TEST(Geometry, SharedBlocksOfElementsGiveMeasuresAndVolumeToTheLastBit) {
+  const CubeMesh cube(6);
+  const Net net = cube.crumpled(0.05);
+  const Geometry geometry(cube.space);
+  const Measures whole = geometry.measures(net);
+  ASSERT_GT(geometry.n_blocks(), 2);
+  std::vector<double> moments(geometry.block_moments(net, {}).size(), 0.), volumes(geometry.n_blocks(), 0.);
+  for (int b = geometry.n_blocks(); b-- > 0;) {  // zeros of the others change nothing, in any order
+    const std::vector<double> m = geometry.block_moments(net, std::span(&b, 1)), v = geometry.block_volumes(net, std::span(&b, 1));
+    for (std::size_t k = 0; k < m.size(); ++k) moments[k] += m[k];
+    for (std::size_t k = 0; k < v.size(); ++k) volumes[k] += v[k];
+  }
+  const Measures shared = Geometry::measures(net, moments);
+  EXPECT_EQ(shared.area, whole.area);
+  EXPECT_EQ(shared.centroid, whole.centroid);
+  EXPECT_EQ(shared.second_moments, whole.second_moments);
+  EXPECT_EQ(std::accumulate(volumes.begin(), volumes.end(), 0.), geometry.volume(net));
 }
 
 TEST(Geometry, FarFromTheOriginNothingIsLost) {

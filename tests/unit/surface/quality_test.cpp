@@ -20,6 +20,20 @@ TEST(Quality, AFittedSphereIsEven) {
   EXPECT_NO_THROW(require_sound(q));
 }
 
+TEST(Quality, OfAWholeIsTheWorseOfItsParts) {
+  const CubeMesh cube(6);
+  const BezierMap map(cube.space);
+  const Net net = cube.crumpled(0.05);
+  std::vector<int> first, second;
+  for (int e = 0; e < map.n_elements(); ++e) (e % 3 ? first : second).push_back(e);
+  const Quality whole = quality(map, net), together = worse(quality(map, net, first), quality(map, net, second));
+  EXPECT_EQ(together.jacobian_ratio, whole.jacobian_ratio);
+  EXPECT_EQ(together.folded_element, whole.folded_element);
+  EXPECT_EQ(together.folded_place, whole.folded_place);
+  EXPECT_EQ(together.aspect_ratio, whole.aspect_ratio);
+  EXPECT_EQ(together.stretched_element, whole.stretched_element);
+}
+
 TEST(Quality, StretchingShowsInTheAspectRatio) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
