@@ -114,7 +114,7 @@ void LayerSurface::place(TreeSum& tree, std::span<const int> some) const {
   std::vector<double> place[3];
   for (const int e : some) {
     const auto first = panels[e].first_node, last = first + panels[e].table->n_nodes;
-    for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), &node[c][first], &node[c][last]);
+    for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), node[c].begin() + first, node[c].begin() + last);
     starts.push_back(starts.back() + last - first);
   }
   tree.place(place[0].data(), place[1].data(), place[2].data(), starts, at);
