@@ -22,7 +22,6 @@ struct Signs {
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
   double element = 1;                           ///< mean size, the square root of the area over the elements
   std::optional<double> gap;                    ///< to the wall of a tube
-  bool rejected = false;                        ///< whether attempts at this step were given up
 };
 
 class Warnings {
