@@ -11,7 +11,7 @@ namespace tanktread::motion {
 
 /// Chooses the scheme from the measured stiffness rho (4.7), which the frozen operator gives for less than an evaluation:
 ///
-///   BS3 as long as the step that the error allows is stable, dt < 2.3/rho; beyond that TR-BDF2, whose work per unit of time is counted;
+///   BS3 as long as the step that the error allows, the first one too, is stable, dt < 2.3/rho; else TR-BDF2, whose work per unit of time is counted;
 ///   back to BS3 when that is above 1.5 times 3/min(dt, 2.3/rho), and once more to TR-BDF2 when rho has changed or fifty steps have passed.
 ///
 /// Where the frozen operator would be larger than `Time/largest operator`, RKC2, which needs none.
