@@ -58,7 +58,7 @@ std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const o
   auto body = std::make_unique<Body>(first);
   const Eigen::MatrixXd &spacing = checkpoint.arrays.at("mesh spacing"), &bits = edges->second;
   if (static_cast<size_t>(bits.size()) != body->mesh.edges.size())
-    throw UserError("Adaptation/levels cannot change when a run goes on: the checkpoint's mesh has another lattice.");
+    throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run goes on from a mesh that is refined.");
   spline::TMesh mesh = body->mesh;
   for (Eigen::Index i = 0; i < bits.size(); ++i) mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
   for (Eigen::Index i = 0; i < spacing.size(); ++i) mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
