@@ -8,12 +8,14 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
            Ranks&, Phases& phases)
     : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
   const auto clock = phases_.time("wall assembly");
-  wall_ = std::make_shared<Wall>(wall, parameters.quadrature);
+  wall_ = std::make_shared<Wall>(wall, parameters.quadrature, &phases_);
   particle_ = std::make_unique<Particle>(particle, parameters);
+  particle_->ranks.measure(phases_);
 }
 
 Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_) {
   particle_ = std::make_unique<Particle>(particle, tube.particle_->parameters);
+  particle_->ranks.measure(phases_);
 }
 
 Tube::~Tube() = default;

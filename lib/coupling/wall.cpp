@@ -26,9 +26,10 @@ Net collocation_points(const spline::Space& space, const Net& net) {
 Eigen::Map<const Eigen::VectorXd> flat(const Net& net) { return {net.data(), net.size()}; }
 
 /// The whole matrix on every rank, from the rows of each: a few columns of blocks at a time, as a net with a row for each row of a block.
-Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<int>& own, int n) {
+Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<int>& own, int n, Phases* phases) {
   constexpr int at_a_time = 16;
   Ranks ranks;
+  if (phases) ranks.measure(*phases);
   std::vector<int> places;
   for (const int i : own)
     for (int r = 0; r < 3 * at_a_time; ++r) places.push_back(3 * at_a_time * i + r);
@@ -50,7 +51,7 @@ Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<i
 
 }  // namespace
 
-Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature)
+Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases)
     : surface_(wall),
       layer_(surface_.space, quadrature, stokes::CrossLayer::Kernel::single_layer),
       inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
@@ -58,12 +59,13 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature)
   const int n = wall.space.n_points;
   for (int i = n * ranks_.rank() / ranks_.size(); i < n * (ranks_.rank() + 1) / ranks_.size(); ++i) own_.push_back(i);
   ranks_.own(own_, n);
+  if (phases) ranks_.measure(*phases);
   layer_.place(wall.net);
 
   stokes::SingleLayer own_layer(surface_.space, sharper(quadrature));
   own_layer.assemble(wall.net, stokes::Measure::current, own_, rows_);
   assembly_ = own_layer.evaluations();
-  const Eigen::MatrixXd all = everybodys(rows_, own_, n);
+  const Eigen::MatrixXd all = everybodys(rows_, own_, n, phases);
   factors_.compute(all);
 
   inlet_column_ = inlet_.integral(sites_);

@@ -19,8 +19,8 @@ namespace tanktread::coupling {
 /// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
 class Wall {
  public:
-  /// Collective, like solve's and apply's replication of rows.
-  Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature);
+  /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
+  Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr);
 
   const surface::TubeWall& surface() const { return surface_; }
   const std::vector<int>& own() const { return own_; }  ///< rows of this rank
