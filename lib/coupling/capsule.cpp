@@ -8,7 +8,7 @@
 
 #include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
-#include "surface/partition.hpp"
+#include "surface/fundamental.hpp"
 
 namespace tanktread::coupling {
 
@@ -41,8 +41,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
   const surface::Share share =
       surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank());
-  own_points_ = share.points;
-  own_elements_ = share.elements;
+  own(share);
   ranks_.own(own_points_, symmetry);
   collocation_.factor(collocation_matrix(space));
   mass_.factor(mass_matrix_.update(unstressed));
@@ -57,11 +56,24 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   }
   volume0_ = geometry_.volume(initial);
   if (parameters.interface_motion != "material")
-    interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, own_elements_,
+    interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, share.elements,
                        collocation_, parameters.solvers.direct, symmetry, ranks_);
 }
 
 Capsule::~Capsule() = default;
+
+/// Sums for the own points run over fundamental elements, those that touch the points or their images; or, where an element is an image of itself,
+/// over all that touch the points.
+void Capsule::own(const surface::Share& share) {
+  const surface::Symmetry& symmetry = parameters_.symmetry;
+  const auto points = [&](int e) { return std::span<const int>(space_.elements[static_cast<std::size_t>(e)].points); };
+  surface::FundamentalElements found = surface::fundamental_elements(symmetry, static_cast<int>(space_.elements.size()), points);
+  const auto mine = [&](int a) { return std::ranges::binary_search(share.points, symmetry.source()[a]); };
+  std::erase_if(found.element, [&](int e) { return std::ranges::none_of(points(e), mine); });
+  own_points_ = share.points;
+  folded_ = found.whole();
+  own_elements_ = folded_ ? std::move(found.element) : share.elements;
+}
 
 /// Control values of v_inf without a tube: exact, for the flow is affine and the basis sums to one.
 Net Capsule::ambient(const Net& x) const {
@@ -71,6 +83,12 @@ Net Capsule::ambient(const Net& x) const {
 }
 
 void Capsule::replicate(Net& net) { ranks_.replicate(net); }
+
+/// Of what own elements give to all points.
+void Capsule::replicate_sums(Net& net) {
+  if (folded_) surface::fold(parameters_.symmetry, net);
+  replicate(net);
+}
 
 void Capsule::add(Net& net) {
   Net* const one[] = {&net};
@@ -99,7 +117,7 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
 Net Capsule::energy_gradient(const Net& x) {
   Net d(x.rows(), 3);
   membrane_.load(x, own_elements_, d);
-  replicate(d);
+  replicate_sums(d);
   return d;
 }
 
@@ -128,7 +146,7 @@ Net Capsule::flux_vector(const Net& x) {
   const auto clock = phases_.time("volume");
   Net b(x.rows(), 3);
   geometry_.volume_gradient(x, own_elements_, b);
-  replicate(b);
+  replicate_sums(b);
   return b;
 }
 

@@ -28,6 +28,7 @@
 #include "stokes/double_layer.hpp"
 #include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
+#include "surface/partition.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
@@ -118,7 +119,9 @@ class Capsule : public Dynamics {
   Net load_there(const Net& x, Net* other);
   void place(const Net& x);
   Net load_velocity(const Net& x, const Net& f);
+  void own(const surface::Share& share);
   void replicate(Net& net);
+  void replicate_sums(Net& net);
   void add(Net& net);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
@@ -143,7 +146,9 @@ class Capsule : public Dynamics {
   CapsuleParameters parameters_;
   Ranks& ranks_;
   Phases& phases_;
-  std::vector<int> own_points_, own_elements_;
+  std::vector<int> own_points_;
+  std::vector<int> own_elements_;  // that sums for own points run over
+  bool folded_ = false;            // those are fundamental ones, and their sums are to be folded
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;

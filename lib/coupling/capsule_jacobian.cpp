@@ -46,7 +46,7 @@ void Capsule::linearise(const Net& x) {
 Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3), u(delta.rows(), 3);
   tangent_.apply(delta, h);
-  replicate(h);
+  replicate_sums(h);
   const Net f = solved(mass_.reference(), std::move(h));
   if (nodal_.empty())
     frozen_.apply(f, u);

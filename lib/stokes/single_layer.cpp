@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cassert>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "stokes/identity_kernel.hpp"
 #include "stokes/pair_kernel.hpp"
+#include "surface/fundamental.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -26,22 +28,10 @@ SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& 
 
 void SingleLayer::set_symmetry(const surface::Symmetry& symmetry) {
   images_ = symmetry.images();
-  fundamental_.clear(), weight_.clear();
-  const auto inside = [&](int e) {
-    const int* points = surface_.panels.points(e);
-    return std::count_if(points, points + surface_.panels[e].functions, [&](int a) { return symmetry.source()[a] == a; });
-  };
-  for (int e = 0; e < surface_.panels.size(); ++e) {
-    int same = 1, best = e;
-    for (const surface::Image& g : images_) {
-      const int other = g.element[e];
-      same += other == e;
-      if (const auto n = inside(other), most = inside(best); n > most || (n == most && other < best)) best = other;
-    }
-    if (best != e) continue;
-    fundamental_.push_back(e);
-    weight_.push_back(1. / same);
-  }
+  const auto points = [&](int e) { return std::span(surface_.panels.points(e), static_cast<std::size_t>(surface_.panels[e].functions)); };
+  surface::FundamentalElements found = surface::fundamental_elements(symmetry, surface_.panels.size(), points);
+  fundamental_ = std::move(found.element);
+  weight_ = std::move(found.weight);
 }
 
 void SingleLayer::set_reference(const Net& unstressed) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "spline/refinement.hpp"
+#include "surface/fundamental.hpp"
 #include "surface/geometry.hpp"
 #include "surface/polar_sphere.hpp"
 #include "surfaces.hpp"
@@ -101,6 +102,29 @@ TEST(Symmetry, CompletesTheFieldsThatItsSurfacesHave) {
     for (const int a : found.fundamental()) known.row(a) = field.row(a);
     found.complete(known);
     EXPECT_NEAR((known - field).cwiseAbs().maxCoeff(), 0, 1e-12);
+  }
+}
+
+TEST(Symmetry, FundamentalElementsFoldedGiveTheSumsOfAll) {
+  for (const int n : {4, 5}) {  // of five a side, those at the planes are images of themselves
+    const CubeMesh cube(n);
+    const Net net = cube.ellipsoid({1.3, 1, 0.8});
+    const Symmetry found = of(cube.space, net);
+    const auto points = [&](int e) { return std::span<const int>(cube.space.elements[static_cast<std::size_t>(e)].points); };
+    const FundamentalElements one = fundamental_elements(found, static_cast<int>(cube.space.elements.size()), points);
+    EXPECT_EQ(one.whole(), n == 4);
+    double elements = 0;
+    for (const double weight : one.weight) elements += found.order() * weight;
+    EXPECT_EQ(elements, 6 * n * n);
+    const Geometry geometry(cube.space);
+    Net sums = Net::Zero(net.rows(), 3), part;
+    for (std::size_t k = 0; k < one.element.size(); ++k) {
+      geometry.volume_gradient(net, std::span(&one.element[k], 1), part);
+      sums += one.weight[k] * part;
+    }
+    fold(found, sums);
+    found.complete(sums);
+    EXPECT_NEAR((sums - geometry.volume_gradient(net)).cwiseAbs().maxCoeff(), 0, 1e-12) << n;
   }
 }
 
