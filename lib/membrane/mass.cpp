@@ -15,7 +15,10 @@ std::vector<int> everything(const spline::Space& space) {
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
+  std::size_t n = 0;
+  for (const spline::Element& e : space.elements) n += e.points.size() * e.points.size();
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(n);
   for (const spline::Element& e : space.elements)
     for (int a : e.points)
       for (int b : e.points) entries.emplace_back(a, b, 0.);
@@ -24,14 +27,22 @@ Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   return matrix;
 }
 
-int slot(const Eigen::SparseMatrix<double>& matrix, int row, int column) {
-  const int* first = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column];
-  const int* last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
-  return static_cast<int>(std::lower_bound(first, last, row) - matrix.innerIndexPtr());
+/// Where the matrix keeps the entries of an element's functions a, b: [functions a + b]. `row`: as many integers as the matrix has rows.
+std::vector<int> slots_of(const std::vector<int>& points, const Eigen::SparseMatrix<double>& matrix, std::vector<int>& row) {
+  const std::size_t n = points.size();
+  std::vector<int> slots(n * n);
+  for (std::size_t b = 0; b < n; ++b) {
+    for (int k = matrix.outerIndexPtr()[points[b]]; k < matrix.outerIndexPtr()[points[b] + 1]; ++k) row[matrix.innerIndexPtr()[k]] = k;
+    for (std::size_t a = 0; a < n; ++a) slots[n * a + b] = row[points[a]];
+  }
+  return slots;
 }
 
 std::vector<Pack> values_at_gauss_points(const Group& g) {
+  std::size_t n = 0;
+  for (const Batch& batch : g.batches) n += static_cast<std::size_t>(batch.functions * g.n_gauss());
   std::vector<Pack> values;
+  values.reserve(n);
   const int p = g.degree + 1;
   for (const Batch& batch : g.batches)
     for (int a = 0; a < batch.functions; ++a)
@@ -46,16 +57,18 @@ std::vector<Pack> values_at_gauss_points(const Group& g) {
 
 // Functions that an element lacks share slot 0 and add zero to it.
 std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& matrix, const spline::Space& space) {
-  std::vector<int> slots;
-  for (const Batch& batch : g.batches)
+  std::vector<int> slots, row(static_cast<std::size_t>(matrix.rows()));
+  for (const Batch& batch : g.batches) {
+    std::vector<std::vector<int>> of_lane;
+    for (const int element : batch.elements) of_lane.push_back(slots_of(space.elements[element].points, matrix, row));
     for (int a = 0; a < batch.functions; ++a)
       for (int b = 0; b <= a; ++b)
         for (bool transposed : {false, true})
-          for (int element : batch.elements) {
-            const std::vector<int>& points = space.elements[element].points;
-            const bool here = a < static_cast<int>(points.size());
-            slots.push_back(!here ? 0 : transposed ? slot(matrix, points[b], points[a]) : slot(matrix, points[a], points[b]));
+          for (std::size_t l = 0; l < of_lane.size(); ++l) {
+            const int n = static_cast<int>(space.elements[batch.elements[l]].points.size());
+            slots.push_back(a >= n ? 0 : of_lane[l][transposed ? n * b + a : n * a + b]);
           }
+  }
   return slots;
 }
 
