@@ -137,13 +137,15 @@ void Scene::check() const {
   surface.check();
   check_motion(*this);
   if (!particle.rigid()) membrane.check();
-  time.check();
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");
   if (adaptation.enabled && !lands_on_snapshots())
     throw UserError("Output/between steps `interpolate` and Adaptation/enabled contradict each other: the mesh may change between two steps.");
   modulus();
+  motion::TimeOptions in_its_unit = time;
+  in_its_unit.unit = 1 / rate();
+  in_its_unit.check();
   if (volume.constraint == "none" && membrane.load == "weak" && membrane.load_measure == "reference")
     throw UserError(
         "Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "

@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
+#include "deck/words.hpp"
 
 namespace tanktread::motion {
 
@@ -45,8 +46,13 @@ void TimeOptions::declare(deck::Section& section) {
 void TimeOptions::check() const {
   if (fixed_step && initial_step) throw UserError("Time/fixed step and Time/initial step contradict each other: give one of them.");
   if (fixed_step && maximum_step) throw UserError("Time/fixed step and Time/maximum step contradict each other: give one of them.");
-  if (maximum_step && minimum_step && *maximum_step < *minimum_step) throw UserError("Time/maximum step must not be shorter than Time/minimum step.");
-  if (initial_step && minimum_step && *initial_step < *minimum_step) throw UserError("Time/initial step must not be shorter than Time/minimum step.");
+  const auto not_below_the_least = [this](const char* name, const std::optional<double>& step) {
+    if (step && *step < least_step())
+      throw UserError(std::string("Time/") + name + " must not be shorter than Time/minimum step, " + deck::number_text(least_step()) +
+                      ", but is " + deck::number_text(*step) + ".");
+  };
+  not_below_the_least("maximum step", maximum_step);
+  not_below_the_least("initial step", initial_step);
 }
 
 }  // namespace tanktread::motion

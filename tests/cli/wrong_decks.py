@@ -77,6 +77,8 @@ SETTINGS = [
     (["Flow/type=linear", "Flow/gradient=[1, 0, 0, 0, 1, 0, 0, 0, 1]"], ["Flow/gradient", "trace", "3"]),
     (["Volume/constraint=none"], ["Volume/constraint", "none", "Membrane/load measure"]),
     (["Time/fixed step=0.1", "Time/initial step=0.1"], ["Time/fixed step", "Time/initial step", "contradict"]),
+    (["Time/initial step=1e-12"], ["Time/initial step", "Time/minimum step", "1e-09", "1e-12"]),
+    (["Time/maximum step=0.1", "Time/minimum step=0.2"], ["Time/maximum step", "Time/minimum step", "0.2", "0.1"]),
     (["Expect/energy/value=1"], ["Expect/energy/tolerance", "missing"]),
     # what the libraries that get a list know
     (["Solvers/iterative solver=Foo"], ["Solvers/Belos", "Foo"]),
