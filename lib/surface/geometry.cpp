@@ -165,6 +165,7 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
   const double longest = std::sqrt(mean + radius), shortest = std::sqrt(mean - radius);
   result.taylor_inertia = (longest - shortest) / (longest + shortest);
   result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
+  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // upright: rounding is not to choose the end that points up
 
   result.taylor_surface = (extremes[0].largest - extremes[0].smallest) / (extremes[0].largest + extremes[0].smallest);
   for (int c = 0; c < 3; ++c) result.lengths[c] = extremes[1 + c].largest - extremes[1 + c].smallest;

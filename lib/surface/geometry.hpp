@@ -43,7 +43,7 @@ struct Ellipsoid {
 };
 Ellipsoid ellipsoid_of_inertia(const Measures& measures);
 
-/// What the series report (6.2). D in the x1 x3 plane; inclination in degrees.
+/// What the series report (6.2). D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3

@@ -110,6 +110,17 @@ TEST(Deformation, ExtremesDoNotDependOnWhereElementsMeetThePlane) {
   EXPECT_NEAR(turned.inclination, 25, 1e-9);
 }
 
+TEST(Deformation, AnUprightParticleIsInclinedBy90DegreesWhateverTheRounding) {
+  const CubeMesh cube(4);
+  ParticleShape shape;
+  shape.shape = "ellipsoid";
+  shape.semi_axes = Vec3(0.8, 1.0, 1.5);
+  for (const double tilt : {0.0, 1e-10, -1e-10}) {  // degrees; far above the rounding of moments
+    shape.orientation = Vec3(0, tilt, 0);
+    EXPECT_NEAR(deformation(cube.space, cube.shape(shape)).inclination, 90, 1e-9) << tilt;
+  }
+}
+
 TEST(Deformation, ExtentsAreAlsoFoundOnSidesAndCornersOfElements) {
   // The poles x_i = +-a_i of an aligned ellipsoid are element corners for even n, element middles for odd n.
   for (const int n : {5, 6}) {
