@@ -10,13 +10,14 @@ namespace tanktread::coupling {
 void Capsule::freeze(const Net& x) {
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
-  const auto assemble = [&](std::span<const int> targets, auto& rows) {
-    layer_.assemble(x, stokes::Measure::reference, targets, rows);
+  const auto assemble = [&](std::span<const int> targets, auto&&... of) {
+    layer_.assemble(x, stokes::Measure::reference, targets, of...);
   };
   if (parameters_.solvers.frozen_operator == "nodal") {
     const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
     const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
-    nodal_.assemble(own_points_, {sites * x, sites, row_sums(unstressed_), row_sums(x), parameters_.symmetry}, 3, assemble);
+    const NodalOperator::Surface surface{sites * x, sites, row_sums(unstressed_), row_sums(x), parameters_.symmetry};
+    nodal_.assemble(own_points_, surface, 3, parameters_.quadrature.far_sum, assemble);
   } else {
     frozen_.assemble(own_points_, space_.n_points, assemble);
   }

@@ -2,13 +2,16 @@
 // The single layer that the Jacobian keeps frozen, by one node a control point and corrections for near ones.
 
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
 #include "stokes/single_layer.hpp"
+#include "stokes/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
@@ -19,8 +22,9 @@ namespace tanktread::coupling {
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
 ///
 /// A node at the target counts as nothing. The sum is taken on the fly, in double precision: the noise of single precision would grow, from step to
-/// step, to what tells symmetric runs from whole ones (1e-8 of D). It needs no memory, and what it leaves out of A is
-/// the rule's error at a distance of a few elements, which costs a quasi-Newton iteration some contraction and no accuracy.
+/// step, to what tells symmetric runs from whole ones (1e-8 of D). It needs no memory but for the near blocks, some thirty a target, and is taken
+/// by clusters on a large surface. What it leaves out of A is the rule's error at a distance of a few elements, which costs a quasi-Newton iteration
+/// some contraction and no accuracy.
 class NodalOperator {
  public:
   struct Surface {
@@ -31,40 +35,32 @@ class NodalOperator {
     surface::Symmetry symmetry;          ///< of surface and densities; of no points: none
   };
 
-  using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<double>& rows)>;
+  /// Fills blocks A_iC of near control points as SingleLayer::assemble does.
+  using Assemble = std::function<void(std::span<const int> targets, const stokes::NearPoints& near, std::vector<double>& entries)>;
 
-  /// `assemble(targets, rows)` fills three rows of the exact A a target, for a few targets at a time.
-  void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const Assemble& assemble);
+  /// `far_sum`: as in quadrature::Options.
+  void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
   /// Rows of the own targets of u = A f; other rows are untouched.
-  void apply(const Net& f, Net& u) const;
+  void apply(const Net& f, Net& u);
 
   bool empty() const { return targets_.empty(); }
 
  private:
-  struct Block {
-    int point;
-    double a[6];  // entries 11, 12, 13, 22, 23, 33
-  };
-  void spread(const Net& f) const;
-  void correct(int target, const Surface& surface, double reach, const stokes::Rows<double>& rows, Eigen::Index row);
+  void find_near(const Surface& surface, double reach);
+  void subtract_rule(const Surface& surface);
+  void spread(const Net& f);
+  void sum(std::vector<double>& sums);
 
   std::vector<int> targets_;
   surface::Symmetry symmetry_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> values_;  // R at the fundamental sites
   std::vector<int> row_;                                 // of each site, that of its fundamental one
   Eigen::VectorXd weights_;
-  std::vector<double> node_[3];  // padded to whole tiles
-  mutable std::vector<double> force_[3];
-  std::vector<Block> blocks_;
-  std::vector<std::size_t> first_block_;
+  std::vector<double> node_[3], force_[3];
+  std::optional<stokes::TreeSum> tree_;                  // where clusters are faster
+  stokes::NearPoints near_;
+  std::vector<double> entries_;                          // 11, 12, 13, 22, 23, 33 of K for each near point of each target
 };
-
-/// Targets that share a pass over the nodes, and nodes worked on together.
-constexpr int nodal_block = 4, nodal_tile = 8;
-
-/// u[3 l + c] = sum_k G(x_k, x0_l) f_k for nodal_block targets x0[3 l + c]; n is a multiple of nodal_tile. Each target's sum does not depend on the
-/// other targets. A node at the target counts as nothing.
-void nodal_sum(int n, const double* const (&node)[3], const double* const (&force)[3], const double* x0, double* u);
 
 }  // namespace tanktread::coupling

@@ -266,12 +266,33 @@ struct SingleLayer::Moments {
     }
   }
 
+  void subtract_identities(std::span<const int> targets, const NearPoints& near, std::vector<double>& entries) const {
+    constexpr int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      const Mat3 m = factor * layer.identities(targets[k], layer.at_[k]);
+      const auto [panel, basis] = layer.surface_.self_field.basis(targets[k], layer.surface_.panels);
+      const std::span<const int> points(layer.surface_.panels.points(panel), static_cast<std::size_t>(basis.size()));
+      for (std::size_t j = near.first[k]; j < near.first[k + 1]; ++j) {
+        const auto b = std::ranges::find(points, near.point[j]) - points.begin();
+        if (b == basis.size()) continue;
+        for (int c = 0; c < 6; ++c) entries[6 * j + static_cast<std::size_t>(c)] -= basis[b] * m(row[c], column[c]);
+      }
+    }
+  }
+
   template <class Real>
   void assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<Real>& a) {
     const auto clock = layer.phases_.time("assembly");
     layer.place(x, measure, targets);
     dense_rows(layer.surface_, targets, layer.at_, *this, layer.evaluations_, a);
     if (layer.surface_.options.rule == "desingularised") subtract_identities(targets, a);
+  }
+
+  void assemble(const Net& x, Measure measure, std::span<const int> targets, const NearPoints& near, std::vector<double>& entries) {
+    const auto clock = layer.phases_.time("assembly");
+    layer.place(x, measure, targets);
+    near_rows(layer.surface_, targets, layer.at_, near, *this, layer.evaluations_, entries);
+    if (layer.surface_.options.rule == "desingularised") subtract_identities(targets, near, entries);
   }
 };
 
@@ -281,6 +302,11 @@ void SingleLayer::assemble(const Net& x, Measure measure, std::span<const int> t
 
 void SingleLayer::assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<double>& a) {
   Moments{*this, {}}.assemble(x, measure, targets, a);
+}
+
+void SingleLayer::assemble(const Net& x, Measure measure, std::span<const int> targets, const NearPoints& near,
+                           std::vector<double>& entries) {
+  Moments{*this, {}}.assemble(x, measure, targets, near, entries);
 }
 
 }  // namespace tanktread::stokes

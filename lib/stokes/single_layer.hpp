@@ -57,6 +57,9 @@ class SingleLayer {
   void assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& x, Measure measure, std::span<const int> targets, Rows<double>& a);
 
+  /// Of A only the blocks A_iB of near control points: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
+  void assemble(const Net& x, Measure measure, std::span<const int> targets, const NearPoints& near, std::vector<double>& entries);
+
   /// Kernel evaluations of all calls so far, and where their time went: `setup`, `far`, `near`, `self`, `assembly`.
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }

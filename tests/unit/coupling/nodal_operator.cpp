@@ -13,14 +13,15 @@ namespace tanktread::coupling {
 namespace {
 
 struct Fixture {
-  spline::TMesh mesh = spline::cube(6);
+  spline::TMesh mesh;
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
   Net sphere = surface::initial_shape(space, mesh, {});
   Net x = sphere * Eigen::Vector3d(1.4, 0.9, 0.8).asDiagonal();
   stokes::SingleLayer layer{space, {}};
   std::vector<int> targets;
+  std::string far_sum = "dense";
 
-  Fixture() {
+  explicit Fixture(int n = 6) : mesh(spline::cube(n)) {
     layer.set_reference(sphere);
     for (int i = 0; i < space.n_points; ++i) targets.push_back(i);
   }
@@ -32,8 +33,8 @@ struct Fixture {
     const Eigen::VectorXd weights = mass.update(sphere) * ones, areas = mass.update(x) * ones;
     NodalOperator nodal;
     const NodalOperator::Surface surface{sites * x, sites, weights, areas, surface::Symmetry(space.n_points)};
-    nodal.assemble(own, surface, reach, [&](std::span<const int> some, stokes::Rows<double>& rows) {
-      layer.assemble(x, stokes::Measure::reference, some, rows);
+    nodal.assemble(own, surface, reach, far_sum, [&](std::span<const int> some, const stokes::NearPoints& near, std::vector<double>& entries) {
+      layer.assemble(x, stokes::Measure::reference, some, near, entries);
     });
     Net u = Net::Zero(space.n_points, 3);
     nodal.apply(f, u);
@@ -64,6 +65,16 @@ TEST(NodalOperator, RowsDoNotDependOnTheOtherRowsAskedFor) {
   const Net force = Net::Random(f.space.n_points, 3), whole = f.nodal(3, force, f.targets), part = f.nodal(3, force, {3, 70, 111, 200, 217});
   for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), whole.row(i));
   EXPECT_EQ(part.row(0), Net::Zero(1, 3));  // rows of others stay as they were
+}
+
+TEST(NodalOperator, IsTheSameByClustersToATenthOfWhatItLeavesOut) {
+  Fixture f(12);  // more points than a leaf holds
+  const Net force = Net::Random(f.space.n_points, 3), dense = f.nodal(3, force, f.targets);
+  f.far_sum = "tree";
+  const Net clusters = f.nodal(3, force, f.targets), part = f.nodal(3, force, {3, 70, 111, 200, 217});
+  EXPECT_LT((clusters - dense).norm() / dense.norm(), 1e-3);  // asked of every row
+  EXPECT_GT((clusters - dense).norm(), 0);
+  for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), clusters.row(i));
 }
 
 }  // namespace

@@ -64,6 +64,30 @@ TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
   }
 }
 
+TEST(SingleLayer, BlocksOfNearControlPointsAreThoseOfTheRows) {
+  for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
+    SingleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
+    layer.set_reference(scene().unstressed);
+    Rows<double> a;
+    layer.assemble(scene().x, Measure::reference, scene().all, a);
+    NearPoints near;
+    for (const int i : scene().all) {  // a few, the target among them
+      for (int j = i; j < scene().space.n_points; j += 17) near.point.push_back(j);
+      near.first.push_back(near.point.size());
+    }
+    std::vector<double> entries;
+    layer.assemble(scene().x, Measure::reference, scene().all, near, entries);
+    ASSERT_EQ(entries.size(), 6 * near.point.size());
+    const double allowed = 1e-13 * a.cwiseAbs().maxCoeff();  // round-off of sums over other panels
+    for (const int i : scene().all)
+      for (std::size_t j = near.first[i]; j < near.first[i + 1]; ++j) {
+        const Mat3 block = a.block<3, 3>(3 * i, 3 * near.point[j]);
+        const double upper[6] = {block(0, 0), block(0, 1), block(0, 2), block(1, 1), block(1, 2), block(2, 2)};
+        for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(entries[6 * j + c], upper[c], allowed) << rule;
+      }
+  }
+}
+
 TEST(SingleLayer, DoesNotDependOnHowTargetsAreSplit) {
   SingleLayer layer(scene().space, {.tolerance = 1e-6});
   layer.set_reference(scene().unstressed);
