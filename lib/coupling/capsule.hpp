@@ -127,7 +127,6 @@ class Capsule : public Dynamics {
   Net solved(const membrane::SymmetricSolver& a, Net field);
   Net energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
-  double volume(const Net& x) const;
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
   Net frozen_viscous(const Net& v);
