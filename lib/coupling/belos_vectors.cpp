@@ -4,7 +4,8 @@
 
 namespace tanktread::coupling {
 
-Vectors::Vectors(Eigen::Index length, int columns) : Vectors(std::make_shared_for_overwrite<double[]>(static_cast<std::size_t>(length * columns)), length) {
+Vectors::Vectors(Eigen::Index length, int columns)
+    : Vectors(std::make_shared_for_overwrite<double[]>(static_cast<std::size_t>(length * columns)), length) {
   for (int c = 0; c < columns; ++c) columns_.push_back(memory_.get() + c * length);
 }
 
