@@ -63,8 +63,8 @@ std::optional<Foot> Potentials::foot(const Vec3& y) {
   return best;
 }
 
-/// The sum over all panels, over 8 pi: far(first, count, sum) of each run of nodes whose rule is enough for y, near(bezier, table, sum) of every other
-/// panel, `bezier` where its Bezier points begin.
+/// The sum over all panels, over 8 pi: far(first, count, sum) of each run of nodes whose rule is enough for y, near(bezier, table, sum) of every
+/// other panel, `bezier` where its Bezier points begin.
 template <class Far, class Near>
 Vec3 Potentials::integral(const Vec3& y, const Far& far, const Near& near) {
   Vec3 total = Vec3::Zero(), part;
