@@ -20,6 +20,7 @@ class Heeding : public coupling::Dynamics {
     return motion_.velocity(x);
   }
   void freeze(const Net& x) override { motion_.freeze(x); }
+  double frozen_bytes() const override { return motion_.frozen_bytes(); }
   void linearise(const Net& x) override { motion_.linearise(x); }
   Net solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) override {
     return motion_.solve(shift, r, tolerance, secants);

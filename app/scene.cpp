@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/frozen_operator.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread {
@@ -61,7 +62,8 @@ double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
-  return (viscous && scene.solvers.double_layer == "assembled" ? doubles : 0) + 12 * (frozen + (scene.interface_motion() == "relaxed"));
+  return (viscous && scene.solvers.double_layer == "assembled" ? doubles : 0) +
+         coupling::FrozenOperator::bytes_a_pair * (frozen + (scene.interface_motion() == "relaxed"));
 }
 
 /// `keys` say how many points there are: `must` is what they must be.

@@ -182,7 +182,8 @@ def main():
 
     shape = max(scene.choices, key=lambda choice: len(scene.choices[choice]) if choice == "time" else 0.5 * len(scene.choices[choice]))
     kinds = list(dict.fromkeys(kind(option) for option in scene.choices[shape]))
-    colors = dict(zip(kinds, plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(kinds)))))
+    few = len(kinds) <= len(style.RUNS)
+    colors = dict(zip(kinds, style.RUNS if few else plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(kinds)))))
     figure, axes = plt.subplots(1, 2, figsize=(13.5, 6.5), sharey=True)
     draw(axes[0], points, "seconds", "processor seconds", colors, shape)
     draw(axes[1], points, "kernels", "kernel evaluations", colors, shape)

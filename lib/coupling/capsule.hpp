@@ -84,6 +84,7 @@ class Capsule : public Dynamics {
   Net velocity(const Net& x) override { return velocity(x, {}); }
   Net velocity(const Net& x, const Net& near);
   void freeze(const Net& x) override;
+  double frozen_bytes() const override;
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
   Net missed(const Net& dv, const Net& delta) override;

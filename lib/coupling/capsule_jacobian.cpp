@@ -1,5 +1,6 @@
 // The Jacobian of Capsule: frozen operators, the membrane's tangent, and the systems of an implicit step.
 
+#include <cmath>
 #include <utility>
 
 #include "coupling/capsule.hpp"
@@ -28,6 +29,12 @@ void Capsule::freeze(const Net& x) {
   if (!double_layer_) return;
   frozen_double_.assemble(own_points_, space_.n_points,
                           [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(x, targets, rows); });
+}
+
+double Capsule::frozen_bytes() const {
+  const double pairs = std::pow(static_cast<double>(space_.n_points), 2);
+  const int operators = (parameters_.solvers.frozen_operator == "assembled") + double_layer_.has_value();
+  return FrozenOperator::bytes_a_pair * operators * pairs;
 }
 
 void Capsule::linearise(const Net& x) {

@@ -17,6 +17,9 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& x) = 0;
 
+  /// Bytes of what freeze() keeps that grows with the square of the mesh, on all ranks together.
+  virtual double frozen_bytes() const { return 0; }
+
   /// Takes the membrane's tangent H of the Jacobian (4.3) at x.
   virtual void linearise(const Net& x) = 0;
 

@@ -15,6 +15,8 @@ namespace tanktread::coupling {
 /// more or less, so the rounding cannot be seen, and a product, which is bound by memory, takes a third of the time of floats.
 class FrozenOperator {
  public:
+  static constexpr double bytes_a_pair = 12;  ///< of control points
+
   /// Rows of the own targets of a net of n points; `assemble(targets, rows)` fills three float rows a target, for a few targets at a time.
   using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<float>& rows)>;
   void assemble(const std::vector<int>& targets, int n, const Assemble& assemble);

@@ -76,8 +76,7 @@ void Automatic::reconsider(const State& state, const StepReport& report, Choice&
 StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
   Choice choice = Choice::from(state.memory);
-  const double points = static_cast<double>(state.x.rows()), bytes = 12 * points * points;
-  if (bytes > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
+  if (dynamics.frozen_bytes() > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
     choice.scheme = rkc2;
   } else {
     const bool first = choice.points == 0;

@@ -29,6 +29,7 @@ class Model : public coupling::Dynamics {
     return v;
   }
   void freeze(const Net&) override { ++assemblies; }
+  double frozen_bytes() const override { return 12; }
   void linearise(const Net& x) override { at_ = x; }
   Net solve(double shift, const Net& r, double, const coupling::Secants&) override {
     ++solves;
@@ -211,7 +212,7 @@ TEST(Integrators, AutoTakesAFirstStepThatAnExplicitOneCannot) {
 
 TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
   TimeOptions options = with("auto");
-  options.largest_operator = 1e-9;  // one point takes 12 bytes
+  options.largest_operator = 1e-9;  // of 12 bytes
   Model model(1e3);
   State state = start(1e-3);
   const auto scheme = integrator(options);
