@@ -64,6 +64,7 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   std::vector<Vec3> at;
   for (const auto site : surface.sites.rowwise()) at.emplace_back(site.transpose());
   tree_->place(node_[0].data(), node_[1].data(), node_[2].data(), starts, at);
+  tree_->want(targets_);
 }
 
 void NodalOperator::find_near(const Surface& surface, double reach) {
@@ -108,7 +109,7 @@ void NodalOperator::sum(std::vector<double>& sums) {
   sums.resize(3 * targets_.size());
   if (tree_) {
     std::vector<double> rows(3 * node_[0].size());
-    tree_->sum<stokes::StokesletKernel>({force_[0].data(), force_[1].data(), force_[2].data()}, targets_, rows.data());
+    tree_->sum<stokes::StokesletKernel>({force_[0].data(), force_[1].data(), force_[2].data()}, rows.data());
     for (std::size_t k = 0; k < targets_.size(); ++k) std::copy_n(&rows[3 * static_cast<std::size_t>(targets_[k])], 3, &sums[3 * k]);
     return;
   }
