@@ -1,18 +1,18 @@
 #include <filesystem>
 #include <memory>
-#include <string>
 
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
 #include "output/occupation.hpp"
+#include "scratch.hpp"
 
 namespace tanktread::output {
 namespace {
 
 TEST(Occupations, AreOneAtATimeAndLeaveNothingBehind) {
-  const std::filesystem::path directory = std::filesystem::path(testing::TempDir()) / "occupied" / "results";
-  std::filesystem::remove_all(directory.parent_path());
+  const Scratch scratch;
+  const std::filesystem::path directory = scratch / "results";
   auto one = std::make_unique<Occupation>(directory);
   EXPECT_TRUE(std::filesystem::is_empty(directory));
   EXPECT_THROW(Occupation other(directory), UserError);

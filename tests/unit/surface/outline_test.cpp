@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <string>
+
+#include <unistd.h>
 
 #include "base/errors.hpp"
 #include "spline/knots.hpp"
@@ -199,7 +202,7 @@ class OutlineFile : public testing::Test {
   }
 
   std::string path_ = (std::filesystem::temp_directory_path() /
-                       ("tanktread_outline_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".csv"))
+                       ("tanktread_outline_" + std::to_string(getpid()) + ".csv"))
                           .string();
 };
 
