@@ -3,6 +3,7 @@
 #include "app/prescribed.hpp"
 #include "app/tube.hpp"
 #include "base/formatted.hpp"
+#include "coupling/frozen_operator.hpp"
 #include "spline/extraction.hpp"
 #include "stokes/layer_surface.hpp"
 #include "surface/shapes.hpp"
@@ -116,7 +117,8 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
            (!implicit ? std::string(", explicit in the fluid: nothing is assembled")
             : scene.solvers.frozen_operator == "nodal"
                 ? std::string(", frozen single layer by one node a control point, not assembled")
-                : formatted(", frozen single layer of %.1f MB on %d rank%s", 12e-6 * points * n_evaluated, ranks, ranks > 1 ? "s" : ""))},
+                : formatted(", frozen single layer of %.1f MB on %d rank%s", 1e-6 * coupling::FrozenOperator::bytes_a_pair * points * n_evaluated,
+                            ranks, ranks > 1 ? "s" : ""))},
       {"mesh", !scene.adaptation.enabled               ? "fixed"
                : scene.adaptation.indicator == "error" ? "refined as the particle deforms, by estimated errors (1.5)"
                                                        : "refined as the particle deforms (P-37)"},

@@ -41,6 +41,8 @@ ByRows rows_of(const ByRows& matrix, const std::vector<int>& wanted) {
 void NodalOperator::assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum,
                              const Assemble& assemble) {
   targets_ = targets;
+  at_.clear();
+  for (const int i : targets) at_.emplace_back(surface.sites.row(i).transpose());
   const Eigen::Index n = surface.sites.rows();
   symmetry_ = surface.symmetry.fundamental().empty() ? surface::Symmetry(static_cast<int>(n)) : surface.symmetry;
   const std::vector<int>& fundamental = symmetry_.fundamental();
@@ -72,8 +74,7 @@ void NodalOperator::find_near(const Surface& surface, double reach) {
   stokes::Vicinity vicinity;
   vicinity.place(static_cast<int>(square.size()), node_[0].data(), node_[1].data(), node_[2].data(), square.data());
   near_ = {};
-  for (const int target : targets_) {
-    const Vec3 x0 = surface.sites.row(target).transpose();
+  for (const Vec3& x0 : at_) {
     vicinity.list(x0.data(), near_.point);
     std::sort(near_.point.begin() + static_cast<std::ptrdiff_t>(near_.first.back()), near_.point.end());
     near_.first.push_back(near_.point.size());
@@ -83,11 +84,10 @@ void NodalOperator::find_near(const Surface& surface, double reach) {
 /// K from A.
 void NodalOperator::subtract_rule(const Surface& surface) {
   for (std::size_t k = 0; k < targets_.size(); ++k) {
-    const Vec3 x0 = surface.sites.row(targets_[k]).transpose();
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
       Mat3 rule = Mat3::Zero();
       for (Eigen::SparseMatrix<double>::InnerIterator entry(surface.values, near_.point[j]); entry; ++entry)
-        rule += weights_[entry.row()] * entry.value() * stokeslet(surface.sites.row(entry.row()).transpose() - x0);
+        rule += weights_[entry.row()] * entry.value() * stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
       for (std::size_t c = 0; c < 6; ++c) entries_[6 * j + c] -= rule(upper[c][0], upper[c][1]);
     }
   }
@@ -105,7 +105,6 @@ void NodalOperator::spread(const Net& f) {
 
 /// sums[3 k + c]: of the rule at target k.
 void NodalOperator::sum(std::vector<double>& sums) {
-  constexpr std::size_t block = stokes::far_block;
   sums.resize(3 * targets_.size());
   if (tree_) {
     std::vector<double> rows(3 * node_[0].size());
@@ -115,15 +114,7 @@ void NodalOperator::sum(std::vector<double>& sums) {
   }
   const stokes::PointForces all{static_cast<int>(node_[0].size()), node_[0].data(), node_[1].data(), node_[2].data(), force_[0].data(),
                                 force_[1].data(), force_[2].data()};
-  double at[3 * block], u[3 * block];
-  for (std::size_t first = 0; first < targets_.size(); first += block) {
-    const std::size_t used = std::min(block, targets_.size() - first);
-    for (std::size_t l = 0; l < block; ++l)  // idle lanes repeat the last target
-      for (std::size_t c = 0; c < 3; ++c) at[block * c + l] = node_[c][static_cast<std::size_t>(targets_[first + std::min(l, used - 1)])];
-    stokes::far_sum(all, at, u);
-    for (std::size_t l = 0; l < used; ++l)
-      for (std::size_t c = 0; c < 3; ++c) sums[3 * (first + l) + c] = u[block * c + l];
-  }
+  stokes::far_sums(all, at_, sums.data());
 }
 
 void NodalOperator::apply(const Net& f, Net& u) {

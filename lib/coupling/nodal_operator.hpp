@@ -53,6 +53,7 @@ class NodalOperator {
   void sum(std::vector<double>& sums);
 
   std::vector<int> targets_;
+  std::vector<Vec3> at_;                                 // their places
   surface::Symmetry symmetry_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> values_;  // R at the fundamental sites
   std::vector<int> row_;                                 // of each site, that of its fundamental one

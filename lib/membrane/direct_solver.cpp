@@ -26,12 +26,9 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double residual_allowed = 1e-8;
 
-// Rows up to which the inverse is kept, and multiplied by: what Amesos2 does about a solve takes longer than the product. Measured as below.
+// Rows up to which the inverse is kept, and multiplied by: what Amesos2 does about a solve, maps and an import for several columns, takes
+// longer than the product. Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
-
-// Rows from which columns are solved for together. One by one they read the factors again, but for several Amesos2 makes maps and an import in every
-// solve, which takes longer than a small system itself. Measured with the mass and collocation matrices of spheres.
-constexpr Eigen::Index worth_sharing = 200;
 
 std::string solvers_of_this_build() {
   std::string names;
@@ -190,8 +187,7 @@ void DirectSolver::solve(const Columns& b, Columns& x) const {
     return;
   }
   x.resize(b.rows(), b.cols());
-  const Eigen::Index at_once = b.rows() < worth_sharing ? 1 : b.cols();
-  for (Eigen::Index first = 0; first < b.cols(); first += at_once) impl_->solve(b.middleCols(first, at_once), x.middleCols(first, at_once));
+  impl_->solve(b, x);
 }
 
 Net DirectSolver::solve(const Net& b) const {

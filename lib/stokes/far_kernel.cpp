@@ -1,5 +1,6 @@
 #include "stokes/far_kernel.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -9,6 +10,9 @@ namespace tanktread::stokes {
 namespace {
 
 constexpr int packs = far_block / lanes;
+
+/// Nodes that all targets meet before the next ones are loaded: 48 bytes each.
+constexpr int nodes_in_cache = 4096;
 
 Pack load(const double* a) {
   Pack p;
@@ -43,6 +47,22 @@ void far_sum(const PointForces& forces, const double* target, double* u) {
     store(ux[p], u + lanes * p);
     store(uy[p], u + far_block + lanes * p);
     store(uz[p], u + 2 * far_block + lanes * p);
+  }
+}
+
+void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u) {
+  const int n = static_cast<int>(targets.size());
+  double block[3 * far_block], sums[3 * far_block];
+  std::fill_n(u, 3 * targets.size(), 0.);
+  for (int node = 0; node < forces.n; node += nodes_in_cache) {
+    const PointForces part = forces.part(node, std::min(nodes_in_cache, forces.n - node));
+    for (int first = 0; first < n; first += far_block) {
+      for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
+        for (int c = 0; c < 3; ++c) block[far_block * c + l] = targets[std::min(first + l, n - 1)][c];
+      far_sum(part, block, sums);
+      for (int l = 0; l < std::min(far_block, n - first); ++l)
+        for (int c = 0; c < 3; ++c) u[3 * (first + l) + c] += sums[far_block * c + l];
+    }
   }
 }
 

@@ -2,6 +2,9 @@
 // The bare sums: every target against every node, on plain arrays.
 
 #include <array>
+#include <span>
+
+#include "base/types.hpp"
 
 namespace tanktread::stokes {
 
@@ -30,6 +33,9 @@ constexpr int far_block = 16;
 /// u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
 /// target[2 far_block + l]; u alike. Each target's sum runs over the nodes in their order. A node at the target counts as nothing.
 void far_sum(const PointForces& forces, const double* target, double* u);
+
+/// u[3 k + c] of it for any number of targets.
+void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u);
 
 /// The same for one target x0[3], u[3]: what a pair with a better rule takes back.
 void node_sum(const PointForces& forces, const double* x0, double* u);

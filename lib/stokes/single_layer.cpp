@@ -16,9 +16,6 @@ namespace {
 
 constexpr double factor = 1 / (8 * std::numbers::pi);
 
-/// Nodes that all targets meet before the next ones are loaded: 48 bytes each.
-constexpr int nodes_in_cache = 4096;
-
 }  // namespace
 
 SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, options) {
@@ -104,20 +101,10 @@ void SingleLayer::add_far(std::span<const int> targets, Net& u) {
   const auto clock = phases_.time("far");
   if (tree_) return add_by_tree(targets, u);
   const PointForces all = forces();
-  const int n = static_cast<int>(targets.size());
-  double block[3 * far_block], sums[3 * far_block];
-  for (const int i : targets) u.row(i).setZero();
-  for (int node = 0; node < all.n; node += nodes_in_cache) {
-    const PointForces part = all.part(node, std::min(nodes_in_cache, all.n - node));
-    for (int first = 0; first < n; first += far_block) {
-      for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
-        for (int c = 0; c < 3; ++c) block[far_block * c + l] = at_[std::min(first + l, n - 1)][c];
-      far_sum(part, block, sums);
-      for (int l = 0; l < std::min(far_block, n - first); ++l)
-        for (int c = 0; c < 3; ++c) u(targets[first + l], c) += sums[far_block * c + l];
-    }
-  }
-  evaluations_.far += static_cast<long long>(n) * all.n;
+  Net sums(targets.size(), 3);
+  far_sums(all, at_, sums.data());
+  for (std::size_t k = 0; k < targets.size(); ++k) u.row(targets[k]) = sums.row(static_cast<Eigen::Index>(k));
+  evaluations_.far += static_cast<long long>(targets.size()) * all.n;
 }
 
 template <class Sum>
