@@ -69,7 +69,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     report.step = dt;
     report.error = error * options_.tolerance;
     report.displacement = dynamics.norm(y - state.x);
-    double next = attempt.iterations < few ? h * grow : h;
+    double next = attempt.iterations < few ? std::max(h, dt * grow) : h;  // a step cut short at a limit tells little of a whole one
     if (by_error_) {
       const double factor = known ? step_factor(error, state.memory[1], 3) : 1;
       next = dt < h ? std::max(h, dt * factor) : dt * factor;

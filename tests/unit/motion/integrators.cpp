@@ -281,6 +281,9 @@ TEST(Integrators, CrankNicolsonFollowsThePapersStepRule) {
   const StepReport report = scheme->advance(stiff, hard, 1);
   EXPECT_GE(report.rejected, 3);
   EXPECT_NEAR(report.step, 0.04 * std::pow(0.75, report.rejected), 1e-15);
+  State landing = start(1e-6);
+  scheme->advance(gentle, landing, 5e-7);  // few sub-iterations as well, but of a step cut short to end at the limit
+  EXPECT_DOUBLE_EQ(landing.step, 1e-6);
 }
 
 TEST(Integrators, AStepBelowTheMinimumStopsTheRunAndKeepsTheState) {
