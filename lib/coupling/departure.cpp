@@ -10,7 +10,9 @@ namespace tanktread::coupling {
 
 void leave_together(int code, const std::string& message) {
   constexpr std::chrono::seconds patience(30);
-  int ranks = 1, rank = 0, here = 0;
+  int parallel = 0, ranks = 1, rank = 0, here = 0;
+  MPI_Initialized(&parallel);
+  if (!parallel) return;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (ranks == 1) return;

@@ -1,12 +1,15 @@
 #include "coupling/ranks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iterator>
 #include <string_view>
 #include <utility>
 
+#include <Kokkos_Core.hpp>
 #include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Map.hpp>
@@ -19,20 +22,10 @@ using MultiVector = Tpetra::MultiVector<>;
 
 namespace {
 
-/// A process that no launcher started needs no daemon of Open MPI beside it, which would take a tenth of a second to start, no look for fast
-/// networks, which takes two more, and no look at the machine's devices nor collectives of many: a hundredth each. Without a daemon all runs
-/// of a user would share one directory of Open MPI for temporary files, which the first to end takes from the others; it stays empty, so
-/// there is none. What the environment says already stays.
-void prepare_for_one() {
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK")) return;
-  constexpr std::pair<const char*, const char*> settings[] = {{"OMPI_MCA_pml", "ob1"},
-                                                              {"OMPI_MCA_btl", "self"},
-                                                              {"OMPI_MCA_coll", "self,basic,libnbc"},
-                                                              {"OMPI_MCA_orte_create_session_dirs", "0"},
-                                                              {"HWLOC_COMPONENTS", "no_os,stop"},
-                                                              {"HWLOC_PLUGINS_PATH", "/"}};
-  for (const auto& [name, value] : settings) setenv(name, value, 0);
+/// Whether a launcher of MPI (Open MPI's, or one that speaks PMIx or PMI) started this process. One that none did starts no MPI: its devices,
+/// plugins and threads would take longer than a small run.
+bool launched() {
+  return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}, [](const char* name) { return std::getenv(name); });
 }
 
 /// Arguments of Kokkos, which would answer to `--help` too. They are taken from those of the program.
@@ -58,17 +51,31 @@ struct KokkosArguments {
 }  // namespace
 
 struct Session::Impl {
-  KokkosArguments arguments;
-  Tpetra::ScopeGuard guard;
-  Impl(int* argc, char*** argv) : arguments(argc, argv), guard((prepare_for_one(), &arguments.count), &arguments.begin) {}
+  Impl(int* argc, char*** argv) {
+    KokkosArguments kokkos(argc, argv);
+    if (launched())
+      Tpetra::initialize(&kokkos.count, &kokkos.begin);  // MPI, then Kokkos
+    else
+      Kokkos::initialize(kokkos.count, kokkos.begin);
+  }
+  ~Impl() { Tpetra::isInitialized() ? Tpetra::finalize() : Kokkos::finalize(); }
 };
+
+namespace {
+
+Teuchos::RCP<const Teuchos::Comm<int>> communicator() {
+  if (Tpetra::isInitialized()) return Tpetra::getDefaultComm();
+  return Teuchos::rcp(new Teuchos::SerialComm<int>);
+}
+
+}  // namespace
 
 Session::Session(int* argc, char*** argv) : impl_(std::make_unique<Impl>(argc, argv)) {}
 Session::~Session() = default;
-int Session::rank() const { return Tpetra::getDefaultComm()->getRank(); }
+int Session::rank() const { return communicator()->getRank(); }
 
 struct Ranks::Impl {
-  Teuchos::RCP<const Teuchos::Comm<int>> comm = Tpetra::getDefaultComm();
+  Teuchos::RCP<const Teuchos::Comm<int>> comm = communicator();
   std::vector<int> rows;
   surface::Symmetry symmetry;
   Teuchos::RCP<Tpetra::Import<>> import;

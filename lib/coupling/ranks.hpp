@@ -12,7 +12,7 @@
 
 namespace tanktread::coupling {
 
-/// MPI and what Trilinos needs beside it, for as long as it lives: the first object of main.
+/// MPI, where a launcher started this process, and what Trilinos needs beside it, for as long as it lives: the first object of main.
 class Session {
  public:
   /// Takes the arguments `--kokkos-...` away.
