@@ -12,15 +12,19 @@
 
 namespace tanktread {
 
+std::vector<Column> deforming_columns(const Scene& scene) {
+  std::vector<Column> all = columns();
+  if (scene.tube.present) all.insert(all.end(), tube_columns().begin(), tube_columns().end());
+  return all;
+}
+
 namespace {
 
 class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), body_(std::make_unique<Body>(tanktread::body(scene))),
-        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, ranks, phases))), columns_(tanktread::columns()) {
-    if (body_->wall) columns_.insert(columns_.end(), tube_columns().begin(), tube_columns().end());
-  }
+        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, ranks, phases))), columns_(deforming_columns(scene)) {}
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
   const Body& body() const override { return *body_; }

@@ -42,18 +42,27 @@ std::vector<Column> rigid_tube_columns() {
   return all;
 }
 
+}  // namespace
+
+std::vector<Column> free_columns(const Scene& scene) {
+  std::vector<Column> all = rigid_columns();
+  if (scene.tube.present) std::ranges::copy(rigid_tube_columns(), std::back_inserter(all));
+  return all;
+}
+
+namespace {
+
 class Free : public Moving {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, ranks, phases)),
         resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()),
-        columns_(rigid_columns()) {
+        columns_(free_columns(scene)) {
     const Vec3& centre = scene.particle.shape.center;
     if (tube_)
       free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers);
     else
       free_ = std::make_unique<coupling::FreeBody>(resistance_, centre, body_.radius, body_.flow);
-    if (tube_) std::ranges::copy(rigid_tube_columns(), std::back_inserter(columns_));
   }
 
   coupling::Dynamics& dynamics() override { return *free_; }

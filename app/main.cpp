@@ -85,6 +85,8 @@ int run(const Arguments& arguments, bool speaks) {
   if (auto& file = scene.particle.shape.file) file = found(*file, kept_surface, arguments);
   scene.particle.shape.read();
   scene.check();
+  for (const std::string& sentence : check_expectations(scene))
+    if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
 
   if (arguments.check) {
     const std::string plan = plan_text(scene, coupling::Ranks().size());

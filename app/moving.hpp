@@ -60,4 +60,8 @@ std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phase
 std::unique_ptr<Moving> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<Moving> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
+/// Their series.
+std::vector<Column> deforming_columns(const Scene& scene);
+std::vector<Column> free_columns(const Scene& scene);
+
 }  // namespace tanktread

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "app/results.hpp"
 #include "app/tube.hpp"
@@ -64,47 +65,60 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
   return s;
 }
 
+const std::vector<Column>& prescribed_columns() {
+  static const std::vector<Column> all = {
+      {"time", "time", "the problem is steady"},
+      {"drag_x1", "force", "force on the particle, component 1"},
+      {"drag_x2", "force", "force on the particle, component 2"},
+      {"drag_x3", "force", "force on the particle, component 3"},
+      {"torque_x1", "force length", "torque on the particle about its centre, component 1"},
+      {"torque_x2", "force length", "torque on the particle about its centre, component 2"},
+      {"torque_x3", "force length", "torque on the particle about its centre, component 3"},
+      {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
+      {"gap", "length", "smallest distance between particle and wall"},
+      {"drag_error", "1", "|F - F_exact|/|F_exact|"},
+      {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"},
+      {"torque_error", "1", "|T - T_exact|/|T_exact|"},
+      {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n"},
+      {"normal_l2_error", "1", "L2 norm of n_h - n over that of n"},
+      {"stresslet_11", "force length", "particle stresslet, component 11"},
+      {"stresslet_22", "force length", "particle stresslet, component 22"},
+      {"stresslet_33", "force length", "particle stresslet, component 33"},
+      {"stresslet_12", "force length", "particle stresslet, component 12"},
+      {"stresslet_13", "force length", "particle stresslet, component 13"},
+      {"stresslet_23", "force length", "particle stresslet, component 23"},
+      {"volume", "length^3", "enclosed volume"},
+      {"area", "length^2", "area of the surface"},
+      {"n_control_points", "1", "control points of the surface"},
+      {"solver_iterations", "1", "iterations of the linear solver for the traction"},
+      {"kernel_evaluations", "1", "of the layer operator, all rules together"},
+      {"wall_seconds", "s", "time since the run was started"}};
+  return all;
+}
+
 namespace {
 
-/// Columns and their values side by side; errors only where they are known.
+/// The columns that this body has, and their values side by side.
 struct Row {
   std::vector<Column> columns;
   std::vector<double> values;
-  void add(const std::string& name, const std::string& unit, const std::string& description, double value) {
-    if (std::isnan(value)) return;
-    columns.push_back({name, unit, description});
-    values.push_back(value);
-  }
 };
 
 Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s, double seconds) {
   const surface::Measures measures = surface::measures(body.space, body.rest);
   const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
+  const Vec3 &f = s.force, &t = s.torque;
+  const double values[] = {0, f[0], f[1], f[2], t[0], t[1], t[2], s.pressure_drop, s.gap,
+                           s.error, s.integral_error, s.torque_error, s.surface.pressure, s.surface.normal,
+                           stresslet(0, 0), stresslet(1, 1), stresslet(2, 2), stresslet(0, 1), stresslet(0, 2), stresslet(1, 2),
+                           measures.volume, measures.area, static_cast<double>(body.space.n_points), static_cast<double>(s.iterations),
+                           static_cast<double>(resistance.kernel_evaluations().total()), seconds};
   Row row;
-  row.add("time", "time", "the problem is steady", 0);
-  for (int i = 0; i < 3; ++i)
-    row.add("drag_x" + std::to_string(i + 1), "force", "force on the particle, component " + std::to_string(i + 1), s.force[i]);
-  for (int i = 0; i < 3; ++i)
-    row.add("torque_x" + std::to_string(i + 1), "force length", "torque on the particle about its centre, component " + std::to_string(i + 1),
-            s.torque[i]);
-  row.add("disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)", s.pressure_drop);
-  row.add("gap", "length", "smallest distance between particle and wall", s.gap);
-  row.add("drag_error", "1", "|F - F_exact|/|F_exact|", s.error);
-  row.add("drag_error_of_traction", "1", "the same, of the integral of the traction alone", s.integral_error);
-  row.add("torque_error", "1", "|T - T_exact|/|T_exact|", s.torque_error);
-  row.add("pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n", s.surface.pressure);
-  row.add("normal_l2_error", "1", "L2 norm of n_h - n over that of n", s.surface.normal);
-  const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  for (const auto& [i, j] : pairs) {
-    const std::string ij = std::to_string(i + 1) + std::to_string(j + 1);
-    row.add("stresslet_" + ij, "force length", "particle stresslet, component " + ij, stresslet(i, j));
+  for (size_t k = 0; k < std::size(values); ++k) {
+    if (std::isnan(values[k])) continue;
+    row.columns.push_back(prescribed_columns()[k]);
+    row.values.push_back(values[k]);
   }
-  row.add("volume", "length^3", "enclosed volume", measures.volume);
-  row.add("area", "length^2", "area of the surface", measures.area);
-  row.add("n_control_points", "1", "control points of the surface", body.space.n_points);
-  row.add("solver_iterations", "1", "iterations of the linear solver for the traction", s.iterations);
-  row.add("kernel_evaluations", "1", "of the layer operator, all rules together", static_cast<double>(resistance.kernel_evaluations().total()));
-  row.add("wall_seconds", "s", "time since the run was started", seconds);
   return row;
 }
 

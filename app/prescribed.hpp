@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "app/body.hpp"
+#include "app/diagnostics.hpp"
 #include "app/exact_body.hpp"
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
@@ -27,6 +28,9 @@ struct RigidSolution {
 /// The body of `Particle/motion: prescribed` in the flow of the deck; `tube`: the one around it, or nothing. Collective.
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
                              const coupling::Tube* tube = nullptr);
+
+/// The series of a prescribed body, those among them that only some have: errors where the exact solution is known, and what a tube answers.
+const std::vector<Column>& prescribed_columns();
 
 /// Solves for the traction on the body, records one row and one picture. Exit code as of `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);

@@ -12,7 +12,9 @@ namespace tanktread {
 
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
-  section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1", "lambda: viscosity inside over viscosity outside");
+  section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
+              "lambda: viscosity inside over viscosity outside; at most 1e14 x Solvers/tolerance, and from 1e5 on the particle hardly deforms: "
+              "one that does not at all is rigid, Particle/motion `free`");
   section.key("motion", motion, deck::Choice{"deforming", "prescribed", "free"},
               "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, a steady "
               "problem; `free`: rigid, without force or torque");
@@ -64,6 +66,16 @@ double bytes_a_pair(const Scene& scene) {
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
   return (viscous && scene.solvers.double_layer == "assembled" ? doubles : 0) +
          coupling::FrozenOperator::bytes_a_pair * (frozen + (scene.interface_motion() == "relaxed"));
+}
+
+/// The system for the velocity loses a digit to rounding with each power of ten: in a tube, where that shows first, it stagnates at 1e15 times the
+/// tolerance.
+void check_viscosity_ratio(const Scene& scene) {
+  const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
+  if (ratio > most)
+    throw UserError(formatted("Particle/viscosity ratio must be at most %.3g, 1e14 times Solvers/tolerance, for rounding grows with it, but is %.3g; "
+                              "a particle that does not deform is rigid: Particle/motion `free`.",
+                              most, ratio));
 }
 
 /// `keys` say how many points there are: `must` is what they must be.
@@ -138,6 +150,7 @@ void Scene::check() const {
   particle.shape.check();
   surface.check();
   check_motion(*this);
+  check_viscosity_ratio(*this);
   if (!particle.rigid()) membrane.check();
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +

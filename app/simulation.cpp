@@ -276,6 +276,17 @@ class Run {
 
 }  // namespace
 
+std::vector<std::string> check_expectations(const Scene& scene) {
+  const bool prescribed = scene.particle.motion == "prescribed";
+  const std::vector<Column> series = prescribed                       ? prescribed_columns()
+                                     : scene.particle.motion == "free" ? free_columns(scene)
+                                                                       : deforming_columns(scene);
+  std::vector<std::string> names;
+  for (const Column& column : series) names.push_back(column.name);
+  deck::check_series(scene.expect.all, names);
+  return deck::too_late(scene.expect.all, prescribed ? 0 : scene.time.final_time);
+}
+
 int simulate(const Scene& scene, const RunRequest& request) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is then an error like any other of writing
   if (scene.particle.motion == "prescribed") return resist(scene, request);

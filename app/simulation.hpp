@@ -2,6 +2,7 @@
 // The run itself: what main calls once the deck is read.
 
 #include <string>
+#include <vector>
 
 #include "app/scene.hpp"
 #include "output/summary.hpp"
@@ -16,6 +17,10 @@ struct RunRequest {
   bool quiet = false;     ///< no progress bar
   std::string deck_text;  ///< the effective deck, to be stored with the results
 };
+
+/// What of `Expect` is missed whatever the run finds: a sentence for each time that it does not reach. Throws UserError where a series is expected
+/// that the scene does not record.
+std::vector<std::string> check_expectations(const Scene& scene);
 
 /// Runs the scene to its end. Exit code: 0 every expectation met, 1 one was missed. Throws UserError and RunFailure. Collective.
 int simulate(const Scene& scene, const RunRequest& request);

@@ -32,6 +32,31 @@ void Expectations::declare(Section& section) {
                });
 }
 
+namespace {
+
+/// Times that differ by less are the same.
+double slack(double time) { return 1e-9 * std::max(1.0, std::abs(time)); }
+
+}  // namespace
+
+void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names) {
+  for (const Expectation& e : expectations) {
+    if (std::ranges::find(names, e.series) != names.end()) continue;
+    const std::string meant = guess(e.series, names), where = "Expect/" + e.name + (e.series == e.name ? "" : "/series");
+    throw UserError(where + ": the results of this scene hold no series " + e.series +
+                    (meant.empty() ? ", but " + alternatives(names) + "." : "; was " + meant + " meant?"));
+  }
+}
+
+std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end) {
+  std::vector<std::string> sentences;
+  for (const Expectation& e : expectations)
+    if (e.at && *e.at > end + slack(*e.at))
+      sentences.push_back("Expect/" + e.name + " will be missed: it is for the time " + number_text(*e.at) + ", and the run ends at " +
+                          number_text(end));
+  return sentences;
+}
+
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t) {
   const std::size_t rows = times.size(), points = std::min<std::size_t>(4, rows);
   const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
@@ -58,8 +83,7 @@ Verdict verdict(const Expectation& e, const SeriesTable& series) {
   }
   if (e.at) {
     const bool usable = times != series.end() && times->second.size() == values->second.size();
-    const double slack = 1e-9 * std::max(1.0, std::abs(*e.at));
-    if (!usable || *e.at < times->second.front() - slack || *e.at > times->second.back() + slack) {
+    if (!usable || *e.at < times->second.front() - slack(*e.at) || *e.at > times->second.back() + slack(*e.at)) {
       out.reason = "the results do not reach the time " + number_text(*e.at);
       return out;
     }

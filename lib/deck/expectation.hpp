@@ -29,6 +29,12 @@ struct Expectations {
   void declare(Section& section);
 };
 
+/// Throws UserError, with the name that was probably meant, where one is of a series that is not among `names`.
+void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
+
+/// A sentence for each expectation at a time after `end`, which a run that ends there misses.
+std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
+
 /// What became of one expectation.
 struct Verdict {
   std::string name;

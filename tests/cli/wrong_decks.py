@@ -80,6 +80,10 @@ SETTINGS = [
     (["Time/initial step=1e-12"], ["Time/initial step", "Time/minimum step", "1e-09", "1e-12"]),
     (["Time/maximum step=0.1", "Time/minimum step=0.2"], ["Time/maximum step", "Time/minimum step", "0.2", "0.1"]),
     (["Expect/energy/value=1"], ["Expect/energy/tolerance", "missing"]),
+    (["Expect/volum/value=1", "Expect/volum/tolerance=1"], ["Expect/volum", "no series", "was volume meant?"]),
+    (["Expect/V/series=volum", "Expect/V/value=1", "Expect/V/tolerance=1"], ["Expect/V/series", "no series volum", "was volume meant?"]),
+    # what rounding forbids
+    (["Particle/viscosity ratio=1e9"], ["Particle/viscosity ratio", "at most 1e+06", "Solvers/tolerance", "1e+09", "Particle/motion `free`"]),
     # what the libraries that get a list know
     (["Solvers/iterative solver=Foo"], ["Solvers/Belos", "Foo"]),
     (["Solvers/direct solver=Foo"], ["Solvers/direct solver", "Foo", "KLU2"]),

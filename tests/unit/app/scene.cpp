@@ -57,6 +57,12 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
   }
 }
 
+TEST(Scenes, HaveViscosityRatiosThatRoundingLeavesSolvable) {
+  EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e6}\n"), "");
+  EXPECT_NE(refusal("  Particle: {viscosity ratio: 1.1e6}\n"), "");
+  EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e9}\n  Solvers: {tolerance: 1e-5}\n"), "");
+}
+
 TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
   const Scene one = scene("  Adaptation: {enabled: true}\n"), other = scene("  Particle: {radius: 1.0e-6}\n  Adaptation: {enabled: true}\n");
   EXPECT_DOUBLE_EQ(other.adaptation.surface_tolerance, 1e-6 * one.adaptation.surface_tolerance);

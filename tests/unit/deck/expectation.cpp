@@ -49,6 +49,32 @@ TEST(Expectations, NeedValueAndTolerance) {
             "Expect/volume/kind `relative` and the value 0 contradict each other.");
 }
 
+TEST(Expectations, AreOfSeriesThatThereAre) {
+  const auto refusal = [](const std::string& line, const std::vector<std::string>& names) -> std::string {
+    try {
+      check_series(expectations(line), names);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(refusal("    volume: {value: 1, tolerance: 1}\n", {"time", "volume"}), "none");
+  EXPECT_EQ(refusal("    half: {series: volume, value: 1, tolerance: 1}\n", {"time", "volume"}), "none");
+  EXPECT_EQ(refusal("    volum: {value: 1, tolerance: 1}\n", {"time", "volume"}),
+            "Expect/volum: the results of this scene hold no series volum; was volume meant?");
+  EXPECT_EQ(refusal("    volume: {series: wellness, value: 1, tolerance: 1}\n", {"time", "volume", "area"}),
+            "Expect/volume/series: the results of this scene hold no series wellness, but time, volume or area.");
+}
+
+TEST(Expectations, AfterTheEndAreSaidToBeMissed) {
+  const auto late = [](double end) {
+    return too_late(expectations("    volume: {value: 1, tolerance: 1, at: 0.3}\n    area: {value: 1, tolerance: 1}\n"), end);
+  };
+  EXPECT_TRUE(late(0.3).empty());
+  EXPECT_TRUE(late(0.1 + 0.2).empty());
+  EXPECT_EQ(late(0.25), std::vector<std::string>{"Expect/volume will be missed: it is for the time 0.3, and the run ends at 0.25"});
+}
+
 TEST(Interpolation, IsExactForCubicsAndAtTheRows) {
   for (const double t : {0.0, 0.05, 0.1, 0.3, 0.45, 0.7, 1.0, 1.7, 2.0})
     EXPECT_NEAR(interpolated(cubic.at("time"), cubic.at("volume"), t), 1 + t - t * t + 0.5 * t * t * t, 1e-14) << t;  // round-off
