@@ -1,6 +1,7 @@
 // Lorentz' reciprocal theorem for two surfaces apart: what the layers of one do on the other is what those of the other do on the first.
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 #include "quadrature/gauss.hpp"
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
-#include "stokes/potentials.hpp"
+#include "stokes/cross_layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 
@@ -44,12 +45,15 @@ double work(const Body& on, const Body& from, int order) {
       places.push_back(p.x);
       strengths.push_back(rule.weights[q] * p.jacobian * surface::value(on.space, on.density, site));
     }
-  Potentials potentials(from.space, {.tolerance = 1e-12});
-  potentials.place(from.x);
-  const std::vector<Vec3> u = potentials.single_layer(from.density, places);
-  double sum = 0;
-  for (size_t k = 0; k < u.size(); ++k) sum += strengths[k].dot(u[k]);
-  return sum;
+  CrossLayer layer(from.space, {.tolerance = 1e-12}, CrossLayer::Kernel::single_layer);
+  layer.place(from.x);
+  const auto n = static_cast<Eigen::Index>(places.size());
+  const Net at = Eigen::Map<const Net>(places.front().data(), n, 3);
+  std::vector<int> all(places.size());
+  std::iota(all.begin(), all.end(), 0);
+  Net u(n, 3);
+  layer.apply(from.density, at, all, u);
+  return u.cwiseProduct(Eigen::Map<const Net>(strengths.front().data(), n, 3)).sum();
 }
 
 TEST(Reciprocity, SingleLayersOfTwoDeformedSurfacesWorkOnEachOtherAlike) {

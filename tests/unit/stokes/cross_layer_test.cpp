@@ -1,6 +1,7 @@
 // Layers of one surface at points off it: identities, and the same answer from every route.
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -8,9 +9,9 @@
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
 #include "stokes/cross_layer.hpp"
-#include "stokes/potentials.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/verify/layers_reference.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -35,26 +36,26 @@ struct Fixture {
     std::iota(all.begin(), all.end(), 0);
     options.tolerance = 1e-8;
   }
-
-  std::vector<Vec3> points() const {
-    std::vector<Vec3> p;
-    for (Eigen::Index i = 0; i < at.rows(); ++i) p.push_back(at.row(i).transpose());
-    return p;
-  }
 };
 
-TEST(CrossLayer, IsThePotential) {
+TEST(CrossLayer, IsTheIntegral) {
   const Fixture s;
-  Potentials potentials(s.space, s.options);
-  potentials.place(s.x);
+  const verify::BruteForce surface(s.space, s.x);
+  std::vector<verify::Casteljau> field;
+  for (const spline::Element& e : s.space.elements) field.emplace_back(e, s.f);
   for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
     CrossLayer layer(s.space, s.options, kernel);
     layer.place(s.x);
     Net u(4, 3);
     layer.apply(s.f, s.at, s.all, u);
-    const std::vector<Vec3> exact =
-        kernel == CrossLayer::Kernel::single_layer ? potentials.single_layer(s.f, s.points()) : potentials.double_layer(s.f, s.points());
-    for (int i = 0; i < 4; ++i) EXPECT_LT((u.row(i).transpose() - exact[static_cast<std::size_t>(i)]).norm(), 2e-8) << i;
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 y = s.at.row(i).transpose();
+      const Vec3 exact = surface.integrate(y, {}, [&](const verify::SurfacePoint& p) -> Vec3 {
+        const Mat3 g = kernel == CrossLayer::Kernel::single_layer ? stokeslet(p.x - y) : stresslet(p.x - y, p.normal);
+        return g * field[p.element](p.s, p.t)[0] / (8 * std::numbers::pi);
+      });
+      EXPECT_LT((u.row(i).transpose() - exact).norm(), 2e-8) << i;
+    }
   }
 }
 
