@@ -102,9 +102,9 @@ int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts)
     }
     int longest;
     (high - low).maxCoeff(&longest);
-    const Vec3 along = axes.row(longest).transpose();
+    for (int g = first; g < last; ++g) groups_[g].along = axes.row(longest).dot(groups_[g].centre);
     std::nth_element(groups_.begin() + first, groups_.begin() + middle, groups_.begin() + last,
-                     [&](const Group& a, const Group& b) { return along.dot(a.centre) < along.dot(b.centre); });
+                     [](const Group& a, const Group& b) { return a.along < b.along; });
     const int left = split(first, middle, axes, starts), right = split(middle, last, axes, starts);
     clusters_[number].child[0] = left, clusters_[number].child[1] = right;
   }

@@ -48,6 +48,7 @@ class Clusters {
  private:
   struct Group {
     Vec3 centre;
+    double along;  // the axis that its cluster is halved along
     int number;
   };
   int split(int first, int last, Mat3 axes, std::span<const int> starts);

@@ -73,7 +73,27 @@ LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options
       n_points(space.n_points),
       panels(space, far_orders(space, how, order ? order : far_order(how))),
       near_field(panels, how.tolerance, order ? order : far_order(how), steep),
-      self_field(space, how) {}
+      self_field(space, how) {
+  set_symmetry(surface::Symmetry(space.n_points));
+}
+
+void LayerSurface::set_symmetry(const surface::Symmetry& symmetry) {
+  const auto points = [&](int e) { return std::span(panels.points(e), static_cast<std::size_t>(panels[e].functions)); };
+  fundamental_ = surface::fundamental_elements(symmetry, panels.size(), points);
+  images_.source.resize(panels.size());
+  images_.image.assign(panels.size(), -1);
+  images_.reflections.clear();
+  for (const surface::Image& g : symmetry.images()) images_.reflections.push_back({g.signs, {}});
+  for (const int e : fundamental_.element) {
+    for (std::size_t g = 0; g < symmetry.images().size(); ++g) {
+      const int other = symmetry.images()[g].element[e];
+      images_.source[other] = e;
+      if (other != e) images_.image[other] = static_cast<int>(g);
+    }
+    images_.source[e] = e;
+  }
+  placed_.resize(0, 3);
+}
 
 void LayerSurface::place(const Net& x) {
   place_lazily(x);
@@ -83,51 +103,73 @@ void LayerSurface::place(const Net& x) {
 void LayerSurface::place_lazily(const Net& x) {
   if (x.rows() == placed_.rows() && x == placed_) return;
   placed_ = x;
-  panels.bezier(x, bezier);
+  bezier.resize(panels.bezier_size());
   for (auto& component : node) component.resize(panels.n_nodes());
+  shaped_.assign(panels.size(), 0);
   located_.assign(panels.size(), 0);
-  if (options.rule == "adaptive") near_field.update(bezier);
+  for (surface::Reflection& image : images_.reflections) image.middle = x.colwise().mean().transpose();
+  if (options.rule != "adaptive") return;
+  for (const int e : fundamental_.element) shape(e);
+  near_field.update(bezier, images_);
+}
+
+void LayerSurface::shape(int e) {
+  if (shaped_[e]) return;
+  panels.bezier(e, placed_, bezier);
+  shaped_[e] = 1;
 }
 
 void LayerSurface::locate(int e) {
   if (located_[e]) return;
+  shape(e);
   node_values(panels, e, bezier, node);
   located_[e] = 1;
 }
 
-void LayerSurface::collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const {
+void LayerSurface::collocation_points(std::span<const int> targets, std::vector<Vec3>& at) {
   at.clear();
-  for (const int i : targets) at.push_back(self_field.value(i, panels, bezier));
+  for (const int i : targets) {
+    shape(self_field[i].front().panel);
+    at.push_back(self_field.value(i, panels, bezier));
+  }
 }
 
-void LayerSurface::place(TreeSum& tree) const {
-  std::vector<int> all(panels.size());
+std::span<SelfPair> LayerSurface::own(int i) {
+  if (options.rule == "desingularised") return {};
+  for (const SelfPair& pair : self_field[i]) shape(pair.panel);
+  return self_field[i];
+}
+
+void LayerSurface::place(TreeSum& tree) {
+  std::vector<int> all(panels.size()), points(n_points);
   std::iota(all.begin(), all.end(), 0);
-  place(tree, all);
+  std::iota(points.begin(), points.end(), 0);
+  place(tree, all, points);
 }
 
-void LayerSurface::place(TreeSum& tree, std::span<const int> some) const {
-  std::vector<int> everybody(n_points), starts{0};
-  std::iota(everybody.begin(), everybody.end(), 0);
+void LayerSurface::place(TreeSum& tree, std::span<const int> some, std::span<const int> points) {
+  std::vector<int> starts{0};
   std::vector<Vec3> at;
-  collocation_points(everybody, at);
+  collocation_points(points, at);
   std::vector<double> place[3];
   for (const int e : some) {
     const auto first = panels[e].first_node, last = first + panels[e].table->n_nodes;
     for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), node[c].begin() + first, node[c].begin() + last);
     starts.push_back(starts.back() + last - first);
   }
-  tree.place(place[0].data(), place[1].data(), place[2].data(), starts, at);
+  tree.place(place[0].data(), place[1].data(), place[2].data(), starts, at, images_.reflections);
 }
 
 const std::vector<int>& LayerSurface::near(int i, const Vec3& x0) {
   near_.clear();
   if (options.rule == "adaptive") near_field.list(x0, self_field[i], near_);
+  for (const int e : near_) shape(e);
   return near_;
 }
 
 const std::vector<int>& LayerSurface::near(const Vec3& x0) {
   near_field.list(x0, {}, near_);
+  for (const int e : near_) shape(e);
   return near_;
 }
 

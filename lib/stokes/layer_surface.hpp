@@ -10,6 +10,8 @@
 #include "stokes/panels.hpp"
 #include "stokes/self_field.hpp"
 #include "stokes/tree_sum.hpp"
+#include "surface/fundamental.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {
 
@@ -22,24 +24,31 @@ class LayerSurface {
   /// `steep`: near rules for a kernel like 1 / r^2. `order`: Gauss points a direction of the far rule; 0: what targets on the surface need.
   LayerSurface(const spline::Space& space, const quadrature::Options& options, bool steep = false, int order = 0);
 
+  /// States that all shapes to come are of this symmetry.
+  void set_symmetry(const surface::Symmetry& symmetry);
+
+  /// Panels in a far sum over fundamental ones, and their weights there.
+  const surface::FundamentalElements& fundamental() const { return fundamental_; }
+
   /// Takes a shape; the one that it has already, at no cost.
   void place(const Net& x);
 
-  /// The same without far nodes: those of panel e are there after locate(e).
+  /// The same without Bezier points and far nodes: those of panel e are there after locate(e). Functions that name panels see to their Bezier points.
   void place_lazily(const Net& x);
   void locate(int e);
 
   /// Collocation points of the shape.
-  void collocation_points(std::span<const int> targets, std::vector<Vec3>& at) const;
+  void collocation_points(std::span<const int> targets, std::vector<Vec3>& at);
 
-  /// Far nodes of some panels, panel by panel, and all collocation points into a tree: clusters must not depend on who asks for which targets.
-  void place(TreeSum& tree, std::span<const int> some) const;
+  /// Far nodes of some panels, panel by panel, and some collocation points with all their images into a tree. Clusters must not depend on who asks for
+  /// which targets: all who share the sums give the same.
+  void place(TreeSum& tree, std::span<const int> some, std::span<const int> points);
 
-  /// Those of all panels.
-  void place(TreeSum& tree) const;
+  /// Those of all panels, and all collocation points (and images, where there is a symmetry).
+  void place(TreeSum& tree);
 
   /// The panels that collocation point i lies on and that have a rule of their own for it: all but under the rule `desingularised`.
-  std::span<SelfPair> own(int i) { return options.rule == "desingularised" ? std::span<SelfPair>() : self_field[i]; }
+  std::span<SelfPair> own(int i);
 
   /// Panels that need a near rule for the collocation point i at x0; those that it lies on are not among them.
   const std::vector<int>& near(int i, const Vec3& x0);
@@ -51,12 +60,16 @@ class LayerSurface {
   Panels panels;
   NearField near_field;
   SelfField self_field;
-  std::vector<double> bezier;   ///< Bezier points of the shape
+  std::vector<double> bezier;   ///< Bezier points of the shape, where they are there
   std::vector<double> node[3];  ///< far nodes
 
  private:
+  void shape(int e);
+
   Net placed_;
-  std::vector<char> located_;  // panels whose far nodes are there
+  surface::FundamentalElements fundamental_;
+  PanelImages images_;
+  std::vector<char> shaped_, located_;  // panels whose Bezier points, and far nodes, are there
   std::vector<int> near_;
 };
 

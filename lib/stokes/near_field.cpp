@@ -45,31 +45,46 @@ NearField::NearField(const Panels& panels, double tolerance, int smooth_order, b
   for (auto& c : centre_) c.resize(panels.size());
 }
 
-void NearField::update(const std::vector<double>& bezier) {
+void NearField::view(int e) {
+  const NodeTable& t = *panels_[e].table;
+  const double* points = &(*bezier_)[panels_[e].first_bezier];
+  View& view = views_[e];
+  view.flat = flat_picture(points, t.degree);
+  view.area = view.flat.area();
+  const auto& [centre, u, v] = view.flat;
+  double square = 0;
+  for (int b = 0; b < t.n_bernstein; ++b) square = std::max(square, (point(points, t.n_bernstein, b) - centre).squaredNorm());
+  view.radius = std::sqrt(square);
+  const int middle = t.n_bernstein / 2 + (t.degree % 2 ? (t.degree + 1) / 2 : 0);
+  view.bulge = std::max((point(points, t.n_bernstein, 0) - centre + u + v).norm(),
+                        std::abs((point(points, t.n_bernstein, middle) - centre).dot(u.cross(v).normalized())));
+}
+
+void NearField::update(const std::vector<double>& bezier, const PanelImages& images) {
   bezier_ = &bezier;
+  for (int e = 0; e < panels_.size(); ++e)
+    if (images.own(e)) view(e);
   double total = 0;
-  for (int e = 0; e < panels_.size(); ++e) {
-    const NodeTable& t = *panels_[e].table;
-    View& view = views_[e];
-    view.flat = flat_picture(&bezier[panels_[e].first_bezier], t.degree);
-    total += view.area = view.flat.area();
-  }
+  for (const int source : images.source) total += views_[source].area;
   demand_.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * total);
   demand_.steep = steep_ ? std::sqrt(total / (4 * std::numbers::pi)) : 0;
   for (int e = 0; e < panels_.size(); ++e) {
-    const NodeTable& t = *panels_[e].table;
-    const double* points = &bezier[panels_[e].first_bezier];
-    View& view = views_[e];
-    const auto& [centre, u, v] = view.flat;
-    double radius = 0;
-    for (int b = 0; b < t.n_bernstein; ++b) radius = std::max(radius, (point(points, t.n_bernstein, b) - centre).squaredNorm());
-    radius = std::sqrt(radius);
-    const int middle = t.n_bernstein / 2 + (t.degree % 2 ? (t.degree + 1) / 2 : 0);
-    view.bulge = std::max((point(points, t.n_bernstein, 0) - centre + u + v).norm(),
-                          std::abs((point(points, t.n_bernstein, middle) - centre).dot(u.cross(v).normalized())));
-    const double reach = radius + clearance(view.area, std::max(u.norm(), v.norm()), demand_, t.order);
+    if (!images.own(e)) continue;
+    const View& view = views_[e];
+    const double longest = std::max(view.flat.u.norm(), view.flat.v.norm());
+    const double reach = view.radius + clearance(view.area, longest, demand_, panels_[e].table->order);
     reach_[e] = reach * reach;
-    for (int c = 0; c < 3; ++c) centre_[c][e] = centre[c];
+  }
+  for (int e = 0; e < panels_.size(); ++e) {
+    if (!images.own(e)) {
+      const surface::Reflection& image = images.reflections[images.image[e]];
+      const int source = images.source[e];
+      views_[e] = views_[source];
+      quadrature::Patch& flat = views_[e].flat;
+      flat = {image(flat.centre), image.of_vector(flat.u), image.of_vector(flat.v)};
+      reach_[e] = reach_[source];
+    }
+    for (int c = 0; c < 3; ++c) centre_[c][e] = views_[e].flat.centre[c];
   }
   vicinity_.place(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
 }

@@ -21,8 +21,8 @@ class NearField {
   /// `tolerance`: accuracy relative to int dG / r over the whole surface, about sqrt(4 pi area); `steep`: for kernels like 1 / r^2.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep);
 
-  /// Takes the shape from the Bezier points of all panels; they must outlive the calls below.
-  void update(const std::vector<double>& bezier);
+  /// Takes the shape from the Bezier points of panels that are no images. They must outlive the calls below, which ask for those of `panel`, too.
+  void update(const std::vector<double>& bezier, const PanelImages& images);
 
   /// Panels whose far rule misses the tolerance at the target, ascending, but for those of `own`, which the target lies on.
   void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
@@ -33,8 +33,9 @@ class NearField {
  private:
   struct View {
     quadrature::Patch flat;
-    double area = 0, bulge = 0;
+    double area = 0, bulge = 0, radius = 0;
   };
+  void view(int e);
   bool far_enough(const View& view, int order, const Vec3& target) const;
 
   const Panels& panels_;

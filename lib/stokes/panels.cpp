@@ -1,6 +1,7 @@
 #include "stokes/panels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "quadrature/gauss.hpp"
@@ -66,28 +67,41 @@ void node_values(const Panels& panels, int e, const std::vector<double>& bezier,
     combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
 }
 
+namespace {
+
+/// Of one panel: normal[c] points to its first node; scratch holds tangents.
+void panel_normals(const Panel& panel, const double* bezier, std::vector<double>& scratch, const std::array<double*, 3>& normal) {
+  const NodeTable& t = *panel.table;
+  scratch.resize(static_cast<std::size_t>(6) * t.n_nodes);
+  for (int c = 0; c < 3; ++c) {
+    combine(t.n_bernstein, t.n_nodes, t.along_s.data(), bezier + c * t.n_bernstein, &scratch[c * t.n_nodes]);
+    combine(t.n_bernstein, t.n_nodes, t.along_t.data(), bezier + c * t.n_bernstein, &scratch[(3 + c) * t.n_nodes]);
+  }
+  weigh_normals(t.n_nodes, scratch.data(), t.weights.data(), normal[0], normal[1], normal[2]);
+}
+
+}  // namespace
+
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]) {
   for (auto& component : normal) component.resize(panels.n_nodes());
-  std::vector<double> tangents;
+  std::vector<double> scratch;
   for (int e = 0; e < panels.size(); ++e) {
-    const NodeTable& t = *panels[e].table;
-    tangents.resize(static_cast<std::size_t>(6) * t.n_nodes);
-    for (int c = 0; c < 3; ++c) {
-      const double* points = &bezier[panels[e].first_bezier + c * t.n_bernstein];
-      combine(t.n_bernstein, t.n_nodes, t.along_s.data(), points, &tangents[c * t.n_nodes]);
-      combine(t.n_bernstein, t.n_nodes, t.along_t.data(), points, &tangents[(3 + c) * t.n_nodes]);
-    }
     const int first = panels[e].first_node;
-    weigh_normals(t.n_nodes, tangents.data(), t.weights.data(), &normal[0][first], &normal[1][first], &normal[2][first]);
+    panel_normals(panels[e], &bezier[panels[e].first_bezier], scratch, {&normal[0][first], &normal[1][first], &normal[2][first]});
   }
 }
 
+void node_weights(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double>& weight) {
+  const int n = panels[e].table->n_nodes;
+  std::vector<double> scratch, normal(static_cast<std::size_t>(3) * n);
+  panel_normals(panels[e], &bezier[panels[e].first_bezier], scratch, {&normal[0], &normal[n], &normal[2 * n]});
+  for (int k = 0; k < n; ++k)
+    weight[panels[e].first_node + k] = std::sqrt(normal[k] * normal[k] + normal[n + k] * normal[n + k] + normal[2 * n + k] * normal[2 * n + k]);
+}
+
 void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight) {
-  std::vector<double> normal[3];
-  node_normals(panels, bezier, normal);
   weight.resize(panels.n_nodes());
-  for (int k = 0; k < panels.n_nodes(); ++k)
-    weight[k] = std::sqrt(normal[0][k] * normal[0][k] + normal[1][k] * normal[1][k] + normal[2][k] * normal[2][k]);
+  for (int e = 0; e < panels.size(); ++e) node_weights(panels, e, bezier, weight);
 }
 
 }  // namespace tanktread::stokes

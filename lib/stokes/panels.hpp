@@ -6,6 +6,7 @@
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {
 
@@ -52,6 +53,14 @@ class Panels {
   std::size_t bezier_size_ = 0;
 };
 
+/// Which panels are images of others in a symmetric shape: panel e that of source[e] in reflection image[e], or its own source, image[e] = -1.
+struct PanelImages {
+  std::vector<int> source, image;
+  std::vector<surface::Reflection> reflections;
+
+  bool own(int e) const { return image[e] < 0; }
+};
+
 /// Values of a field at all far nodes, one array a component, from its Bezier points; or at those of one panel, in arrays for all.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
@@ -59,7 +68,8 @@ void node_values(const Panels& panels, int e, const std::vector<double>& bezier,
 /// Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that a node stands for.
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]);
 
-/// Gauss weight times |x_,s x x_,t| at all far nodes.
+/// Gauss weight times |x_,s x x_,t| at all far nodes; or at those of one panel, in an array for all.
 void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight);
+void node_weights(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double>& weight);
 
 }  // namespace tanktread::stokes

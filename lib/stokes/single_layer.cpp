@@ -9,7 +9,6 @@
 
 #include "stokes/identity_kernel.hpp"
 #include "stokes/pair_kernel.hpp"
-#include "surface/fundamental.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -20,15 +19,13 @@ constexpr double factor = 1 / (8 * std::numbers::pi);
 
 SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, options) {
   if (sums_by_tree(space, options)) tree_.emplace(options.tolerance);
-  set_symmetry(surface::Symmetry(space.n_points));
+  points_ = surface::Symmetry(space.n_points).fundamental();
 }
 
 void SingleLayer::set_symmetry(const surface::Symmetry& symmetry) {
+  surface_.set_symmetry(symmetry);
   images_ = symmetry.images();
-  const auto points = [&](int e) { return std::span(surface_.panels.points(e), static_cast<std::size_t>(surface_.panels[e].functions)); };
-  surface::FundamentalElements found = surface::fundamental_elements(symmetry, surface_.panels.size(), points);
-  fundamental_ = std::move(found.element);
-  weight_ = std::move(found.weight);
+  points_ = symmetry.fundamental();
 }
 
 void SingleLayer::set_reference(const Net& unstressed) {
@@ -40,8 +37,9 @@ void SingleLayer::set_reference(const Net& unstressed) {
 void SingleLayer::place(const Net& x, Measure measure, std::span<const int> targets, bool lazily) {
   assert((measure == Measure::current || !weight_unstressed_.empty()) && "set_reference() comes first");
   measure_ = measure;
+  lazily_ = lazily;
   lazily ? surface_.place_lazily(x) : surface_.place(x);
-  if (measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_present_);
+  if (measure == Measure::current) lazily ? weight_present_.resize(n_nodes()) : node_weights(surface_.panels, surface_.bezier, weight_present_);
   if (surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
   surface_.collocation_points(targets, at_);
 }
@@ -66,6 +64,7 @@ void SingleLayer::load(int e) {
   surface_.locate(e);
   surface_.panels.bezier(e, *density_, bezier_f_);
   node_values(surface_.panels, e, bezier_f_, force_);
+  if (measure_ == Measure::current && lazily_) node_weights(surface_.panels, e, surface_.bezier, weight_present_);
   const auto& weight = measure_ == Measure::current ? weight_present_ : weight_unstressed_;
   const int first = surface_.panels[e].first_node, last = first + surface_.panels[e].table->n_nodes;
   for (auto& component : force_)
@@ -73,27 +72,32 @@ void SingleLayer::load(int e) {
 }
 
 void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
-  for (const int e : fundamental_) surface_.locate(e);
-  surface_.place(*tree_, fundamental_);
+  const auto& [fundamental, weight] = surface_.fundamental();
+  for (const int e : fundamental) surface_.locate(e);
+  surface_.place(*tree_, fundamental, points_);
   const std::span<const int> rows = this->rows(targets);
-  std::vector<int> wanted(rows.begin(), rows.end());
-  for (const surface::Image& g : images_)
-    for (const int i : rows) wanted.push_back(g.point[i]);
+  std::vector<int> wanted, number;
+  for (const int i : rows) number.push_back(static_cast<int>(std::ranges::lower_bound(points_, i) - points_.begin()));
+  for (std::size_t g = 0; g <= images_.size(); ++g)
+    for (const int k : number) wanted.push_back(k + static_cast<int>(g * points_.size()));
   tree_->want(wanted);
   std::vector<double> carried[3];
-  for (std::size_t k = 0; k < fundamental_.size(); ++k) {
-    const Panel& panel = surface_.panels[fundamental_[k]];
+  for (std::size_t k = 0; k < fundamental.size(); ++k) {
+    const Panel& panel = surface_.panels[fundamental[k]];
     const int first = panel.first_node, n = panel.table->n_nodes;
     const bool asked = tree_->asks(static_cast<int>(carried[0].size()));  // panels are not split
-    if (asked) load(fundamental_[k]);
+    if (asked) load(fundamental[k]);
     for (int c = 0; c < 3; ++c)
-      for (int q = 0; q < n; ++q) carried[c].push_back(asked ? weight_[k] * force_[c][first + q] : 0);
+      for (int q = 0; q < n; ++q) carried[c].push_back(asked ? weight[k] * force_[c][first + q] : 0);
   }
-  Net there(surface_.n_points, 3);
+  Net there(points_.size() * (images_.size() + 1), 3);
   tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, there.data());
-  for (const int i : rows) u.row(i) = there.row(i);
-  for (const surface::Image& g : images_)
-    for (const int i : rows) u.row(i) += there.row(g.point[i]).cwiseProduct(g.signs.transpose());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    auto row = u.row(rows[k]);
+    row = there.row(number[k]);
+    for (std::size_t g = 0; g < images_.size(); ++g)
+      row += there.row(number[k] + static_cast<Eigen::Index>((g + 1) * points_.size())).cwiseProduct(images_[g].signs.transpose());
+  }
   evaluations_.far += tree_->interactions();
 }
 

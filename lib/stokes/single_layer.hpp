@@ -36,8 +36,8 @@ class SingleLayer {
   /// The unstressed surface, which Measure::reference needs. Its areas are kept at all far nodes and self points.
   void set_reference(const Net& unstressed);
 
-  /// States that all shapes and densities to come are of this symmetry. Where far sums are taken by clusters, those are made of fundamental panels F
-  /// only, for the others do to a target what these do to its images:
+  /// States that all shapes and densities to come are of this symmetry, and all targets fundamental. Where far sums are taken by clusters, those are
+  /// made of fundamental panels F only, for the others do to a target what these do to its images:
   ///
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
@@ -86,14 +86,14 @@ class SingleLayer {
   LayerSurface surface_;
   std::optional<TreeSum> tree_;                             // where clusters are faster
   std::vector<surface::Image> images_;                      // of all that is summed by them, without the identity
-  std::vector<int> fundamental_;                            // panels in the tree
-  std::vector<double> weight_;                              // of each in the sum over images, 1 unless it is an image of itself
+  std::vector<int> points_;                                 // targets in the tree
   std::vector<int> everybody_;                              // rows that far sums are shared of; empty: they are not
   Measure measure_ = Measure::current;
   std::vector<double> bezier_unstressed_, bezier_f_;        // Bezier points: unstressed surface, density
   std::vector<double> weight_unstressed_, weight_present_;  // of the far nodes, areas included
   std::vector<double> force_[3], normal_[3];                // far nodes: density times weight, normal times weight
   const Net* density_ = nullptr;                            // of this call
+  bool lazily_ = false;                                     // panels are located and loaded where they are asked for
   std::vector<char> loaded_;                                // panels whose far nodes and density are there
   std::vector<Vec3> at_;                                    // the targets of this call
   std::vector<Pack> point_weights_;

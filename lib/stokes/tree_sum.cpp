@@ -24,32 +24,76 @@ void fill_blocks(int n, const double* x, const double* y, const double* z, doubl
   }
 }
 
+/// Images of places in blocks, after all that `blocks` holds.
+void append_images(const double* block, std::size_t size, const surface::Reflection& image, std::vector<double>& blocks) {
+  for (std::size_t k = 0; k < size; ++k) {
+    const std::size_t c = k / far_block % 3;
+    blocks.push_back(image.middle[c] + image.signs[c] * (block[k] - image.middle[c]));
+  }
+}
+
+void reflect(ChebyshevBox& box, const surface::Reflection& image) {
+  Eigen::Map<Vec3> centre(box.centre);
+  centre = image(centre);
+  for (auto& row : box.axes) {
+    Eigen::Map<Vec3> axis(row);
+    axis = image.of_vector(axis);
+  }
+}
+
 }  // namespace
 
-TreeSum::TreeSum(double tolerance) : sources_(allowance * tolerance, source_leaf, 1), targets_(allowance * tolerance, target_leaf, far_block) {}
+TreeSum::TreeSum(double tolerance)
+    : sources_(allowance * tolerance, source_leaf, 1), target_tree_(allowance * tolerance, target_leaf, far_block) {}
 
-void TreeSum::place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets) {
+void TreeSum::place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
+                    std::span<const surface::Reflection> reflections) {
   sources_.place(x, y, z, starts);
   std::vector<double> at[3];
   for (int c = 0; c < 3; ++c)
     for (const Vec3& target : targets) at[c].push_back(target[c]);
   std::vector<int> singles(targets.size() + 1);
   std::iota(singles.begin(), singles.end(), 0);
-  targets_.place(at[0].data(), at[1].data(), at[2].data(), singles);
+  target_tree_.place(at[0].data(), at[1].data(), at[2].data(), singles);
+  const Clusters& tree = target_tree_;
 
-  const int n = static_cast<int>(targets.size());
+  const int n = static_cast<int>(targets.size()), n_clusters = static_cast<int>(tree.all().size());
   target_at_.resize(static_cast<std::size_t>(3) * far_block * blocks_of(n));
-  fill_blocks(n, targets_.point(0), targets_.point(1), targets_.point(2), target_at_.data());
-  node_at_.resize(static_cast<std::size_t>(3) * far_block * targets_.n_blocks());
-  for (const Cluster& c : targets_.all())
-    fill_blocks(c.n_nodes(), targets_.node(0) + c.first_node, targets_.node(1) + c.first_node, targets_.node(2) + c.first_node,
+  fill_blocks(n, tree.point(0), tree.point(1), tree.point(2), target_at_.data());
+  node_at_.resize(static_cast<std::size_t>(3) * far_block * tree.n_blocks());
+  for (const Cluster& c : tree.all())
+    fill_blocks(c.n_nodes(), tree.node(0) + c.first_node, tree.node(1) + c.first_node, tree.node(2) + c.first_node,
                 &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
+
+  targets_ = tree.all();
+  n_trees_ = 1;
+  const std::size_t places = target_at_.size(), nodes = node_at_.size();
+  for (const surface::Reflection& image : reflections) {
+    target_at_.reserve(places * (reflections.size() + 1)), node_at_.reserve(nodes * (reflections.size() + 1));
+    append_images(target_at_.data(), places, image, target_at_);
+    append_images(node_at_.data(), nodes, image, node_at_);
+    for (Cluster c : tree.all()) {
+      reflect(c, image);
+      c.first += n_trees_ * far_block * blocks_of(n), c.last += n_trees_ * far_block * blocks_of(n);
+      c.first_block += n_trees_ * tree.n_blocks();
+      if (!c.leaf())
+        for (int& child : c.child) child += n_trees_ * n_clusters;
+      targets_.push_back(c);
+    }
+    ++n_trees_;
+  }
+}
+
+/// That of place k in the order of the trees, which begin at a block each.
+int TreeSum::row(std::size_t k) const {
+  const std::size_t n = target_tree_.order().size(), size = static_cast<std::size_t>(far_block) * blocks_of(static_cast<int>(n));
+  return target_tree_.order()[k % size] + static_cast<int>(n * (k / size));
 }
 
 void TreeSum::want(std::span<const int> rows) {
   mark(rows);
   pairs_.clear();
-  meet(targets_.all().front(), sources_.all().front());
+  for (int k = 0; k < n_trees_; ++k) meet(targets_[k * target_tree_.all().size()], sources_.all().front());
   if (parts_ > 1) take_part();
   ask();
 }
@@ -90,13 +134,16 @@ void TreeSum::sum(const std::array<const double*, 6>& carried, double* values) {
   collect(carried);
   target_u_.assign(target_at_.size() / 3 * out_, 0);
   node_u_.assign(node_at_.size() / 3 * out_, 0);
-  has_nodes_.assign(targets_.all().size(), 0);
+  has_nodes_.assign(targets_.size(), 0);
   for (const Pair& pair : pairs_) add(pair);
   hand_down();
-  for (std::size_t k = 0; k < targets_.order().size(); ++k)
-    if (const int i = targets_.order()[k]; row_[i])
-      for (int c = 0; c < out_; ++c)
-        values[static_cast<std::size_t>(out_) * i + c] = target_u_[out_ * far_block * (k / far_block) + far_block * c + k % far_block];
+  for (const Cluster& t : targets_) {
+    if (!t.leaf()) continue;
+    for (std::size_t k = t.first; k < static_cast<std::size_t>(t.last); ++k)
+      if (const int i = row(k); row_[i])
+        for (int c = 0; c < out_; ++c)
+          values[static_cast<std::size_t>(out_) * i + c] = target_u_[out_ * far_block * (k / far_block) + far_block * c + k % far_block];
+  }
 }
 
 Charges TreeSum::points() const {
@@ -141,22 +188,20 @@ void TreeSum::collect(const std::array<const double*, 6>& carried) {
 
 /// Which target clusters hold rows that are wanted.
 void TreeSum::mark(std::span<const int> wanted) {
-  row_.assign(targets_.order().size(), 0);
+  row_.assign(n_trees_ * target_tree_.order().size(), 0);
   for (const int i : wanted) row_[i] = 1;
-  const std::vector<Cluster>& all = targets_.all();
-  wanted_.assign(all.size(), 0);
-  for (std::size_t t = all.size(); t-- > 0;) {
-    if (all[t].leaf())
-      wanted_[t] =
-          std::any_of(targets_.order().begin() + all[t].first, targets_.order().begin() + all[t].last, [&](int i) { return row_[i]; });
+  wanted_.assign(targets_.size(), 0);
+  for (std::size_t t = targets_.size(); t-- > 0;) {
+    if (targets_[t].leaf())
+      for (int k = targets_[t].first; k < targets_[t].last && !wanted_[t]; ++k) wanted_[t] = row_[row(k)];
     else
-      wanted_[t] = wanted_[all[t].child[0]] || wanted_[all[t].child[1]];
+      wanted_[t] = wanted_[targets_[t].child[0]] || wanted_[targets_[t].child[1]];
   }
 }
 
 /// What the nodes of `source` do to the targets of `target`.
 void TreeSum::meet(const Cluster& target, const Cluster& source) {
-  if (!wanted_[&target - targets_.all().data()]) return;
+  if (!wanted_[&target - targets_.data()]) return;
   const bool source_far = source.serves(target), target_far = target.serves(source);
   const bool many_targets = blocks_of(target.n_points()) > blocks_of(target.n_nodes()), many_nodes = source.n_points() > source.n_nodes();
   if ((source_far || !many_nodes) && (target_far || !many_targets)) return note(target, many_targets, source, many_nodes);
@@ -166,22 +211,22 @@ void TreeSum::meet(const Cluster& target, const Cluster& source) {
   if (target.leaf() || (halve_source && !source.leaf()))
     for (const int child : source.child) meet(target, sources_.all()[child]);
   else
-    for (const int child : target.child) meet(targets_.all()[child], source);
+    for (const int child : target.child) meet(targets_[child], source);
 }
 
 void TreeSum::note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes) {
-  const auto number = [](const Clusters& tree, const Cluster& cluster) { return static_cast<int>(&cluster - tree.all().data()); };
-  pairs_.push_back({number(targets_, target), number(sources_, source), target_nodes, source_nodes});
+  const auto number = [](const std::vector<Cluster>& all, const Cluster& cluster) { return static_cast<int>(&cluster - all.data()); };
+  pairs_.push_back({number(targets_, target), number(sources_.all(), source), target_nodes, source_nodes});
 }
 
 long long TreeSum::work(const Pair& pair) const {
-  const Cluster &target = targets_.all()[pair.target], &source = sources_.all()[pair.source];
+  const Cluster &target = targets_[pair.target], &source = sources_.all()[pair.source];
   const int n = pair.source_nodes ? source.n_nodes() : source.n_points();
   return static_cast<long long>(blocks_of(pair.target_nodes ? target.n_nodes() : target.n_points())) * n;
 }
 
 void TreeSum::add(const Pair& pair) {
-  const Cluster &target = targets_.all()[pair.target], &source = sources_.all()[pair.source];
+  const Cluster &target = targets_[pair.target], &source = sources_.all()[pair.source];
   const bool target_nodes = pair.target_nodes, source_nodes = pair.source_nodes;
   const std::size_t block = target_nodes ? target.first_block : target.first / far_block;
   const double* at = (target_nodes ? node_at_ : target_at_).data() + 3 * far_block * block;
@@ -199,7 +244,7 @@ void TreeSum::add(const Pair& pair) {
 
 /// Values at Chebyshev nodes handed to those of the children, and by leaves to their targets.
 void TreeSum::hand_down() {
-  const std::vector<Cluster>& all = targets_.all();
+  const std::vector<Cluster>& all = targets_;
   for (std::size_t t = 0; t < all.size(); ++t) {
     if (!has_nodes_[t]) continue;
     const double* from = &node_u_[static_cast<std::size_t>(out_) * far_block * all[t].first_block];
@@ -222,7 +267,7 @@ void TreeSum::hand_down() {
 std::size_t TreeSum::bytes() const {
   std::size_t doubles = target_at_.capacity() + node_at_.capacity() + target_u_.capacity() + node_u_.capacity();
   for (int c = 0; c < 6; ++c) doubles += q_[c].capacity() + node_q_[c].capacity();
-  return sizeof(double) * doubles + sources_.bytes() + targets_.bytes();
+  return sizeof(double) * doubles + sources_.bytes() + target_tree_.bytes() + sizeof(Cluster) * targets_.capacity();
 }
 
 }  // namespace tanktread::stokes

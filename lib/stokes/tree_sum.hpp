@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "stokes/clusters.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {
 
@@ -19,8 +20,10 @@ class TreeSum {
   /// `tolerance`: of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance);
 
-  /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all targets.
-  void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets);
+  /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all n targets. Row i + n k of the sums is that of the
+  /// image of target i in reflections[k - 1]; the clusters of images are the images of clusters.
+  void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
+             std::span<const surface::Reflection> reflections = {});
 
   /// States which rows are wanted of the sums to come. A row does not depend on which others are wanted.
   void want(std::span<const int> rows);
@@ -53,6 +56,7 @@ class TreeSum {
   void sum(const std::array<const double*, 6>& carried, double* values);
   void collect(const std::array<const double*, 6>& carried);
   void mark(std::span<const int> wanted);
+  int row(std::size_t k) const;
   void take_part();
   void ask();
   /// Clusters that meet, each as its Chebyshev nodes or as its points.
@@ -71,7 +75,9 @@ class TreeSum {
   int part_ = 0, parts_ = 1;
   int in_ = 3, out_ = 3;  // of the kernel
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
-  Clusters sources_, targets_;
+  Clusters sources_, target_tree_;              // of the targets without their images
+  int n_trees_ = 1;                             // of targets: one, and its images
+  std::vector<Cluster> targets_;                // of all trees, one after the other
   std::vector<double> q_[6], node_q_[6];        // what the sources and their Chebyshev nodes carry
   std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
   std::vector<double> target_u_, node_u_;       // values there

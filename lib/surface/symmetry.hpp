@@ -19,6 +19,14 @@ struct Image {
   std::vector<int> point, element;
 };
 
+/// The map of an image about a middle.
+struct Reflection {
+  Vec3 signs = Vec3::Ones(), middle = Vec3::Zero();
+
+  Vec3 of_vector(const Vec3& v) const { return signs.cwiseProduct(v); }
+  Vec3 operator()(const Vec3& x) const { return middle + of_vector(x - middle); }
+};
+
 /// The image of the space and of all these nets on it, if it is the same space and nets: places within 1e-10 of the first net's size (what
 /// refinement may add to a fit), bases within 1e-10, sites within 1e-9. Elements may turn and change places.
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs);
