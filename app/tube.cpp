@@ -70,7 +70,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   return wall;
 }
 
-std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases) {
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
@@ -78,7 +78,7 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupl
   parameters.measure = load_measure(scene);
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
-  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, ranks, phases);
+  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
 const std::vector<Column>& tube_columns() {
@@ -106,7 +106,7 @@ const std::vector<Column>& tube_columns() {
 
 std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state) {
   coupling::Tube& tube = *capsule.tube();
-  const Net v = capsule.velocity(state.x, state.history.front());  // the slope carries what is left of the scheme's iteration, over the step
+  const Net v = capsule.fluid_velocity(state.x, state.history.front());  // the slope carries what is left of the scheme's iteration, over the step
   const Vec3 c = capsule.geometry().measures(state.x).centroid, u = surface::centroid_velocity(capsule.geometry(), state.x, v);
   const Eigen::Vector2d across = c.tail<2>(), moves = u.tail<2>();
   const coupling::Tube::Response response = capsule.response(state.x);

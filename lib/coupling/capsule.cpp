@@ -164,8 +164,13 @@ Net Capsule::velocity(const Net& x, const Net& near) {
   return latest_.velocity = std::move(v);
 }
 
+Net Capsule::fluid_velocity(const Net& x, const Net& near) {
+  const Net v = velocity(x, near);
+  return interface_ ? latest_.fluid : v;
+}
+
 Tube::Response Capsule::response(const Net& x) {
-  const Net v = velocity(x);
+  const Net v = fluid_velocity(x);
   place(x);
   if (!latest_.response) latest_.response = tube_->respond(load(x), v);
   return *latest_.response;
@@ -187,6 +192,7 @@ Net Capsule::present_velocity(const Net& x, const Net& near) {
   if (constrained) v -= dot(b, v) / dot(b, c) * c;
   if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
   if (!interface_) return v;
+  latest_.fluid = symmetric(v);
   const auto clock = phases_.time("interface motion");
   if (tube_) {
     const Eigen::RowVector3d carried = drift(x, constrained ? b : flux_vector(x), v);
@@ -327,9 +333,12 @@ double Capsule::norm(const Net& displacement) const {
   return displacement.norm() / (parameters_.radius * std::sqrt(static_cast<double>(displacement.rows())));
 }
 
-Mat3 Capsule::stresslet(const Net& x, const Net& v) {
+Mat3 Capsule::stresslet(const Net& x, const Net& slope) {
   Mat3 moment = energy_gradient(x).transpose() * x;  // int df x dG, since x = sum N_A x_A
-  if (double_layer_) moment -= 2 * (1 - parameters_.viscosity_ratio) * parameters_.viscosity * v.transpose() * geometry_.volume_gradient(x);
+  if (double_layer_) {
+    const Net v = interface_ ? fluid_velocity(x) : slope;
+    moment -= 2 * (1 - parameters_.viscosity_ratio) * parameters_.viscosity * v.transpose() * geometry_.volume_gradient(x);
+  }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }
 

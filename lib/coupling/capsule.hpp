@@ -96,9 +96,13 @@ class Capsule : public Dynamics {
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say.
   Net load(const Net& x);
 
-  /// Particle stresslet S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG for the velocity v,
-  /// force times length. Batchelor 1970; Pozrikidis 1992, section 5.1.
-  Mat3 stresslet(const Net& x, const Net& v);
+  /// The fluids' velocity on the surface at x: `velocity`, unless control points slide along an interface.
+  Net fluid_velocity(const Net& x, const Net& near = {});
+
+  /// Particle stresslet S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
+  /// The fluids' velocity v is `slope`, that of the control points, or is evaluated where it matters and they slide along an interface.
+  /// Batchelor 1970; Pozrikidis 1992, section 5.1.
+  Mat3 stresslet(const Net& x, const Net& slope);
 
   double volume_error(const Net& x) const { return volume_error(geometry_.volume(x)); }  ///< V/V0 - 1
   double volume_error(double volume) const { return volume / volume0_ - 1; }
@@ -171,6 +175,7 @@ class Capsule : public Dynamics {
   Work work_;
   struct Latest {
     Net x, load, velocity;
+    Net fluid;  // of an interface whose control points slide along it
     std::optional<Tube::Response> response;
   };
   Latest latest_;  // evaluation

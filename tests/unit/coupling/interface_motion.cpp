@@ -1,6 +1,7 @@
 // Control points of a drop: what moves across the interface is physics, what moves along it is a choice.
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,24 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   const auto [across, along] = drop.components(drop.sphere, v);
   EXPECT_GT(across, 0.1);
   EXPECT_LT(along, 1e-13);
+}
+
+// Tension alone leaves a sphere to the flow as a blob of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970, section 5.
+TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
+  SphereInFlow drop(6, "planar hyperbolic");
+  drop.parameters.law = membrane::SurfaceTension{5};
+  drop.parameters.measure = stokes::Measure::current;
+  drop.parameters.interface_speed = 1;
+  for (const double ratio : {0.1, 10.0})
+    for (const char* motion : {"material", "normal", "relaxed"}) {
+      drop.parameters.viscosity_ratio = ratio;
+      drop.parameters.interface_motion = motion;
+      Capsule capsule = drop.capsule();
+      const Mat3 s = capsule.stresslet(drop.sphere, capsule.velocity(drop.sphere));
+      const double exact = 2 * 4 * std::numbers::pi / 3 * 5 * (ratio - 1) / (2 * ratio + 3);
+      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << motion;  // the sphere's mesh and the tolerance of the integrals
+      EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << motion;
+    }
 }
 
 TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
