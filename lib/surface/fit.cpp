@@ -1,6 +1,5 @@
 #include "surface/fit.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "quadrature/gauss.hpp"
@@ -22,41 +21,11 @@ Eigen::MatrixXd bernstein_values(int p, const quadrature::TensorRule& rule) {
   return result;
 }
 
-/// Lower triangle of sum_e area_e C_e gram C_e^T, row by row: sorting a million triplets would cost more than the factorisation.
-Eigen::SparseMatrix<double> mass_matrix(const spline::Space& space, const Blocks& blocks, const std::vector<Eigen::MatrixXd>& gram) {
-  std::vector<std::vector<std::pair<int, double>>> columns(space.n_points);
-  Eigen::MatrixXd local;
-  const Eigen::MatrixXd* last = nullptr;
-  for (std::size_t e = 0; e < space.elements.size(); ++e) {
-    const spline::Element& element = space.elements[e];
-    if (!last || last->rows() != element.extraction.rows() || *last != element.extraction)
-      local = element.extraction * gram[blocks.place[e].first] * element.extraction.transpose();
-    last = &element.extraction;
-    const double area = element.size[0] * element.size[1];
-    for (std::size_t b = 0; b < element.points.size(); ++b) {
-      auto& column = columns[element.points[b]];
-      for (std::size_t a = 0; a < element.points.size(); ++a) {
-        if (element.points[a] < element.points[b]) continue;
-        const auto at = std::find_if(column.begin(), column.end(), [&](const auto& entry) { return entry.first == element.points[a]; });
-        if (at == column.end())
-          column.emplace_back(element.points[a], area * local(a, b));
-        else
-          at->second += area * local(a, b);
-      }
-    }
-  }
-  Eigen::SparseMatrix<double> matrix(space.n_points, space.n_points);
-  std::size_t size = 0;
-  for (const auto& column : columns) size += column.size();
-  matrix.reserve(size);
-  for (int b = 0; b < space.n_points; ++b) {
-    std::sort(columns[b].begin(), columns[b].end());
-    matrix.startVec(b);
-    for (const auto& [a, value] : columns[b]) matrix.insertBack(a, b) = value;
-  }
-  matrix.finalize();
-  return matrix;
-}
+/// Three columns and one of zeros, so that a row is one register.
+using Wide = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+using Row = Eigen::Array<double, 1, 4>;
+
+Row ratio(const Row& a, const Row& b) { return (b > 0).select(a / b, 0); }
 
 }  // namespace
 
@@ -65,44 +34,110 @@ LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
   for (const Block& block : map_.blocks().blocks) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(block.degree + 2);
     const Eigen::MatrixXd value = bernstein_values(block.degree, rule);
-    tables_.push_back({rule.s, rule.t, value, value.transpose() * rule.weights.asDiagonal()});
+    tables_.push_back({value, value.transpose() * rule.weights.asDiagonal()});
     gram.push_back(tables_.back().weighted * value);
   }
   for (const spline::Element& element : space.elements) area_.push_back(element.size[0] * element.size[1]);
-  solver_.compute(mass_matrix(space, map_.blocks(), gram));
-  if (solver_.info() != Eigen::Success) throw std::logic_error("the functions of the spline space are linearly dependent");
+  mass_ = mass(space, map_.blocks(), gram);
 }
 
-template <class Field>
-Net LeastSquaresFit::solve(Field field) const {
-  Net right = Net::Zero(map_.n_points(), 3);
-  Eigen::MatrixXd values, projected;
-  for (std::size_t k = 0; k < tables_.size(); ++k) {
-    const Table& table = tables_[k];
-    values.resize(table.s.size(), 3);
-    for (const int e : map_.blocks().blocks[k].elements) {
-      field(e, table, values);
-      projected.noalias() = area_[e] * (table.weighted * values);
-      map_.add_transposed(e, projected.data(), right);
-    }
+/// sum_e area_e C_e gram C_e^T, row by row: the elements around a function, then a dense accumulator.
+LeastSquaresFit::Mass LeastSquaresFit::mass(const spline::Space& space, const Blocks& blocks, const std::vector<Eigen::MatrixXd>& gram) {
+  struct Place {
+    std::size_t element, local;
+    Eigen::Index row;
+  };
+  std::vector<std::vector<Place>> around(static_cast<std::size_t>(space.n_points));
+  std::vector<Eigen::MatrixXd> locals;  // neighbours share one
+  const Eigen::MatrixXd* last = nullptr;
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const spline::Element& element = space.elements[e];
+    if (!last || last->rows() != element.extraction.rows() || *last != element.extraction)
+      locals.push_back(element.extraction * gram[blocks.place[e].first] * element.extraction.transpose());
+    last = &element.extraction;
+    for (std::size_t a = 0; a < element.points.size(); ++a)
+      around[element.points[a]].push_back({e, locals.size() - 1, static_cast<Eigen::Index>(a)});
   }
-  return solver_.solve(Eigen::MatrixXd(right));
+  Mass m;
+  std::vector<int> entry(around.size(), -1);
+  for (std::size_t a = 0; a < around.size(); ++a) {
+    for (const Place& place : around[a]) {
+      const spline::Element& element = space.elements[place.element];
+      const double area = element.size[0] * element.size[1];
+      const double* values = locals[place.local].col(place.row).data();
+      for (std::size_t b = 0; b < element.points.size(); ++b) {
+        int& at = entry[element.points[b]];
+        if (at < m.start.back()) {
+          at = static_cast<int>(m.value.size());
+          m.column.push_back(element.points[b]);
+          m.value.push_back(0);
+        }
+        m.value[at] += area * values[b];
+      }
+    }
+    m.diagonal.push_back(m.value[entry[a]]);
+    m.start.push_back(static_cast<int>(m.value.size()));
+  }
+  return m;
 }
 
-Net LeastSquaresFit::fit(const std::function<Vec3(int, double, double)>& f) const {
-  return solve([&](int e, const Table& table, Eigen::MatrixXd& values) {
-    for (int q = 0; q < table.s.size(); ++q) values.row(q) = f(e, table.s[q], table.t[q]).transpose();
-  });
+Net LeastSquaresFit::solve(const Net& right, const Net& start) const {
+  const Eigen::Index n = right.rows();
+  const auto product = [&](const Wide& x, Eigen::Index i) {
+    Row even = Row::Zero(), odd = Row::Zero();
+    int k = mass_.start[i];
+    for (; k + 1 < mass_.start[i + 1]; k += 2) {
+      even += mass_.value[k] * x.row(mass_.column[k]).array();
+      odd += mass_.value[k + 1] * x.row(mass_.column[k + 1]).array();
+    }
+    if (k < mass_.start[i + 1]) even += mass_.value[k] * x.row(mass_.column[k]).array();
+    return Row(even + odd);
+  };
+  Wide x = Wide::Zero(n, 4), r = x, p = x, mp = x;
+  x.leftCols<3>() = start;
+  r.leftCols<3>() = right;
+  const double goal = 1e-15 * r.colwise().norm().maxCoeff();
+  for (Eigen::Index i = 0; i < n; ++i) r.row(i).array() -= product(x, i);
+  Row before = Row::Zero();  // r . D^-1 r of the iteration before
+  for (Eigen::Index k = 0; r.colwise().norm().maxCoeff() > goal; ++k) {
+    if (k > n + 100) throw std::logic_error("the functions of the spline space are linearly dependent");
+    Row rr = Row::Zero(), pmp = rr;
+    for (Eigen::Index i = 0; i < n; ++i) rr += r.row(i).array().square() / mass_.diagonal[i];
+    const Row turn = ratio(rr, before);
+    for (Eigen::Index i = 0; i < n; ++i) p.row(i) = r.row(i).array() / mass_.diagonal[i] + turn * p.row(i).array();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      mp.row(i) = product(p, i);
+      pmp += p.row(i).array() * mp.row(i).array();
+    }
+    const Row step = ratio(rr, pmp);
+    x.array() += p.array().rowwise() * step;
+    r.array() -= mp.array().rowwise() * step;
+    before = rr;
+  }
+  return x.leftCols<3>();
 }
 
 Net LeastSquaresFit::fit_image(const Net& net, const std::function<Vec3(const Vec3&)>& f) const {
-  Eigen::MatrixXd points;
-  return solve([&](int e, const Table& table, Eigen::MatrixXd& values) {
-    points.resize(table.value.cols(), 3);
-    map_.points(e, net, points.data());
-    values.noalias() = table.value * points;
-    for (int q = 0; q < values.rows(); ++q) values.row(q) = f(values.row(q).transpose()).transpose();
-  });
+  Net right = Net::Zero(map_.n_points(), 3);
+  Eigen::MatrixXd bezier, values;
+  for (std::size_t k = 0; k < tables_.size(); ++k) {
+    const Block& block = map_.blocks().blocks[k];
+    const auto n = static_cast<Eigen::Index>(block.elements.size()), n_b = tables_[k].value.cols();
+    map_.points(block, net, bezier);
+    values.noalias() = tables_[k].value * bezier;
+    for (Eigen::Index e = 0; e < n; ++e)
+      for (Eigen::Index q = 0; q < values.rows(); ++q) {
+        const Vec3 image = area_[block.elements[e]] * f(Vec3(values(q, e), values(q, n + e), values(q, 2 * n + e)));
+        for (int c = 0; c < 3; ++c) values(q, c * n + e) = image[c];
+      }
+    bezier.noalias() = tables_[k].weighted * values;
+    Eigen::MatrixXd one(n_b, 3);
+    for (Eigen::Index e = 0; e < n; ++e) {
+      for (int c = 0; c < 3; ++c) one.col(c) = bezier.col(c * n + e);
+      map_.add_transposed(block.elements[e], one.data(), right);
+    }
+  }
+  return solve(right, net);
 }
 
 }  // namespace tanktread::surface
