@@ -15,18 +15,18 @@ constexpr double exact = 1e-10, close = 1e-9;
 /// Places in space, to be found again.
 class Places {
  public:
-  Places(std::vector<Vec3> places, double tolerance) : places_(std::move(places)), tolerance_(tolerance), order_(places_.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    std::ranges::sort(order_, {}, [&](int i) { return along(places_[i]); });
+  Places(std::vector<Vec3> places, double tolerance) : places_(std::move(places)), tolerance_(tolerance) {
+    for (std::size_t i = 0; i < places_.size(); ++i) order_.emplace_back(along(places_[i]), static_cast<int>(i));
+    std::ranges::sort(order_);
   }
+
+  const std::vector<Vec3>& all() const { return places_; }
 
   /// The one at x, or -1.
   int at(const Vec3& x) const {
     const double from = along(x) - 2 * tolerance_;
-    for (auto i = std::ranges::lower_bound(order_, from, {}, [&](int k) { return along(places_[k]); }); i != order_.end(); ++i) {
-      if (along(places_[*i]) > from + 4 * tolerance_) break;
-      if ((places_[*i] - x).norm() <= tolerance_) return *i;
-    }
+    for (auto i = std::ranges::lower_bound(order_, std::pair(from, 0)); i != order_.end() && i->first <= from + 4 * tolerance_; ++i)
+      if ((places_[i->second] - x).norm() <= tolerance_) return i->second;
     return -1;
   }
 
@@ -35,7 +35,7 @@ class Places {
 
   std::vector<Vec3> places_;
   double tolerance_;
-  std::vector<int> order_;
+  std::vector<std::pair<double, int>> order_;
 };
 
 /// One of the eight maps of the unit square onto itself: coordinates exchanged, then turned around.
@@ -61,64 +61,70 @@ Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().m
 
 Vec3 reflected(const Vec3& x, const Vec3& centre, const Vec3& signs) { return centre + signs.cwiseProduct(x - centre); }
 
-/// The space and its first net, with what the search looks at.
+using Keeps = std::function<bool(const Image&)>;
+
+/// The space and its nets, with what the search for any image looks at.
 class Search {
  public:
-  Search(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs)
-      : space_(space), nets_(nets), signs_(signs), centre_(middle(*nets[0])),
-        size_((nets[0]->colwise().maxCoeff() - nets[0]->colwise().minCoeff()).maxCoeff()), map_(space) {}
+  Search(const spline::Space& space, std::span<const Net* const> nets)
+      : space_(space), nets_(nets), centre_(middle(*nets[0])),
+        size_((nets[0]->colwise().maxCoeff() - nets[0]->colwise().minCoeff()).maxCoeff()), map_(space), bezier_(space.elements.size()),
+        points_(rows(*nets[0]), exact * size_), centres_(centres(), close * size_) {}
 
-  std::optional<Image> image() {
-    if (!points() || !elements() || !sites()) return {};
-    return Image{signs_, point_, element_};
+  /// The image that these signs make, if it is one and is kept.
+  std::optional<Image> image(const Vec3& signs, const Keeps& keeps) {
+    image_ = {signs, {}, {}};
+    turn_.clear();
+    if (!points() || !keeps(image_) || !elements() || !sites()) return {};
+    return std::move(image_);
   }
 
  private:
-  bool points() {
-    const Net& net = *nets_[0];
+  static std::vector<Vec3> rows(const Net& net) {
     std::vector<Vec3> places;
     for (Eigen::Index a = 0; a < net.rows(); ++a) places.push_back(net.row(a).transpose());
-    const Places found(places, exact * size_);
-    for (const Vec3& x : places) {
-      point_.push_back(found.at(reflected(x, centre_, signs_)));
-      if (point_.back() < 0) return false;
+    return places;
+  }
+
+  std::vector<Vec3> centres() {
+    std::vector<Vec3> places;
+    for (int e = 0; e < map_.n_elements(); ++e) {
+      bezier_[e].resize(map_.n_bezier(e), 3);
+      map_.points(e, *nets_[0], bezier_[e].data());
+      places.push_back(bezier_[e].colwise().mean().transpose());
+    }
+    return places;
+  }
+
+  bool points() {
+    for (const Vec3& x : points_.all()) {
+      image_.point.push_back(points_.at(reflected(x, centre_, image_.signs)));
+      if (image_.point.back() < 0) return false;
     }
     for (const Net* other : nets_.subspan(1)) {
       const Vec3 centre = middle(*other);
       for (Eigen::Index a = 0; a < other->rows(); ++a)
-        if ((reflected(other->row(a).transpose(), centre, signs_) - other->row(point_[a]).transpose()).norm() > exact * size_) return false;
+        if ((reflected(other->row(a).transpose(), centre, image_.signs) - other->row(image_.point[a]).transpose()).norm() > exact * size_) return false;
     }
     return true;
   }
 
   bool elements() {
-    const int n = map_.n_elements();
-    std::vector<std::vector<double>> bezier(n);
-    std::vector<Vec3> centres;
-    for (int e = 0; e < n; ++e) {
-      bezier[e].resize(3 * map_.n_bezier(e));
-      map_.points(e, *nets_[0], bezier[e].data());
-      centres.push_back(Eigen::Map<const Eigen::MatrixX3d>(bezier[e].data(), map_.n_bezier(e), 3).colwise().mean().transpose());
-    }
-    const Places found(centres, close * size_);
-    for (int e = 0; e < n; ++e) {
-      const int other = found.at(reflected(centres[e], centre_, signs_));
+    for (int e = 0; e < map_.n_elements(); ++e) {
+      const int other = centres_.at(reflected(centres_.all()[e], centre_, image_.signs));
       if (other < 0 || map_.degree(e) != map_.degree(other)) return false;
-      const auto turn = std::ranges::find_if(
-          turns, [&](const Turn& t) { return same_places(t, e, bezier[e], bezier[other]) && same_basis(t, e, other); });
+      const auto turn = std::ranges::find_if(turns, [&](const Turn& t) { return same_places(t, e, other) && same_basis(t, e, other); });
       if (turn == std::end(turns)) return false;
-      element_.push_back(other);
+      image_.element.push_back(other);
       turn_.push_back(*turn);
     }
     return true;
   }
 
-  bool same_places(const Turn& turn, int e, const std::vector<double>& from, const std::vector<double>& to) const {
-    const int n = map_.n_bezier(e);
-    for (int b = 0; b < n; ++b) {
-      const int other = turn.bernstein(b, map_.degree(e));
-      const Vec3 x(from[b], from[n + b], from[2 * n + b]), y(to[other], to[n + other], to[2 * n + other]);
-      if ((reflected(x, centre_, signs_) - y).norm() > close * size_) return false;
+  bool same_places(const Turn& turn, int e, int other) const {
+    for (int b = 0; b < map_.n_bezier(e); ++b) {
+      const Vec3 x = bezier_[e].row(b).transpose(), y = bezier_[other].row(turn.bernstein(b, map_.degree(e))).transpose();
+      if ((reflected(x, centre_, image_.signs) - y).norm() > close * size_) return false;
     }
     return true;
   }
@@ -126,12 +132,16 @@ class Search {
   bool same_basis(const Turn& turn, int e, int other) const {
     const spline::Element &from = space_.elements[e], &to = space_.elements[other];
     if (from.points.size() != to.points.size()) return false;
-    for (std::size_t a = 0; a < from.points.size(); ++a) {
-      const auto at = std::ranges::find(to.points, point_[from.points[a]]);
+    std::vector<Eigen::Index> row;
+    for (const int a : from.points) {
+      const auto at = std::ranges::find(to.points, image_.point[a]);
       if (at == to.points.end()) return false;
-      const auto row = at - to.points.begin();
-      for (int b = 0; b < map_.n_bezier(e); ++b)
-        if (std::abs(from.extraction(static_cast<Eigen::Index>(a), b) - to.extraction(row, turn.bernstein(b, map_.degree(e)))) > exact) return false;
+      row.push_back(at - to.points.begin());
+    }
+    for (int b = 0; b < map_.n_bezier(e); ++b) {
+      const int turned = turn.bernstein(b, map_.degree(e));
+      for (std::size_t a = 0; a < row.size(); ++a)
+        if (std::abs(from.extraction(static_cast<Eigen::Index>(a), b) - to.extraction(row[a], turned)) > exact) return false;
     }
     return true;
   }
@@ -141,19 +151,21 @@ class Search {
       const spline::Site& site = space_.collocation[a].front();
       const auto place = turn_[site.element](site.s, site.t);
       const auto same = [&](const spline::Site& other) {
-        return other.element == element_[site.element] && std::abs(other.s - place[0]) < close && std::abs(other.t - place[1]) < close;
+        return other.element == image_.element[site.element] && std::abs(other.s - place[0]) < close && std::abs(other.t - place[1]) < close;
       };
-      if (std::ranges::none_of(space_.collocation[point_[a]], same)) return false;
+      if (std::ranges::none_of(space_.collocation[image_.point[a]], same)) return false;
     }
     return true;
   }
 
   const spline::Space& space_;
   std::span<const Net* const> nets_;
-  Vec3 signs_, centre_;
+  Vec3 centre_;
   double size_;
   BezierMap map_;
-  std::vector<int> point_, element_;
+  std::vector<Eigen::MatrixX3d> bezier_;  // an element
+  Places points_, centres_;
+  Image image_;
   std::vector<Turn> turn_;
 };
 
@@ -198,7 +210,7 @@ std::string name(const Vec3& signs) {
 }  // namespace
 
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs) {
-  return Search(space, nets, signs).image();
+  return Search(space, nets).image(signs, [](const Image&) { return true; });
 }
 
 Symmetry::Symmetry(int n_points) : fundamental_(n_points), source_(n_points), signs_(Net::Ones(n_points, 3)) {
@@ -243,11 +255,12 @@ void Symmetry::complete(Net& field) const {
 }
 
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps) {
+  Search search(space, nets);
   std::vector<Image> generators, group = identity(space.n_points, space.elements.size());
   for (const Vec3& signs : candidates) {
     if (contains(group, signs)) continue;
-    const auto found = image(space, nets, signs);
-    if (!found || !keeps(*found)) continue;
+    const auto found = search.image(signs, keeps);
+    if (!found) continue;
     generators.push_back(*found);
     group = joined(std::move(group), *found);
   }

@@ -66,7 +66,8 @@ class Symmetry {
   std::string description_ = "none";
 };
 
-/// The largest group of images of the space and the nets that `keeps` admits (say because they are symmetries of the flow, or of a wall).
+/// The largest group of images of the space and the nets that `keeps` admits (say because they are symmetries of the flow, or of a wall); it is
+/// asked before the elements are looked at, and sees where the points go.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
 
 }  // namespace tanktread::surface
