@@ -13,9 +13,9 @@ namespace tanktread::surface {
 ///
 ///   sum_e area_e int_e |sum_A N_A P_A - f|^2 ds dt = min,
 ///
-/// with p + 2 Gauss points a direction and element. The matrix depends on the space alone. Its systems are solved to round-off by conjugate gradients,
-/// preconditioned by the diagonal: mass matrices of splines scaled so are well conditioned on any mesh (200 iterations on a fine one). Nothing is
-/// factored, which would take ten times as long at 55,298 control points.
+/// with p + 2 Gauss points a direction and element. The matrix depends on the space alone. Its systems are solved to round-off by conjugate
+/// gradients, preconditioned by the diagonal: mass matrices of splines scaled so are well conditioned on any mesh (200 iterations on a fine one).
+/// Nothing is factored, which would take ten times as long at 55,298 control points.
 class LeastSquaresFit {
  public:
   explicit LeastSquaresFit(const spline::Space& space);

@@ -104,7 +104,8 @@ class Search {
     for (const Net* other : nets_.subspan(1)) {
       const Vec3 centre = middle(*other);
       for (Eigen::Index a = 0; a < other->rows(); ++a)
-        if ((reflected(other->row(a).transpose(), centre, image_.signs) - other->row(image_.point[a]).transpose()).norm() > exact * size_) return false;
+        if ((reflected(other->row(a).transpose(), centre, image_.signs) - other->row(image_.point[a]).transpose()).norm() > exact * size_)
+          return false;
     }
     return true;
   }
