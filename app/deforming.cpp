@@ -24,7 +24,7 @@ class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), body_(std::make_unique<Body>(tanktread::body(scene))),
-        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, ranks, phases))), columns_(deforming_columns(scene)) {}
+        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, phases))), columns_(deforming_columns(scene)) {}
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
   const Body& body() const override { return *body_; }

@@ -55,7 +55,7 @@ namespace {
 class Free : public Moving {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, ranks, phases)),
+      : body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
         resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()),
         columns_(free_columns(scene)) {
     const Vec3& centre = scene.particle.shape.center;

@@ -168,7 +168,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const Body body = tanktread::body(scene);
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
-  const std::unique_ptr<coupling::Tube> around = tube(scene, body, ranks, phases);
+  const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -70,7 +70,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   return wall;
 }
 
-std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases) {
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
@@ -78,7 +78,7 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupl
   parameters.measure = load_measure(scene);
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
-  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, ranks, phases);
+  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
 const std::vector<Column>& tube_columns() {

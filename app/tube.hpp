@@ -17,7 +17,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
 /// The tube as the particle meets it; nothing without one.
-std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
 /// Further series of a deformable particle in a tube, and their values. Collective.
 const std::vector<Column>& tube_columns();

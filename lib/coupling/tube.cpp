@@ -5,7 +5,7 @@
 namespace tanktread::coupling {
 
 Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
-           Ranks&, Phases& phases)
+           Phases& phases)
     : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
   const auto clock = phases_.time("wall assembly");
   wall_ = std::make_shared<Wall>(wall, parameters.quadrature, &phases_);

@@ -45,7 +45,7 @@ struct TubeParameters {
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
-       Ranks& ranks, Phases& phases);
+       Phases& phases);
 
   /// The same tube around another mesh of the particle: nothing of the wall is made again.
   Tube(const Tube& tube, const spline::Space& particle);

@@ -12,11 +12,17 @@ namespace {
 
 constexpr double factor = 1 / (8 * std::numbers::pi);
 
-/// Nodes that all targets meet before the next ones are loaded.
-constexpr int nodes_in_cache = 4096;
-
 void sum_of(const PointForces& part, const double* x0, const double*, double* u) { node_sum(part, x0, u); }
 void sum_of(const Stresslets& part, const double* x0, const double* v0, double* u) { node_sum(part, x0, v0, u); }
+void sums_of(const PointForces& all, std::span<const Vec3> x0, std::span<const Vec3>, double* u) { far_sums(all, x0, u); }
+void sums_of(const Stresslets& all, std::span<const Vec3> x0, std::span<const Vec3> v0, double* u) { far_sums(all, x0, v0, u); }
+
+std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
+  std::vector<Vec3> result;
+  result.reserve(rows.size());
+  for (const int i : rows) result.push_back(net.row(i).transpose());
+  return result;
+}
 
 /// Gauss points a direction of the far rule; 0: those of targets on the surface. Off it, where near rules take over in time, the kernel is
 /// smoother: with three the far part errs by 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
@@ -61,26 +67,12 @@ const Pack* CrossLayer::area_weights_of(int e, const PointTable& table) {
 template <class Sources, class Own>
 void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, const Net& at, std::span<const int> targets, Net& u,
                            const Near* kept) {
-  const int n = static_cast<int>(targets.size());
   {
     const auto clock = phases_.time("far");
-    double block[6 * far_block] = {}, sums[3 * far_block];
-    for (const int i : targets) u.row(i).setZero();
-    for (int node = 0; node < all.n; node += nodes_in_cache) {
-      const Sources part = all.part(node, std::min(nodes_in_cache, all.n - node));
-      for (int first = 0; first < n; first += far_block) {
-        for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
-          for (int c = 0; c < 3; ++c) {
-            const int i = targets[std::min(first + l, n - 1)];
-            block[far_block * c + l] = at(i, c);
-            if (v0) block[far_block * (3 + c) + l] = (*v0)(i, c);
-          }
-        far_sum(part, block, sums);
-        for (int l = 0; l < std::min(far_block, n - first); ++l)
-          for (int c = 0; c < 3; ++c) u(targets[first + l], c) += sums[far_block * c + l];
-      }
-    }
-    evaluations_.far += static_cast<long long>(n) * all.n;
+    Net sums(targets.size(), 3);
+    sums_of(all, rows_of(at, targets), v0 ? rows_of(*v0, targets) : std::vector<Vec3>(), sums.data());
+    for (std::size_t k = 0; k < targets.size(); ++k) u.row(targets[k]) = sums.row(static_cast<Eigen::Index>(k));
+    evaluations_.far += static_cast<long long>(targets.size()) * all.n;
   }
   const auto clock = phases_.time("near");
   if (kept) {
@@ -241,10 +233,8 @@ struct CrossLayer::Moments {
 template <class Real>
 void CrossLayer::assemble_rows(const Net& at, std::span<const int> targets, Rows<Real>& a) {
   const auto clock = phases_.time("assembly");
-  std::vector<Vec3> points;
-  for (const int i : targets) points.push_back(at.row(i).transpose());
   Moments moments{*this};
-  dense_rows(surface_, targets, points, moments, evaluations_, a);
+  dense_rows(surface_, targets, rows_of(at, targets), moments, evaluations_, a);
 }
 
 void CrossLayer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a) { assemble_rows(at, targets, a); }

@@ -61,19 +61,10 @@ Stresslets DoubleLayer::nodes() const {
 
 void DoubleLayer::add_far(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv) {
   const Stresslets all = nodes();
-  const int n = static_cast<int>(targets.size());
-  double block[6 * far_block], sums[3 * far_block];
-  for (int first = 0; first < n; first += far_block) {
-    for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
-      for (int c = 0; c < 3; ++c) {
-        block[far_block * c + l] = at_[std::min(first + l, n - 1)][c];
-        block[far_block * (3 + c) + l] = v0[std::min(first + l, n - 1)][c];
-      }
-    far_sum(all, block, sums);
-    for (int l = 0; l < std::min(far_block, n - first); ++l)
-      for (int c = 0; c < 3; ++c) hv(targets[first + l], c) = sums[far_block * c + l];
-  }
-  evaluations_.far += static_cast<long long>(n) * all.n;
+  Net sums(targets.size(), 3);
+  far_sums(all, at_, v0, sums.data());
+  for (std::size_t k = 0; k < targets.size(); ++k) hv.row(targets[k]) = sums.row(static_cast<Eigen::Index>(k));
+  evaluations_.far += static_cast<long long>(targets.size()) * all.n;
 }
 
 /// The tree and sum_q T_ijk n_k of this shape; Krylov solvers ask for one shape many times.

@@ -42,6 +42,7 @@ void node_sum(const PointForces& forces, const double* x0, double* u);
 
 /// u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 the place, 3, 4, 5 the velocity v0 there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
+void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
 /// Points that carry up to six numbers each.

@@ -87,9 +87,9 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
     long without = 0, with = 0;
     const double free = capsule.seconds(stokes::AmbientFlow(shear), ranks, phases, nullptr, without);
     const double confined = capsule.seconds(stokes::AmbientFlow(in_duct, duct), ranks, phases,
-                                            std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, ranks, phases), with);
+                                            std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
-    coupling::Tube tube(wall, *duct, capsule.space, parameters, ranks, phases);
+    coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);
     tube.set_reference(capsule.unstressed);
     const Net f = capsule.x, on_wall = (tube.place(capsule.x), tube.load_on_wall(f));
     state.counters["place ms"] = milliseconds([&] { tube.place(capsule.x); });

@@ -86,7 +86,7 @@ struct RigidSphere {
     coupling::TubeParameters parameters;
     parameters.quadrature.tolerance = tolerance;
     solvers.tolerance = 1e-9;
-    tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, ranks, phases);
+    tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, phases);
     resistance =
         std::make_unique<coupling::Resistance>(sphere.space, sphere.net, 1.0, parameters.quadrature, solvers, ranks, phases, tube.get());
     body = std::make_unique<coupling::FreeBodyInTube>(*resistance, sphere.centre, radius, flow, 1.0, solvers);

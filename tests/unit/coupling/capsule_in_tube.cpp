@@ -57,7 +57,7 @@ struct Confined {
     in_tube.viscosity = 1.3;
     in_tube.viscosity_ratio = viscosity_ratio;
     capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
-                                        std::make_unique<Tube>(*wall, *duct, space, in_tube, ranks, phases));
+                                        std::make_unique<Tube>(*wall, *duct, space, in_tube, phases));
   }
 };
 

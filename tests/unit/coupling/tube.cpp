@@ -46,7 +46,7 @@ struct Fixture {
     TubeParameters parameters;
     parameters.viscosity = viscosity, parameters.viscosity_ratio = ratio;
     parameters.quadrature.tolerance = 1e-6;
-    tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, ranks, phases);
+    tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
     tube->set_reference(x);
     tube->place(x);
   }
