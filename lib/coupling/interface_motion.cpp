@@ -1,5 +1,7 @@
 #include "coupling/interface_motion.hpp"
 
+#include <algorithm>
+
 #include "coupling/collocation.hpp"
 #include "surface/geometry.hpp"
 
@@ -27,9 +29,21 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   });
 }
 
+namespace {
+/// At a site, or, at a plain pole, where elements have none themselves, the mean of theirs close by.
+Vec3 normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites) {
+  const surface::Point p = surface::point(space, x, sites.front());
+  if (p.jacobian > 1e-9 * std::max(p.a1.squaredNorm(), p.a2.squaredNorm())) return p.n;
+  constexpr double aside = 1e-4;
+  Vec3 sum = Vec3::Zero();
+  for (const spline::Site& s : sites) sum += surface::point(space, x, {s.element, s.s + aside * (0.5 - s.s), s.t + aside * (0.5 - s.t)}).n;
+  return sum.normalized();
+}
+}  // namespace
+
 std::vector<Vec3> InterfaceMotion::normals_at(const Net& x) const {
   std::vector<Vec3> normals;
-  for (const int i : own_points_) normals.push_back(surface::point(space_, x, space_.collocation[static_cast<size_t>(i)].front()).n);
+  for (const int i : own_points_) normals.push_back(normal(space_, x, space_.collocation[static_cast<size_t>(i)]));
   return normals;
 }
 

@@ -74,6 +74,24 @@ TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
     }
 }
 
+TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
+  Drop drop;
+  const spline::PolarMesh polar{8, 6, spline::PoleRule::plain};
+  drop.space = spline::space(polar);
+  drop.sphere = surface::initial_shape(drop.space, polar, 2, {});
+  drop.parameters.volume.constraint = "none";
+  for (const char* motion : {"normal", "relaxed"}) {
+    const Net v = drop.velocity(motion, drop.sphere);
+    ASSERT_TRUE(v.allFinite()) << motion;
+    for (const auto& sites : drop.space.collocation)
+      if (sites.size() > 4) {  // a pole, about which the flow is (x1, 0, -x3)
+        const Vec3 x = surface::value(drop.space, drop.sphere, sites.front()), u = surface::value(drop.space, v, sites.front());
+        EXPECT_LT(u.head<2>().norm(), 1e-12 * std::abs(u[2])) << motion;
+        EXPECT_LT(u[2] * x[2], -0.1) << motion;
+      }
+  }
+}
+
 TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
   Drop drop;
   drop.flow.type = "quiescent";
