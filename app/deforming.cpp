@@ -74,7 +74,7 @@ class Deforming : public Moving {
 
   Portrait portrait(const motion::State& state) override {
     const Net load = capsule_->load(state.x);
-    return {state.x, [this, &state, load](const output::Nodes& nodes) { return fields(nodes, state, load); }};
+    return {state.x, [this, &state, load](const output::Nodes& nodes, output::NodeRange range) { return fields(nodes, range, state, load); }};
   }
 
  private:
@@ -111,17 +111,17 @@ class Deforming : public Moving {
              change.change));
   }
 
-  std::vector<output::Field> fields(const output::Nodes& nodes, const motion::State& state, const Net& load) const {
-    const std::vector<surface::Jet> before = nodes.jets(body_->unstressed), now = nodes.jets(state.x);
+  std::vector<output::Field> fields(const output::Nodes& nodes, output::NodeRange range, const motion::State& state, const Net& load) const {
+    const std::vector<surface::Jet> before = nodes.jets(body_->unstressed, range), now = nodes.jets(state.x, range);
     const auto n = static_cast<Eigen::Index>(now.size());
-    Net traction = nodes.values(load);
+    Net traction = nodes.values(load, range);
     std::vector<output::Field> fields{{"load", traction}};
     if (capsule_->measure() == stokes::Measure::reference)  // a load per unstressed area
       for (Eigen::Index i = 0; i < n; ++i)
         traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
     fields.push_back({"traction", traction});
-    fields.push_back({"displacement", nodes.values(state.x - body_->unstressed)});
-    if (!state.history.empty()) fields.push_back({"velocity", nodes.values(state.history.front())});
+    fields.push_back({"displacement", nodes.values(state.x - body_->unstressed, range)});
+    if (!state.history.empty()) fields.push_back({"velocity", nodes.values(state.history.front(), range)});
     const Eigen::MatrixX2d tensions = membrane::tensions(body_->law, before, now);
     fields.push_back({"smallest tension", tensions.col(0)});
     fields.push_back({"largest tension", tensions.col(1)});

@@ -113,8 +113,8 @@ class Free : public Moving {
   Portrait portrait(const motion::State& state) override {
     const Net x = free_->surface(state.x), f = free_->force_density(state.x),
               v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
-    return {x, [f, v](const output::Nodes& nodes) {
-              return std::vector<output::Field>{{"traction", nodes.values(-f)}, {"velocity", nodes.values(v)}};
+    return {x, [f, v](const output::Nodes& nodes, output::NodeRange range) {
+              return std::vector<output::Field>{{"traction", nodes.values(-f, range)}, {"velocity", nodes.values(v, range)}};
             }};
   }
 

@@ -10,7 +10,7 @@
 #include "app/diagnostics.hpp"
 #include "coupling/dynamics.hpp"
 #include "motion/integrator.hpp"
-#include "output/checkpoint.hpp"
+#include "output/snapshot.hpp"
 #include "stokes/kernels.hpp"
 
 namespace tanktread {
@@ -32,11 +32,11 @@ struct Resumed {
 
 /// The particle at one moment, as a picture shows it.
 struct Portrait {
-  Net surface;                                                                   ///< control net
-  std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;  ///< at the nodes; called on the first rank only
+  Net surface;  ///< control net
+  std::function<std::vector<output::Field>(const output::Nodes& nodes, output::NodeRange range)> fields;
 };
 
-/// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled.
+/// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled, each rank's own.
 class Moving {
  public:
   virtual ~Moving() = default;

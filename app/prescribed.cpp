@@ -124,8 +124,8 @@ Row row(const Scene& scene, const Body& body, const coupling::Resistance& resist
 
 Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) {
   const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
-  return {body.rest, [&body, &s, exact = body.wall ? std::nullopt : exact_body(scene, motion)](const output::Nodes& nodes) {
-            const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
+  return {body.rest, [&body, &s, exact = body.wall ? std::nullopt : exact_body(scene, motion)](const auto& nodes, output::NodeRange range) {
+            const Net f = nodes.values(s.density, range), n = nodes.normals(body.rest, range), x = nodes.values(body.rest, range);
             const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
             std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
             if (exact) {

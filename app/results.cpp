@@ -1,5 +1,7 @@
 #include "app/results.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "output/checkpoint.hpp"
 #include "output/file.hpp"
 #include "output/progress.hpp"
+#include "output/snapshot.hpp"
 #include "output/state.hpp"
 #include "spline/iga.hpp"
 
@@ -78,12 +81,12 @@ Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoi
 
 std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
 
-/// The first rank acts; if it fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else.
-template <class Write>
-void Results::write(const Write& action) {
+/// Ranks act; if one fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else.
+template <class Act>
+void Results::together(bool acts, const Act& action) {
   std::string error;
   bool mistake = false;
-  if (writes_) {
+  if (acts) {
     try {
       action();
     } catch (const std::exception& exception) {
@@ -92,9 +95,15 @@ void Results::write(const Write& action) {
     }
   }
   if (!ranks_.any(!error.empty())) return;
-  if (error.empty()) error = "the first rank could not write";
+  if (error.empty()) error = "another rank could not write";
   if (ranks_.any(mistake)) throw UserError(error);
   throw RunFailure(error);
+}
+
+/// The first rank does.
+template <class Write>
+void Results::write(const Write& action) {
+  together(writes_, action);
 }
 
 std::map<std::string, std::string> Results::origin() const {
@@ -137,7 +146,7 @@ void Results::declare_columns() {
 
 void Results::remesh(const Body& body) {
   body_ = &body;
-  if (writes_) nodes_.emplace(body.space, output::lagrange_mesh(body.space, body.unstressed));
+  nodes_.emplace(body.space, output::lagrange_mesh(body.space, body.unstressed));
 }
 
 std::optional<Resumed> Results::resumed() {
@@ -171,10 +180,15 @@ void Results::write_surface(const Net& surface) {
 
 void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
   last_saved_ = standing.step;
-  write([&] { write_snapshot(state, standing, portrait, picture_time); });
+  const std::filesystem::path path = directory_ / output::snapshot_name(standing.step);
+  write_picture(path, portrait, state, standing, picture_time);
+  write([&] {
+    output::finish(path);
+    series_->add(standing.step, picture_time);
+  });
 }
 
-void Results::write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
+output::Checkpoint Results::checkpoint(const motion::State& state, const Standing& standing, double picture_time) const {
   output::Checkpoint checkpoint;
   output::store(state, checkpoint);
   store(standing, checkpoint);
@@ -183,11 +197,36 @@ void Results::write_snapshot(const motion::State& state, const Standing& standin
   checkpoint.arrays["initial"] = body_->rest;
   checkpoint.texts["deck"] = request_.deck_text;
   if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
+  return checkpoint;
+}
 
-  output::Picture picture = output::picture(*nodes_, portrait.surface);
-  for (output::Field& field : portrait.fields(*nodes_)) picture.point_fields.push_back(std::move(field));
-  output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, picture);
-  series_->add(standing.step, picture_time);
+/// The first rank lays the file out; each fills in its share of the nodes, piece by piece, so that the fields of one stay in the cache.
+void Results::write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
+                            double picture_time) {
+  constexpr int most = 4096;
+  const std::int64_t n = nodes_->all().size(), rank = ranks_.rank(), size = ranks_.size();
+  const int end = static_cast<int>((rank + 1) * n / size);
+  output::NodeRange piece{static_cast<int>(rank * n / size), 0};
+  std::vector<output::Field> fields;
+  const auto evaluate = [&] {
+    piece.end = std::min(piece.begin + most, end);
+    fields = output::picture(*nodes_, portrait.surface, piece);
+    for (output::Field& field : portrait.fields(*nodes_, piece)) fields.push_back(std::move(field));
+  };
+  evaluate();
+  std::vector<std::int64_t> places(fields.size());
+  write([&] { places = output::lay_out_snapshot(path, checkpoint(state, standing, picture_time), nodes_->mesh(), fields); });
+  ranks_.first(places);
+  together(true, [&] {
+    output::SnapshotFields file(path, places);
+    while (true) {
+      file.write(fields, piece);
+      if (piece.end == end) break;
+      piece.begin = piece.end;
+      evaluate();
+    }
+    file.close();
+  });
 }
 
 int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,

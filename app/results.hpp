@@ -11,7 +11,7 @@
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
 #include "motion/integrator.hpp"
-#include "output/lagrange.hpp"
+#include "output/nodes.hpp"
 #include "output/occupation.hpp"
 #include "output/run_record.hpp"
 #include "output/snapshot_series.hpp"
@@ -22,7 +22,8 @@ namespace tanktread {
 constexpr const char* kept_surface = "particle.iga";
 std::string kept_outline(const Scene& scene);  ///< the name of Tube/outline, without its folder
 
-/// The files of a run (README.md, Results). Only the first rank writes; every call is made by all ranks, and all of them throw: RunFailure when the
+/// The files of a run (README.md, Results). The first rank writes, and every one its own nodes of a picture; every call is made by all
+/// ranks, which see one directory, and all of them throw: RunFailure when the
 /// disk refuses, UserError where a run cannot begin in its directory.
 class Results {
  public:
@@ -57,12 +58,16 @@ class Results {
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
+  template <class Act>
+  void together(bool acts, const Act& action);
   template <class Write>
   void write(const Write& action);
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_columns();
-  void write_snapshot(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
+  output::Checkpoint checkpoint(const motion::State& state, const Standing& standing, double picture_time) const;
+  void write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
+                     double picture_time);
   std::string finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
                      const output::Entries<Vec3>& vectors);
   std::map<std::string, std::string> origin() const;
@@ -77,7 +82,7 @@ class Results {
   std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
   std::optional<output::SnapshotSeries> series_;
-  std::optional<output::Nodes> nodes_;  // of the pictures, on the first rank
+  std::optional<output::Nodes> nodes_;  // of the pictures
   std::vector<std::string> warnings_;
   int last_saved_ = -1;
 };

@@ -165,14 +165,21 @@ std::vector<int> Ranks::share(int n) const {
 }
 
 bool Ranks::any(bool mine) const {
+  const auto clock = impl_->time();
   int said = mine, together = 0;
   Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, said, Teuchos::outArg(together));
   return together != 0;
 }
 
 double Ranks::first(double mine) const {
+  const auto clock = impl_->time();
   Teuchos::broadcast(*impl_->comm, 0, &mine);
   return mine;
+}
+
+void Ranks::first(std::span<std::int64_t> numbers) const {
+  const auto clock = impl_->time();
+  Teuchos::broadcast(*impl_->comm, 0, static_cast<int>(numbers.size_bytes()), reinterpret_cast<char*>(numbers.data()));
 }
 
 }  // namespace tanktread::coupling

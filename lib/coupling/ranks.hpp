@@ -1,6 +1,7 @@
 #pragma once
 // Who computes which rows, and how every rank gets all of them.
 
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -34,7 +35,7 @@ class Ranks {
   int rank() const;
   int size() const;
 
-  /// Counts the time of replicate and add, waiting included, to the phase `exchange` from now on; `phases` outlives this.
+  /// Counts the time of all that waits for others, the waiting included, to the phase `exchange` from now on; `phases` outlives this.
   void measure(Phases& phases);
 
   /// States the rows that this rank fills, of nets with n rows; each row has one owner. Collective.
@@ -62,8 +63,9 @@ class Ranks {
   /// Whether any rank says so (a signal, a limit). Collective.
   bool any(bool mine) const;
 
-  /// Rank 0's value, on every rank (a clock). Collective.
+  /// Rank 0's value, on every rank (a clock, places in a file). Collective.
   double first(double mine) const;
+  void first(std::span<std::int64_t> numbers) const;
 
  private:
   struct Impl;

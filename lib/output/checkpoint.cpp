@@ -1,13 +1,12 @@
 #include "output/checkpoint.hpp"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <charconv>
-#include <cstdint>
+#include <cinttypes>
 #include <cstdio>
 #include <stdexcept>
 
-#include "output/file.hpp"
 #include "output/hdf.hpp"
 
 namespace tanktread::output {
@@ -16,49 +15,20 @@ namespace {
 namespace fs = std::filesystem;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::uint8_t kLagrangeQuadrilateral = 70;  // VTK_LAGRANGE_QUADRILATERAL
-
-hdf::Shape shape_of(const Eigen::MatrixXd& matrix) { return {static_cast<hsize_t>(matrix.rows()), static_cast<hsize_t>(matrix.cols())}; }
-
-void write_matrix(hid_t parent, const std::string& name, const Eigen::MatrixXd& matrix, const hdf::Shape& shape) {
-  const RowMajor rows = matrix;
-  hdf::write(parent, name, {rows.data(), static_cast<std::size_t>(rows.size())}, shape);
-}
-
-/// Fields of one component are one-dimensional: ParaView shows them as scalars.
-void write_fields(hid_t parent, const std::string& group_name, const std::vector<Field>& fields) {
-  const hdf::Id group = hdf::new_group(parent, group_name);
-  for (const Field& field : fields) {
-    const auto shape = shape_of(field.values);
-    write_matrix(group, field.name, field.values, shape[1] == 1 ? hdf::Shape{shape[0]} : shape);
+/// Mixes numbers into one that every bit of them changes (a chain of invertible steps, the constants of FNV-1a).
+class Mix {
+ public:
+  void add(std::uint64_t word) { sum_ = std::rotl((sum_ ^ word) * 0x00000100000001b3u, 29); }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(const std::string& text) {
+    add(static_cast<std::uint64_t>(text.size()));
+    for (const char c : text) add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
   }
-}
+  std::uint64_t sum() const { return sum_; }
 
-void write_checkpoint(hid_t file, const Checkpoint& checkpoint) {
-  const hdf::Id root = hdf::new_group(file, "checkpoint");
-  const hdf::Id arrays = hdf::new_group(root, "arrays"), numbers = hdf::new_group(root, "numbers"), texts = hdf::new_group(root, "texts");
-  for (const auto& [name, matrix] : checkpoint.arrays) write_matrix(arrays, name, matrix, shape_of(matrix));
-  for (const auto& [name, number] : checkpoint.numbers) hdf::write(numbers, name, {&number, 1}, {});
-  for (const auto& [name, text] : checkpoint.texts) hdf::write(texts, name, text);
-}
-
-void write_vtk(hid_t file, const Picture& picture) {
-  using Count = std::array<std::int64_t, 1>;
-  const LagrangeMesh& mesh = picture.mesh;
-  const hdf::Id root = hdf::new_group(file, "VTKHDF");
-  hdf::attribute(root, ".", "Version", std::array<std::int64_t, 2>{1, 0});
-  hdf::attribute(root, ".", "Type", "UnstructuredGrid");
-  hdf::write(root, "NumberOfPoints", Count{picture.points.rows()});
-  hdf::write(root, "NumberOfCells", Count{static_cast<std::int64_t>(mesh.offsets.size()) - 1});
-  hdf::write(root, "NumberOfConnectivityIds", Count{static_cast<std::int64_t>(mesh.connectivity.size())});
-  hdf::write(root, "Connectivity", mesh.connectivity);
-  hdf::write(root, "Offsets", mesh.offsets);
-  hdf::write(root, "Types", std::vector<std::uint8_t>(mesh.offsets.size() - 1, kLagrangeQuadrilateral));
-  write_matrix(root, "Points", picture.points, shape_of(picture.points));
-  write_fields(root, "PointData", picture.point_fields);
-  write_fields(root, "CellData", picture.cell_fields);
-  write_fields(root, "FieldData", {});
-}
+ private:
+  std::uint64_t sum_ = 0xcbf29ce484222325u;
+};
 
 /// Step of a snapshot's file name, or -1.
 int step_of(const std::string& name) {
@@ -72,23 +42,25 @@ int step_of(const std::string& name) {
 
 }  // namespace
 
-Picture picture(const Nodes& nodes, const Net& net) {
-  Picture result{nodes.mesh(), nodes.values(net), {}, {}};
-  result.point_fields.push_back({"Normals", nodes.normals(net)});
-  return result;
-}
-
 std::string snapshot_name(int step) {
   char name[40];
   std::snprintf(name, sizeof name, "snapshot_%06d.hdf", step);
   return name;
 }
 
-void write_snapshot(const fs::path& path, const Checkpoint& checkpoint, const Picture& picture) {
-  const hdf::Id file = hdf::new_file();
-  write_checkpoint(file, checkpoint);
-  write_vtk(file, picture);
-  write_whole(path, hdf::image(file));
+std::string checksum(const Checkpoint& checkpoint) {
+  Mix mix;
+  for (const auto& [name, matrix] : checkpoint.arrays) {
+    mix.add(name);
+    mix.add(static_cast<std::uint64_t>(matrix.rows()));
+    mix.add(static_cast<std::uint64_t>(matrix.cols()));
+    for (Eigen::Index k = 0; k < matrix.size(); ++k) mix.add(matrix.data()[k]);
+  }
+  for (const auto& [name, number] : checkpoint.numbers) mix.add(name), mix.add(number);
+  for (const auto& [name, text] : checkpoint.texts) mix.add(name), mix.add(text);
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016" PRIx64, mix.sum());
+  return digits;
 }
 
 Checkpoint read_checkpoint(const fs::path& path) {
@@ -105,6 +77,9 @@ Checkpoint read_checkpoint(const fs::path& path) {
   }
   for (const auto& name : hdf::names(numbers)) checkpoint.numbers[name] = hdf::read_doubles(numbers, name, shape).at(0);
   for (const auto& name : hdf::names(texts)) checkpoint.texts[name] = hdf::read_text(texts, name);
+  const auto keys = hdf::attribute_names(root, ".");  // versions before had no checksum
+  if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(root, ".", "checksum") != checksum(checkpoint))
+    throw std::runtime_error(path.string() + ": the checkpoint is not as it was written");
   return checkpoint;
 }
 

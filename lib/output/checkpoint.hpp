@@ -1,5 +1,5 @@
 #pragma once
-// Saved steps. Each is one closed file, at once an exact checkpoint and a picture for ParaView.
+// Saved steps: what a run goes on from.
 
 #include <filesystem>
 #include <map>
@@ -8,9 +8,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-
-#include "base/types.hpp"
-#include "output/lagrange.hpp"
 
 namespace tanktread::output {
 
@@ -22,31 +19,13 @@ struct Checkpoint {
   std::map<std::string, std::string> texts;
 };
 
-/// A named array on the nodes (n_nodes, k) or on the cells (n_cells, k) of a picture.
-struct Field {
-  std::string name;
-  Eigen::MatrixXd values;
-};
-
-/// The surface as ParaView draws it at one moment.
-struct Picture {
-  const LagrangeMesh& mesh;
-  Eigen::MatrixXd points;           ///< (n_nodes, 3)
-  std::vector<Field> point_fields;  ///< `Normals` among them gives smooth shading
-  std::vector<Field> cell_fields;
-};
-
-/// Points and `Normals` of `net`; further fields are the caller's to add. `nodes` must outlive the picture.
-Picture picture(const Nodes& nodes, const Net& net);
+/// Sixteen digits, others for any checkpoint that differs by a bit, short of a freak of chance; an attribute of `/checkpoint`.
+std::string checksum(const Checkpoint& checkpoint);
 
 /// `snapshot_000123.hdf` for step 123.
 std::string snapshot_name(int step);
 
-/// Writes `/checkpoint` and `/VTKHDF` (version 1.0, UnstructuredGrid) of one step to `path`, whole or not at all.
-/// Throws RunFailure when the disk refuses.
-void write_snapshot(const std::filesystem::path& path, const Checkpoint& checkpoint, const Picture& picture);
-
-/// The checkpoint of a snapshot. Throws std::runtime_error when the file is missing or damaged.
+/// The checkpoint of a snapshot. Throws std::runtime_error when the file is missing or damaged, be it by one bit.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
 /// A snapshot file of a directory.

@@ -3,9 +3,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include "base/errors.hpp"
 
@@ -35,25 +37,59 @@ void remove_where(const fs::path& directory, const Test& test) {
 
 [[noreturn]] void fail(const fs::path& path) { throw RunFailure("cannot write " + path.string() + ": " + std::strerror(errno)); }
 
-/// The unfinished file beside `path`, with all bytes.
-fs::path written_beside(const fs::path& path, std::string_view bytes) {
-  fs::path part = path.string() + std::string(kUnfinished);
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (!file) fail(path);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  if (std::fclose(file) != 0 || !written) fail(path);
-  return part;
+fs::path beside(const fs::path& path) { return path.string() + std::string(kUnfinished); }
+
+void write_beside(const fs::path& path, std::string_view bytes) {
+  Unfinished file(path, Unfinished::Begin::anew);
+  file.write(0, bytes);
+  file.close();
 }
 
 }  // namespace
 
+Unfinished::Unfinished(const fs::path& path, Begin begin)
+    : path_(path), file_(::open(beside(path).c_str(), begin == Begin::anew ? O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC : O_WRONLY | O_CLOEXEC, 0666)) {
+  if (file_ < 0) fail(path_);
+}
+
+Unfinished::~Unfinished() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void Unfinished::write(std::uint64_t at, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) fail(path_);
+    at += static_cast<std::uint64_t>(done);
+    bytes.remove_prefix(static_cast<std::size_t>(done));
+  }
+}
+
+void Unfinished::write(std::uint64_t at, std::span<const double> numbers) {
+  write(at, std::string_view(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()));
+}
+
+void Unfinished::resize(std::uint64_t size) {
+  if (::ftruncate(file_, static_cast<off_t>(size)) != 0) fail(path_);
+}
+
+void Unfinished::close() {
+  if (::close(std::exchange(file_, -1)) != 0) fail(path_);
+}
+
+void finish(const fs::path& path) {
+  if (std::rename(beside(path).c_str(), path.c_str()) != 0) fail(path);
+}
+
 void write_whole(const fs::path& path, std::string_view bytes) {
-  const fs::path part = written_beside(path, bytes);
-  if (std::rename(part.c_str(), path.c_str()) != 0) fail(path);
+  write_beside(path, bytes);
+  finish(path);
 }
 
 void rewrite_whole(const fs::path& path, std::string_view bytes) {
-  const fs::path part = written_beside(path, bytes);
+  write_beside(path, bytes);
+  const fs::path part = beside(path);
   const bool exchanged = renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0;
   if ((exchanged ? std::remove(part.c_str()) : std::rename(part.c_str(), path.c_str())) != 0) fail(path);
 }

@@ -1,11 +1,34 @@
 #pragma once
 // Files that are whole at every moment: written beside their place, then renamed into it.
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace tanktread::output {
+
+/// A file while it is written, beside its place, by any number of processes, each other bytes of it; `finish` puts it there.
+/// All throw RunFailure (disk full, no permission).
+class Unfinished {
+ public:
+  enum class Begin { anew, with_what_is_there };
+  Unfinished(const std::filesystem::path& path, Begin begin);
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+  void write(std::uint64_t at, std::string_view bytes);
+  void write(std::uint64_t at, std::span<const double> numbers);
+  void resize(std::uint64_t size);  ///< what nobody writes is zero
+  void close();                     ///< before finish
+
+ private:
+  std::filesystem::path path_;
+  int file_;
+};
+void finish(const std::filesystem::path& path);
 
 /// Puts `bytes` at `path` in one step: a reader, or a run that is killed here, finds the old file or the new one, never half of one.
 /// Throws RunFailure (disk full, no permission).

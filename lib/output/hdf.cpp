@@ -1,6 +1,8 @@
 #include "output/hdf.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -37,6 +39,12 @@ void write_any(hid_t parent, const std::string& name, hid_t type, const Shape& s
 
 Id dataset(hid_t parent, const std::string& name) { return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "no dataset " + name}; }
 
+/// HDF5 tells open files apart by their names, in memory too.
+std::string memory_name() {
+  static int files = 0;
+  return "memory " + std::to_string(++files);
+}
+
 void trim(std::string& text) { text.erase(text.find_last_not_of('\0') + 1); }
 
 }  // namespace
@@ -54,9 +62,7 @@ Id new_file() {
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list"), layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "no creation list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
   check(H5Pset_istore_k(layout, 1), "no short index");  // a column is one chunk
-  static int files = 0;  // HDF5 tells open files apart by their names, in memory too
-  const std::string name = "memory " + std::to_string(++files);
-  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, layout, access), H5Fclose, "no file in memory"};
+  return {H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, layout, access), H5Fclose, "no file in memory"};
 }
 
 std::string_view image(const Id& file) {
@@ -65,6 +71,60 @@ std::string_view image(const Id& file) {
   void* handle = nullptr;  // of the driver: where its memory begins
   if (size < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
   return {*static_cast<const char**>(handle), static_cast<std::size_t>(size)};
+}
+
+/// HDF5 frees the memory of a file that it closes, unless it is somebody else's.
+struct Draft::Memory {
+  char* begin = nullptr;
+  std::size_t size = 0;
+  ~Memory() { std::free(begin); }
+
+  void* resize(std::size_t new_size) {
+    void* moved = std::realloc(begin, new_size);
+    if (!moved) return nullptr;
+    begin = static_cast<char*>(moved);
+    size = new_size;
+    return moved;
+  }
+
+  H5FD_file_image_callbacks_t callbacks() {
+    using Use = H5FD_file_image_op_t;
+    return {[](std::size_t n, Use, void* self) { return static_cast<Memory*>(self)->resize(n); },
+            [](void* to, const void* from, std::size_t n, Use, void*) { return std::memcpy(to, from, n); },
+            [](void*, std::size_t n, Use, void* self) { return static_cast<Memory*>(self)->resize(n); },
+            [](void*, Use, void*) -> herr_t { return 0; },
+            [](void* self) { return self; },
+            [](void*) -> herr_t { return 0; },
+            this};
+  }
+};
+
+Draft::Draft() : memory_(std::make_unique<Memory>()) {
+  silence();
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
+  H5FD_file_image_callbacks_t callbacks = memory_->callbacks();
+  check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
+  check(H5Pset_file_image_callbacks(access, &callbacks), "no file in memory");
+  check(H5Pset_meta_block_size(access, 1 << 15), "no place for names in front of the data");
+  file_.emplace(H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory");
+}
+Draft::~Draft() = default;
+
+std::int64_t Draft::room(hid_t parent, const std::string& name, const Shape& shape) {
+  const Id space = space_of(shape), how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "no creation list");
+  check(H5Pset_alloc_time(how, H5D_ALLOC_TIME_EARLY), "no early place");
+  check(H5Pset_fill_time(how, H5D_FILL_TIME_NEVER), "no place without values");
+  const Id set(H5Dcreate2(parent, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, "cannot create " + name);
+  const haddr_t place = H5Dget_offset(set);
+  if (place == HADDR_UNDEF && H5Sget_simple_extent_npoints(space) > 0) throw std::runtime_error("HDF5: no place for " + name);
+  return static_cast<std::int64_t>(place);
+}
+
+Draft::Bytes Draft::close() {
+  hsize_t size = 0;
+  check(H5Fget_filesize(*file_, &size), "no size of a file in memory");
+  file_.reset();
+  return {{memory_->begin, std::min<std::size_t>(memory_->size, size)}, size};
 }
 
 Id open(const std::filesystem::path& path) {

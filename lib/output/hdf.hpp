@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +41,29 @@ Id group(hid_t parent, const std::string& name);
 std::vector<std::string> names(hid_t group);  ///< of the members, in alphabetical order
 
 using Shape = std::vector<hsize_t>;  ///< empty: a scalar
+
+/// A new file some of whose datasets others fill on disk. It lives in memory, where those take no room when they are made last.
+class Draft {
+ public:
+  Draft();
+  ~Draft();
+  operator hid_t() const { return *file_; }
+
+  /// A dataset of doubles that has no values yet. Returns where in the file its first one belongs.
+  std::int64_t room(hid_t parent, const std::string& name, const Shape& shape);
+
+  /// Closes the file: its size, and bytes that it begins with. Behind them stands nothing but what is to be filled.
+  struct Bytes {
+    std::string_view first;
+    std::uint64_t size;
+  };
+  Bytes close();
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+  std::optional<Id> file_;
+};
 
 /// Datasets, row-major. `read_*` fill `shape` with what was found.
 void write(hid_t parent, const std::string& name, std::span<const double> values, const Shape& shape);

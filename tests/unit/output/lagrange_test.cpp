@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "output/nodes.hpp"
 #include "patches.hpp"
 
 namespace tanktread::output {
@@ -39,7 +40,7 @@ TEST(LagrangeMesh, NodesStandInTheOrderOfVtk) {
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
   const std::vector<std::array<int, 2>> order{{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 0}, {2, 0}, {3, 1}, {3, 2},
                                               {1, 3}, {2, 3}, {0, 1}, {0, 2}, {1, 1}, {2, 1}, {1, 2}, {2, 2}};
-  const Eigen::MatrixXd points = nodal_values(sheet_.space, mesh, sheet_.net);
+  const Eigen::MatrixXd points = Nodes(sheet_.space, mesh).values(sheet_.net);
   for (int k = 0; k < 16; ++k) {
     EXPECT_NEAR(points(mesh.connectivity[k], 0), order[k][0] / 3., 1e-14);
     EXPECT_NEAR(points(mesh.connectivity[k], 1), order[k][1] / 3., 1e-14);
@@ -49,8 +50,8 @@ TEST(LagrangeMesh, NodesStandInTheOrderOfVtk) {
 TEST(LagrangeMesh, NodesLieOnTheSurfaceWithItsExactNormals) {
   const Sheet sheet_;
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
-  const Eigen::MatrixXd points = nodal_values(sheet_.space, mesh, sheet_.net);
-  const Net normals = nodal_normals(sheet_.space, mesh, sheet_.net);
+  const Eigen::MatrixXd points = Nodes(sheet_.space, mesh).values(sheet_.net);
+  const Net normals = Nodes(sheet_.space, mesh).normals(sheet_.net);
   // Round-off of interpolating heights up to 27.
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     EXPECT_NEAR((points.row(k).transpose() - sheet(points(k, 0), points(k, 1))).norm(), 0, 1e-12);
@@ -58,19 +59,10 @@ TEST(LagrangeMesh, NodesLieOnTheSurfaceWithItsExactNormals) {
   }
 }
 
-TEST(LagrangeMesh, FieldsHaveAnyNumberOfComponents) {
-  const Sheet sheet_;
-  const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
-  const Eigen::MatrixXd height = nodal_values(sheet_.space, mesh, sheet_.net.col(2));
-  ASSERT_EQ(height.cols(), 1);
-  // Products of other shapes round differently; heights are up to 27.
-  EXPECT_LT((height - nodal_values(sheet_.space, mesh, sheet_.net).col(2)).cwiseAbs().maxCoeff(), 1e-13);
-}
-
 TEST(LagrangeMesh, SitesNameThePlaceOfEachNode) {
   const Sheet sheet_;
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
-  const Eigen::MatrixXd points = nodal_values(sheet_.space, mesh, sheet_.net);
+  const Eigen::MatrixXd points = Nodes(sheet_.space, mesh).values(sheet_.net);
   for (std::size_t k = 0; k < mesh.sites.size(); ++k)
     EXPECT_NEAR(points(static_cast<Eigen::Index>(k), 0), mesh.sites[k].element + mesh.sites[k].s, 1e-13);
 }
@@ -88,6 +80,20 @@ TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) 
   }
 }
 
+TEST(Nodes, WhatIsThereDoesNotDependOnTheRangeThatItIsAskedForWith) {
+  const Sheet sheet_;
+  const Nodes nodes(sheet_.space, lagrange_mesh(sheet_.space, sheet_.net));
+  const Net values = nodes.values(sheet_.net), normals = nodes.normals(sheet_.net);
+  const std::vector<surface::Jet> jets = nodes.jets(sheet_.net);
+  for (const NodeRange range : {NodeRange{0, 1}, NodeRange{5, 17}, NodeRange{16, 51}, NodeRange{20, 20}, nodes.all()}) {
+    EXPECT_EQ(nodes.values(sheet_.net, range), values.middleRows(range.begin, range.size()));
+    EXPECT_EQ(nodes.normals(sheet_.net, range), normals.middleRows(range.begin, range.size()));
+    const std::vector<surface::Jet> some = nodes.jets(sheet_.net, range);
+    ASSERT_EQ(some.size(), static_cast<std::size_t>(range.size()));
+    for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k].st, jets[k + static_cast<std::size_t>(range.begin)].st);
+  }
+}
+
 TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   spline::Space space;
   Net net;
@@ -100,8 +106,8 @@ TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   }
   const LagrangeMesh mesh = lagrange_mesh(space, net);
   EXPECT_EQ(mesh.sites.size(), 2u * 12 + 1);
-  const Eigen::MatrixXd points = nodal_values(space, mesh, net);
-  const Net normals = nodal_normals(space, mesh, net);
+  const Eigen::MatrixXd points = Nodes(space, mesh).values(net);
+  const Net normals = Nodes(space, mesh).normals(net);
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const Vec3 exact = -Vec3(2 * points(k, 0), 2 * points(k, 1), 1).normalized();
     // At the pole the normal is taken 1e-4 of the patch inside; the curvature is 2.
