@@ -29,6 +29,7 @@ def main():
     arguments = parser.parse_args()
 
     run = read.run(arguments.results)
+    run.require("taylor_inertia")
     shots = run.snapshots() if arguments.frame is None else [run.snapshot_at(arguments.frame)]
     field = arguments.field
     if field not in shots[0].fields:

@@ -20,7 +20,9 @@ def main():
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in arguments.results]
-    figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 6.4), sharex=True, height_ratios=[3, 2])
+    for run in runs:
+        run.require("taylor_inertia", "taylor_surface", "inclination")
+    figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4 if len(runs) == 1 else 9.8, 6.4), sharex=True, height_ratios=[3, 2])
     known = []
     for run in runs:
         known += [curve for curve in literature.curves(run, arguments.curves) if curve.label not in [one.label for one in known]]
@@ -32,7 +34,7 @@ def main():
     upper.set_ylabel("Taylor parameter D" if arguments.deformation == "taylor_inertia" else "Taylor parameter D (surface)")
     upper.set_ylim(bottom=0)
     upper.set_title(title(runs))
-    upper.legend(loc="lower right")
+    upper.legend(loc="lower right") if len(runs) == 1 else upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     lower.set_ylabel("inclination, degrees")
     lower.set_xlabel("time · shear rate" if all("shear" in str(run.value("Flow/type")) for run in runs) else "time")
     lower.set_xlim(left=0)
@@ -40,11 +42,10 @@ def main():
 
 
 def title(runs):
-    first = runs[0]
-    words = [first.value("Membrane/law"), first.value("Flow/type")]
-    if len(runs) == 1 and first.value("Membrane/capillary number"):
-        words.append(f"Ca = {first.value('Membrane/capillary number'):g}")
-    return ", ".join(str(word) for word in words if word)
+    words = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key))) for key in ("Membrane/law", "Flow/type")]
+    if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
+        words.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
+    return ", ".join(word for word in words if word)
 
 
 def label(run):

@@ -36,7 +36,7 @@ def main():
     figure = plt.figure(figsize=(4 * len(shots), 4 * tall + 5.2), layout="constrained")
     norm, colours = shape.scale([shape.magnitude(shot.fields[arguments.field]) for _, shot in shots])
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
-    surfaces = []
+    surfaces, tops = [], []
     for k, (run, shot) in enumerate(shots):
         surfaces.append(figure.add_subplot(grid[0, k]))
         shape.draw_surface(surfaces[-1], shot, arguments.field, norm, colours, *arguments.view)
@@ -44,10 +44,13 @@ def main():
         surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
         polar = figure.add_subplot(grid[2, k], projection="polar")
         reference = arguments.reference and arguments.reference[min(k, len(arguments.reference) - 1)]
-        draw_variation(polar, shot, arguments.field, reference)
+        tops.append((draw_variation(polar, shot, arguments.field, reference), polar))
         if reference and (k == 0 or len(set(arguments.reference)) > 1):
             polar.legend(loc="upper left", bbox_to_anchor=(-0.1, 0.04))
     share_window(surfaces)
+    for top, polar in tops:
+        if top < 1e-9 * max(top for top, _ in tops):  # rounding, at rest
+            polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
     vector = numpy.ndim(shots[0][1].fields[arguments.field]) > 1
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]), orientation="horizontal",
                     label=f"|{arguments.field}|" if vector else arguments.field)
@@ -94,6 +97,7 @@ def section_variation(shot, field):
 
 
 def draw_variation(axis, shot, field, reference):
+    """Returns how far out it reaches."""
     angle, variation = section_variation(shot, field)
     closed = numpy.append(angle, angle[0] + 2 * numpy.pi)
     top = max(variation.max(), 1.15 * (reference or 0), 1e-12)
@@ -107,6 +111,7 @@ def draw_variation(axis, shot, field, reference):
     axis.tick_params(labelsize=7.5)
     axis.set_title(f"|d {field}/dl| on the section x₂ = 0", fontsize=8.5, loc="center")
     print(f"{shot.path}: largest variation {variation.max():.3g}")
+    return top
 
 
 if __name__ == "__main__":

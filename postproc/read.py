@@ -47,6 +47,12 @@ class Run:
             node = node[part]
         return node
 
+    def require(self, *names):
+        """Ends the program with one sentence unless the run recorded these series."""
+        for name in names:
+            if name not in self.series:
+                sys.exit(f"{self.directory} holds no series {name}; there are: {', '.join(sorted(self.series))}")
+
     def snapshots(self):
         """The saved steps, in order of time; each is read when it is used."""
         series = self.directory / "run.hdf.series"

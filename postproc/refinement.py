@@ -22,6 +22,8 @@ def main():
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in arguments.results]
+    for run in runs:
+        run.require("taylor_inertia", "taylor_surface")
     compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
     heights = [3, 1.5, 1.8] if compares else [3, 1.8]
     figure, axes = plt.subplots(len(heights), 1, figsize=(6.4, 1.25 * sum(heights)), sharex=True, height_ratios=heights)

@@ -140,11 +140,15 @@ def draw_sections(axis, runs, shots):
         pieces = section(shot, x2)
         axis.add_collection(LineCollection(pieces, colors=color, linewidths=1.8, capstyle="round"))
         middle = (pieces.min((0, 1)) + pieces.max((0, 1))) / 2
+        name = f"{run.name}: " if len(runs) > 1 else ""
+        if "taylor_inertia" not in run.series:  # a rigid particle
+            axis.plot([], [], color=color, linewidth=1.8, label=f"{name}t = {shot.time:g}")
+            continue
         angle = numpy.interp(shot.time, run.series["time"], run.series["inclination"])
         deformation = numpy.interp(shot.time, run.series["time"], run.series["taylor_inertia"])
         along = numpy.array([numpy.cos(numpy.radians(angle)), numpy.sin(numpy.radians(angle))])
         reach = numpy.abs((pieces - middle) @ along).max()
-        words = (f"{run.name}: " if len(runs) > 1 else "") + f"inclination {angle:.2f}°, D = {deformation:.4f}"
+        words = f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}"
         axis.plot(*(middle + numpy.outer([-reach, reach], along)).T, color=color, linestyle=(0, (5, 3)), linewidth=1, label=words)
     if runs[0].snapshots()[0].time < shots[0].time:
         axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
@@ -153,7 +157,7 @@ def draw_sections(axis, runs, shots):
     axis.set_xlabel("x₁")
     axis.set_ylabel("x₃")
     axis.set_title("section in the x₁x₃ plane")
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
 
 
 if __name__ == "__main__":

@@ -31,6 +31,8 @@ def main():
     parser.add_argument("--times", type=float, nargs="+", default=TIMES, help="simulated times of the shapes (default: %(default)s)")
     arguments = parser.parse_args()
     runs = [read.run(directory) for directory in arguments.results]
+    for run in runs:
+        run.require("centroid_x1")
     ducts = [duct.duct(directory) for directory in arguments.results]
     style.save(shapes(runs, ducts, arguments.times), arguments.output)
     if arguments.motion:

@@ -40,6 +40,15 @@ def a_run_is_drawn():
     check("colour" in said and "load" in said, said)
 
 
+def a_rigid_particle_is_drawn_and_what_it_does_not_have_is_named():
+    deck(DECK.replace("sphere }", "spheroid, semi-axes: [1.0, 1.0, 0.5], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", ""))
+    run("deck.yaml", "--output", "rigid", "--quiet")
+    _script("shape.py", "rigid")
+    for name in "deformation.py", "animation.py", "refinement.py":
+        said = _script(name, "rigid", code=1)
+        check("no series taylor_inertia" in said and said.count("\n") == 1, said)
+
+
 def help_is_there_and_absent_results_are_named():
     for name in "deformation.py", "shape.py", "read.py", "animation.py":
         check("usage" in _script(name, "--help"), name)
