@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace tanktread::membrane {
 namespace {
@@ -14,16 +15,28 @@ std::vector<int> everything(const spline::Space& space) {
 
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
+/// Zeros where two functions meet on an element.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
-  std::size_t n = 0;
-  for (const spline::Element& e : space.elements) n += e.points.size() * e.points.size();
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(n);
-  for (const spline::Element& e : space.elements)
-    for (int a : e.points)
-      for (int b : e.points) entries.emplace_back(a, b, 0.);
-  Eigen::SparseMatrix<double> matrix(space.n_points, space.n_points);
-  matrix.setFromTriplets(entries.begin(), entries.end());
+  const int n = space.n_points;
+  std::vector<std::vector<int>> around(static_cast<std::size_t>(n));
+  for (std::size_t e = 0; e < space.elements.size(); ++e)
+    for (const int a : space.elements[e].points) around[a].push_back(static_cast<int>(e));
+  std::vector<int> met(static_cast<std::size_t>(n), -1);
+  const auto each_neighbour = [&](int a, int mark, const auto& act) {
+    for (const int e : around[a])
+      for (const int b : space.elements[e].points)
+        if (std::exchange(met[b], mark) != mark) act(b);
+  };
+  Eigen::SparseMatrix<double> matrix(n, n);
+  int* const start = matrix.outerIndexPtr();
+  for (int a = 0; a < n; ++a) {
+    start[a + 1] = start[a];
+    each_neighbour(a, a, [&](int) { ++start[a + 1]; });
+  }
+  matrix.resizeNonZeros(start[n]);
+  std::fill_n(matrix.valuePtr(), start[n], 0.);
+  std::vector<int> next(start, start + n);
+  for (int a = 0; a < n; ++a) each_neighbour(a, n + a, [&](int b) { matrix.innerIndexPtr()[next[b]++] = a; });  // column b: row by row, ascending
   return matrix;
 }
 
@@ -57,17 +70,22 @@ std::vector<Pack> values_at_gauss_points(const Group& g) {
 
 // Functions that an element lacks share slot 0 and add zero to it.
 std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& matrix, const spline::Space& space) {
-  std::vector<int> slots, row(static_cast<std::size_t>(matrix.rows()));
+  std::size_t size = 0;
+  for (const Batch& batch : g.batches) size += static_cast<std::size_t>(2 * pairs(batch) * lanes);
+  std::vector<int> slots(size), row(static_cast<std::size_t>(matrix.rows()));
+  int* out = slots.data();
   for (const Batch& batch : g.batches) {
-    std::vector<std::vector<int>> of_lane;
-    for (const int element : batch.elements) of_lane.push_back(slots_of(space.elements[element].points, matrix, row));
-    for (int a = 0; a < batch.functions; ++a)
-      for (int b = 0; b <= a; ++b)
-        for (bool transposed : {false, true})
-          for (std::size_t l = 0; l < of_lane.size(); ++l) {
-            const int n = static_cast<int>(space.elements[batch.elements[l]].points.size());
-            slots.push_back(a >= n ? 0 : of_lane[l][transposed ? n * b + a : n * a + b]);
-          }
+    for (int l = 0; l < lanes; ++l) {
+      const std::vector<int>& points = space.elements[batch.elements[l]].points;
+      const std::vector<int> mine = slots_of(points, matrix, row);
+      const int n = static_cast<int>(points.size());
+      for (int a = 0, pair = 0; a < n; ++a)
+        for (int b = 0; b <= a; ++b, ++pair) {
+          out[2 * pair * lanes + l] = mine[n * a + b];
+          out[(2 * pair + 1) * lanes + l] = mine[n * b + a];
+        }
+    }
+    out += 2 * pairs(batch) * lanes;
   }
   return slots;
 }
