@@ -31,7 +31,7 @@ const FreeBodyInTube::Solution& FreeBodyInTube::at(const Net& place) const {
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * n + 6);
   Eigen::Map<Net>(rhs.data(), n, 3) = -body_.ambient(flow_);
   const SolveReport report = krylov_.solve(apply, rhs, unknowns_, tolerance_);
-  iterations_ += last_iterations_ = report.iterations;
+  iterations_ += report.iterations;
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
 
   const Net f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);

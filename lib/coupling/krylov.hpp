@@ -18,7 +18,6 @@ namespace tanktread::coupling {
 struct SolveReport {
   int iterations = 0;
   bool converged = false;
-  double achieved = 0;          ///< relative residual that Belos reports
   std::vector<double> history;  ///< relative residual after each iteration; on the first rank, which is the one that speaks
 };
 

@@ -24,13 +24,11 @@ namespace tanktread::coupling {
 /// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is R^-1 A + s c b^T / (b.c), which is regular and gives the f with
 /// no net normal force, int f.n dG = 0, and takes up whatever flux the discrete u has.                                  (2.10)
 ///
-/// In a tube A f - mu u(f) takes the place of A f, u the answer of the wall and the pressure drop (2.5); then the place counts. Fields
-/// stay in the axes that the
-/// body has in `surface`, wherever it has gone.
+/// In a tube A f - mu u(f) takes the place of A f, u the answer of the wall and the pressure drop (2.5); then the place counts. Fields stay in the
+/// axes that the body has in `surface`, wherever it has gone.
 class Resistance {
  public:
-  /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own, and serve for any place and
-  /// orientation.
+  /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own, and serve for any place and orientation.
   /// `tube`: around the body, or nothing; it must outlive this.
   Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
              const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube = nullptr);
@@ -50,10 +48,8 @@ class Resistance {
   /// The pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
 
-  /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the
-  /// collocation sites,
-  /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the
-  /// density of a
+  /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
+  /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
   /// translation (a rotation) of unit size it is what the force (the torque) of f lacks. The remaining error is the fitted surface's own.
   /// `u`: control values of an affine field.
   Eigen::VectorXd residual_work(const Net& u, const Net& f, std::span<const Net> z);

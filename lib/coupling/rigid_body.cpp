@@ -51,7 +51,6 @@ RigidModes::RigidModes(Resistance& body, const Vec3& centre) {
     if (k >= 3 && k < 6) motion.angular_velocity = Vec3::Unit(k - 3);
     const Net u = k < 6 ? rigid_velocity(surface, motion, centre) : Net((surface.rowwise() - centre.transpose()) * unit_strain(k - 6));
     density.push_back(body.force_density(u));
-    largest_iterations = std::max(largest_iterations, body.last_iterations());
     response.col(k) << body.force(density.back()), body.torque(density.back(), centre);
     stresslet[static_cast<size_t>(k)] = body.stresslet(density.back(), centre);
   }

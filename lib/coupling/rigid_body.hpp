@@ -1,5 +1,5 @@
 #pragma once
-// A rigid body that no force and no torque acts on, carried by any affine flow.
+// A rigid body that no force and no torque acts on, carried by an affine flow or in a tube.
 
 #include <array>
 #include <vector>
@@ -27,12 +27,10 @@ struct RigidModes {
   std::vector<Net> density;               ///< force densities on the fluid: three translations, three rotations, five strains
   Eigen::Matrix<double, 6, 11> response;  ///< force and torque of each
   std::array<Mat3, 11> stresslet;         ///< of each
-  int largest_iterations = 0;             ///< of the eleven solves
 };
 
-/// Where a rigid body is, as a net of three rows: the centre; the vector and, first in its row, the scalar part of the quaternion that
-/// turns
-/// the body from its initial place.
+/// Where a rigid body is, as a net of three rows: the centre; the vector and, first in its row, the scalar part of the quaternion that turns the
+/// body from its initial place.
 Net placed(const Vec3& centre);
 Vec3 centre_of(const Net& place);
 Mat3 rotation_of(const Net& place);
@@ -69,9 +67,8 @@ class RigidParticle : public Dynamics {
   long evaluations_ = 0;
 };
 
-/// A free body in an affine flow:  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf/2 + Omega', where (U', Omega')
-/// makes force and torque
-/// vanish in the strain of the flow. A few small matrices a call.
+/// A free body in an affine flow:  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf/2 + Omega', where (U', Omega') makes force
+/// and torque vanish in the strain of the flow. A few small matrices a call.
 class FreeBody : public RigidParticle {
  public:
   FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow);
@@ -79,7 +76,6 @@ class FreeBody : public RigidParticle {
   RigidMotion motion(const Net& place) const override;
   Net force_density(const Net& place) const override;
   Mat3 stresslet(const Net& place) const override;
-  const RigidModes& modes() const { return modes_; }
 
  private:
   Eigen::Matrix<double, 11, 1> amplitudes(const Net& place) const;
@@ -106,7 +102,6 @@ class FreeBodyInTube : public RigidParticle {
   Mat3 stresslet(const Net& place) const override { return at(place).stresslet; }
   double pressure_drop(const Net& place) const override { return at(place).pressure_drop; }
   long solver_iterations() const { return iterations_; }
-  int last_iterations() const { return last_iterations_; }
 
  private:
   struct Solution {
@@ -126,7 +121,6 @@ class FreeBodyInTube : public RigidParticle {
   mutable Solution solution_;
   mutable Eigen::VectorXd unknowns_;
   mutable long iterations_ = 0;
-  mutable int last_iterations_ = 0;
 };
 
 }  // namespace tanktread::coupling

@@ -21,7 +21,6 @@ Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_),
 Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
-double Tube::centroid() const { return particle_->centroid; }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 
 stokes::Evaluations Tube::kernel_evaluations() const {

@@ -34,14 +34,12 @@ struct TubeParameters {
 ///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
 ///   answer    u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
-/// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of
-/// the traction on the wall, dp that of the pressure drop between the ends, Q the flow rate of
-/// v_inf; in quiescent fluid v_inf is the duct's flow of any mean velocity.
+/// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of the traction on the wall, dp that of the pressure
+/// drop between the ends, Q the flow rate of v_inf; in quiescent fluid v_inf is the duct's flow of any mean velocity.
 ///
-/// The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the
-/// particle's centroid. So what depends on the wall alone is assembled and factored once. Points of
-/// the particle are true ones everywhere; nets of the wall are in the wall's frame. Nets are
-/// replicated; calls are collective but for queries.
+/// The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the particle's centroid. So what depends on the wall alone
+/// is assembled and factored once. Points of the particle are true ones everywhere; nets of the wall are in the wall's frame. Nets are replicated;
+/// calls are collective but for queries.
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
@@ -99,7 +97,6 @@ class Tube {
 
   const surface::TubeWall& wall() const;
   const stokes::DuctFlow& flow() const { return *flow_; }
-  double centroid() const;                         ///< x1 of the particle placed
   stokes::Evaluations kernel_evaluations() const;  ///< of both surfaces, the assembly of the wall included
 
  private:

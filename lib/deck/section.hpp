@@ -67,7 +67,7 @@ class Section {
   /// A list handed to another library as it is (Belos, Amesos2, NOX); `field` keeps what the deck gives over its defaults.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
 
-  /// Lists whose names the user chooses (Expect/<name>): `make(name)` returns nothing; it is called with each name and its section.
+  /// Lists whose names the user chooses (Expect/<name>): `use` is called with each name and its section.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
 
   /// Whether the user gave this key (for contradictory alternatives), and its path for messages.

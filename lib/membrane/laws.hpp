@@ -1,7 +1,7 @@
 #pragma once
 // Constitutive laws of a thin membrane: the stored energy per unstressed area as a function of the two surface invariants.
 //
-//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5 (see errata)
+//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5, less 2 there
 //
 // l1, l2: principal stretches. Psi is a force per length (energy per area), and so are all of its derivatives.
 

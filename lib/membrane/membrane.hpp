@@ -5,8 +5,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/SparseCore>
-
 #include "base/types.hpp"
 #include "membrane/bending.hpp"
 #include "membrane/laws.hpp"
@@ -103,9 +101,6 @@ class Tangent {
   const Membrane* membrane_;
   std::unique_ptr<Points> points_;
 };
-
-/// H assembled on all elements: row and column 3 A + c. For tests and for counting unstable modes.
-Eigen::SparseMatrix<double> assembled_tangent(const Membrane& membrane, const Net& x);
 
 /// The unstressed net of a membrane that is inflated to `rest`: X = centre + (x - centre)/(1 + alpha).
 Net unstressed(const Net& rest, const Vec3& centre, double alpha);

@@ -27,9 +27,8 @@ struct Batch {
 /// All elements of one degree of a list, in ascending order, with the Gauss rule that belongs to the degree.
 struct Group {
   int degree = 3, order = 4;
-  std::vector<double> value, slope,
-      bend;                    ///< 1-D Bernstein polynomials, first and second derivatives at the Gauss nodes, [q * (p + 1) + i]
-  std::vector<double> weight;  ///< tensor weights, [q_t * order + q_s]
+  std::vector<double> value, slope, bend;  ///< 1-D Bernstein polynomials, first and second derivatives at the Gauss nodes, [q * (p + 1) + i]
+  std::vector<double> weight;              ///< tensor weights, [q_t * order + q_s]
   std::vector<Batch> batches;
   std::vector<int> points;
   std::vector<Pack> extraction;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "spline/extraordinary_zone.hpp"
-
 namespace tanktread::spline {
 
 ExtendedMesh::ExtendedMesh(TMesh mesh) : mesh_(std::move(mesh)) {
@@ -184,17 +182,6 @@ int ExtendedMesh::overlaps() const {
       if (touches(mesh_, r) && !(mesh_.edges[r.vertex] & (r.slot & 1 ? 10 : 5)) && facing(r.vertex, r.slot, vertex)) ++n;
     }
   return n / 2;
-}
-
-Suitability suitability(const TMesh& mesh) {
-  const ExtendedMesh extended(mesh);
-  Suitability s;
-  s.crossings = extended.crossings();
-  s.overlaps = extended.overlaps();
-  for (int v = 0; v < mesh.lattice->vertices(); ++v)
-    for (int k = 0; k < mesh.lattice->valence(v); ++k)
-      if (mesh.edge(v, k) && !broken_zones(mesh, {{v, k}}, 3).empty()) ++s.broken_zones;
-  return s;
 }
 
 }  // namespace tanktread::spline

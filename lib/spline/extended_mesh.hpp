@@ -75,11 +75,4 @@ class ExtendedMesh {
   int crossings_ = 0;
 };
 
-/// Counted afresh, for tests and assertions.
-struct Suitability {
-  int crossings = 0, overlaps = 0;
-  int broken_zones = 0;  ///< edges off the h lattice within three rings of an extraordinary point
-};
-Suitability suitability(const TMesh& mesh);
-
 }  // namespace tanktread::spline

@@ -13,9 +13,9 @@ namespace tanktread::spline {
 ///
 ///   N_A(s, t) = sum_b extraction(A, b) B_b(s, t),   b = (p + 1) j + i,  B_b = B_i(s) B_j(t)
 ///
-/// Right-handed: x_,s x x_,t points out of the closed surface.
+/// Right-handed: x_,s x x_,t points out of a closed surface, and from a tube's wall into the fluid.
 struct Element {
-  int degree = 3;              ///< p, the same in s and t: 3, or 4 around an extraordinary point under `g1`
+  int degree = 3;              ///< p, the same in s and t: 3, or 4 around an extraordinary point under `g1`; 2 to 6 from a file
   std::vector<int> points;     ///< control-point ids, m of them (16 on a regular element)
   Eigen::MatrixXd extraction;  ///< shape (m, (p + 1)^2); every column sums to 1
   int face = 0;                ///< placement in the T-mesh: macro face, lower left corner and size, in sides of the face
@@ -28,7 +28,7 @@ struct Site {
   double s = 0, t = 0;
 };
 
-/// A spline space on a closed surface: control points 0 .. n_points-1, one generalised Greville site for each.
+/// A spline space on a surface, closed but for a tube's wall: control points 0 .. n_points-1, one generalised Greville site for each.
 struct Space {
   int n_points = 0;
   std::vector<Element> elements;

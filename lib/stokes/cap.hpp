@@ -13,8 +13,7 @@ namespace tanktread::stokes {
 ///
 ///   c(x0) = (1 / 8 pi) int G(x, x0) e1 dS                                                                        (2.13)
 ///
-/// by its closed line integral over the outline, exact for any section. With rho = (x - x0) in the plane, nu the outline's outward
-/// normal there,
+/// by its closed line integral over the outline, exact for any section. With rho = (x - x0) in the plane, nu the outline's outward normal there,
 /// h = place - x0_1 and r^2 = rho^2 + h^2,
 ///
 ///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
@@ -33,9 +32,8 @@ class Cap {
   /// c at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
-  /// Flow rate along x1 through the cap of the double layer of one point: int (1 / 8 pi) v_j T_ijk(y, x) n_k dS(x) with T's index i
-  /// along x1. Of points off the
-  /// plane of the cap.
+  /// Flow rate along x1 through the cap of the double layer of one point: int (1 / 8 pi) v_j T_ijk(y, x) n_k dS(x) with T's index i along x1. Of
+  /// points off the plane of the cap.
   double double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const;
 
   /// Flow rate through the cap of c itself: int c_1 dS.

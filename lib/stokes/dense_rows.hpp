@@ -15,10 +15,9 @@
 
 namespace tanktread::stokes {
 
-/// Rows of a dense operator, as the Jacobian keeps them (float) or as a test needs them (double).
+/// Rows of a dense operator: of doubles where systems are solved with them, of floats where the Jacobian keeps them in fewer bits still.
 template <class Real>
 using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using DenseRows = Rows<float>;
 
 /// Control points, some a target: point[first[k]] .. point[first[k + 1] - 1] are those of target k.
 struct NearPoints {

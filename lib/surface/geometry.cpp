@@ -4,7 +4,6 @@
 #include <numbers>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "surface/integrals_kernel.hpp"
@@ -68,21 +67,19 @@ Geometry::Geometry(const spline::Space& space) : map_(space), all_(space.element
 }
 
 double Geometry::volume(const Net& net) const {
-  const std::vector<double> volumes = block_volumes(net, all_blocks_);
-  return std::accumulate(volumes.begin(), volumes.end(), 0.);
-}
-
-std::vector<double> Geometry::block_volumes(const Net& net, std::span<const int> blocks) const {
   Vec3 mean;
   const Net here = about_mean(net, mean);
-  std::vector<double> volumes(n_blocks(), 0.);
-  for (const int b : blocks)
+  double sum = 0;
+  for (const int b : all_blocks_) {
+    double of_block = 0;
     each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
       double part[kernel::lanes];
       kernel::volume(degree, points, part);
-      for (std::size_t l = 0; l < group.size(); ++l) volumes[b] += part[l];
+      for (std::size_t l = 0; l < group.size(); ++l) of_block += part[l];
     });
-  return volumes;
+    sum += of_block;
+  }
+  return sum;
 }
 
 void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
@@ -139,11 +136,6 @@ Measures Geometry::measures(const Net& net, std::span<const double> of_blocks) {
   return result;
 }
 
-Ellipsoid ellipsoid_of_inertia(const Measures& measures) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(measures.second_moments);
-  return {(5 / measures.volume * solver.eigenvalues().reverse()).cwiseSqrt(), solver.eigenvectors().rowwise().reverse()};
-}
-
 Deformation Geometry::deformation(const Net& net) const { return deformation(net, measures(net)); }
 
 Deformation Geometry::deformation(const Net& net, const Measures& measures) const {
@@ -174,7 +166,5 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
 
 Measures measures(const spline::Space& space, const Net& net) { return Geometry(space).measures(net); }
 double volume(const spline::Space& space, const Net& net) { return Geometry(space).volume(net); }
-Net volume_gradient(const spline::Space& space, const Net& net) { return Geometry(space).volume_gradient(net); }
-Deformation deformation(const spline::Space& space, const Net& net) { return Geometry(space).deformation(net); }
 
 }  // namespace tanktread::surface

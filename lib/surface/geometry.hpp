@@ -36,13 +36,6 @@ struct Measures {
 /// What measures are made of: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
 
-/// Semi-axes (descending), axes (columns) of the ellipsoid with the same second moments, a_i = sqrt(5 m_i / V).
-struct Ellipsoid {
-  Vec3 semi_axes;
-  Mat3 axes;
-};
-Ellipsoid ellipsoid_of_inertia(const Measures& measures);
-
 /// What the series report (6.2). D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
@@ -71,8 +64,6 @@ class Geometry {
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 
-  /// 1/3 oint x.n dG of each block about the mean of the control points: of those asked for, zero for the others. The volume is the sum of all.
-  std::vector<double> block_volumes(const Net& net, std::span<const int> blocks) const;
   int n_blocks() const { return surface::n_blocks(map_.n_elements()); }
 
   /// Both Taylor parameters in the x1 x3 plane, inclination and extents. Of inertia: from the second moments M_11, M_13, M_33; of the
@@ -94,7 +85,5 @@ class Geometry {
 /// The same for a single use.
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
-Net volume_gradient(const spline::Space& space, const Net& net);
-Deformation deformation(const spline::Space& space, const Net& net);
 
 }  // namespace tanktread::surface

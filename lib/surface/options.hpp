@@ -49,7 +49,6 @@ struct ParticleShape {
   Vec3 center = Vec3::Zero();       ///< of the resting shape
   Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees, from the particle's own axes to those of space
 
-  /// Reads the file, if there is one.
   void declare(deck::Section& section);
 
   /// One sentence (UserError) for keys that contradict each other.

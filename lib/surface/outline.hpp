@@ -86,7 +86,7 @@ Outline outline(const TubeOptions& options);
 /// The same as cubic splines on `elements` elements.
 inline Outline outline(const TubeOptions& options, int elements) { return outline(options).spline(elements); }
 
-/// Points of a file as TubeOptions::outline describes it. Throws UserError: one sentence with file, line and numbers.
+/// The outline through the points of a file, as `Tube/outline` describes it. Throws UserError: one sentence with file, line and numbers.
 Outline read_outline(const std::string& path);
 
 }  // namespace tanktread::surface

@@ -7,13 +7,11 @@
 
 namespace tanktread::surface {
 
-/// An outline drawn along x1 from `start` to `end`, open there: cubic splines around (periodic, or
-/// open ones between corners, where nothing is shared) times open cubic knots along, denser around
-/// x1 = 0. The normal x_,s x x_,t (s along x1, t around) points into the fluid.
+/// An outline drawn along x1 from `start` to `end`, open there: cubic splines around (periodic, or open ones between corners, where nothing is
+/// shared) times open cubic knots along, denser around x1 = 0. The normal x_,s x x_,t (s along x1, t around) points into the fluid.
 ///
-/// Control point i n_around + k is number k of ring i; rings ascend along x1. Collocation points
-/// are Greville points, those of the first and last ring on the rims; the ones at a corner are
-/// moved away from it by half of the first spacing, for two sides meet there.
+/// Control point i n_around + k is number k of ring i; rings ascend along x1. Collocation points are Greville points, those of the first and last
+/// ring on the rims; the ones at a corner are moved away from it by half of the first spacing, for two sides meet there.
 struct TubeWall {
   spline::Space space;
   Net net;
@@ -26,9 +24,8 @@ struct TubeWall {
   double radius() const { return outline.radius(); }  ///< R_T
 };
 
-/// The wall of a section over [-length/2, length/2], with the elements and the grading of the
-/// options: density 1 + (g - 1)/(1 + (x1/w)^4), w = R_T or `half_length` of the particle where that
-/// is more.
+/// The wall of a section over [-length/2, length/2], with the elements and the grading of the options: density 1 + (g - 1)/(1 + (x1/w)^4), w = R_T
+/// or `half_length` of the particle where that is more.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
 /// The length that the options ask for: by default 2 pi R_T, or the particle's length and 4.6 R_T where that is more (the disturbance

@@ -98,7 +98,7 @@ void assembled_rows(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   stokes::SingleLayer layer(scene.space, {});
   layer.set_reference(scene.unstressed);
-  stokes::DenseRows rows;
+  stokes::Rows<float> rows;
   double best = 1e9;
   for (auto _ : state) {
     const double start = now();

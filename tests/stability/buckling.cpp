@@ -9,6 +9,7 @@
 
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
+#include "tests/assembled_tangent.hpp"
 #include "tests/evolution.hpp"
 
 namespace tanktread {

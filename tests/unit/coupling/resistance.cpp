@@ -128,7 +128,7 @@ TEST(Resistance, KnowsNothingOfAUniformPressure) {
   const Net u = s.field([](const Vec3& x) -> Vec3 { return Vec3(1, 0, 0) + Vec3(0, 0, 1).cross(x); });
   const Net f = s.body->force_density(u);
   // int f.n dG = 0 is chosen; a multiple of n added to f exerts neither force nor torque.
-  const Net b = surface::volume_gradient(s.space, s.surface);
+  const Net b = surface::Geometry(s.space).volume_gradient(s.surface);
   EXPECT_LT(std::abs(b.cwiseProduct(f).sum()), 1e-8 * b.norm() * f.norm());  // the solver's tolerance
   const Net n = s.body->normal();
   EXPECT_LT((s.body->force(f + 100 * n) - s.body->force(f)).norm(), 1e-10 * s.body->force(f).norm());  // int n dG = 0 holds to round-off

@@ -9,6 +9,7 @@
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
+#include "tests/assembled_tangent.hpp"
 
 namespace tanktread::membrane {
 namespace {

@@ -14,6 +14,7 @@
 #include "spline/extraction.hpp"
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
+#include "suitability.hpp"
 
 namespace tanktread::spline {
 

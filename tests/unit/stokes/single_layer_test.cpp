@@ -57,7 +57,7 @@ TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
       layer.assemble(scene().x, measure, scene().all, a);
       rows.reshaped<Eigen::RowMajor>() = a * scene().f.reshaped<Eigen::RowMajor>();
       EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << rule;  // round-off of sums in another order
-      DenseRows single;
+      Rows<float> single;
       layer.assemble(scene().x, measure, scene().all, single);
       EXPECT_LT((single.cast<double>() - a).cwiseAbs().maxCoeff(), 1e-5 * a.cwiseAbs().maxCoeff()) << rule;  // single precision
     }

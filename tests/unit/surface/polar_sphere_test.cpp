@@ -78,7 +78,7 @@ TEST(PolarSphere, IsClosedAndTurnedOutwards) {
     const Net net = unit_sphere(mesh, space);
     const double exact = 4 * std::numbers::pi / 3;
     EXPECT_NEAR(volume(space, net), exact, 5e-6 * exact);
-    const Net flux = volume_gradient(space, net);
+    const Net flux = Geometry(space).volume_gradient(net);
     EXPECT_LT(flux.colwise().sum().norm(), 1e-13);                             // int n dG = 0
     EXPECT_NEAR(flux.cwiseProduct(net).sum(), 3 * volume(space, net), 1e-12);  // int x.n dG = 3 V
     for (std::size_t e = 0; e < space.elements.size(); ++e) {
@@ -116,7 +116,7 @@ TEST(PolarShapes, StandWhereTheDeckPutsThem) {
     shape.orientation = Vec3(0, 0, 90);  // turns the particle's x1 into x2
     shape.center = Vec3(1, 2, 3);
     const Net net = initial_shape(space, mesh, 0, shape);
-    const Deformation d = deformation(space, net);
+    const Deformation d = Geometry(space).deformation(net);
     EXPECT_NEAR(d.lengths[0], 2, 1e-3);
     EXPECT_NEAR(d.lengths[1], 4, 1e-3);
     EXPECT_LT((measures(space, net).centroid - shape.center).norm(), 1e-5);

@@ -116,7 +116,7 @@ TEST(Shapes, RedCellHasTheVolumeOfItsOutline) {
     const double error = std::abs(volume(cube.space, net) / exact - 1);
     EXPECT_LT(error, before / 8);
     before = error;
-    const Deformation d = deformation(cube.space, net);
+    const Deformation d = Geometry(cube.space).deformation(net);
     EXPECT_NEAR(d.lengths[0], 2, n == 6 ? 2e-2 : 2e-3);
     if (n == 24) {
       EXPECT_LT(error, 1e-5);
@@ -133,7 +133,7 @@ TEST(Shapes, StandWhereTheDeckPutsThem) {
   shape.orientation = Vec3(0, 0, 90);  // turns the particle's x1 into x2
   shape.center = Vec3(1, 2, 3);
   const Net net = cube.shape(shape);
-  const Deformation d = deformation(cube.space, net);
+  const Deformation d = Geometry(cube.space).deformation(net);
   EXPECT_NEAR(d.lengths[0], 2, 1e-3);
   EXPECT_NEAR(d.lengths[1], 4, 1e-3);
   EXPECT_LT((measures(cube.space, net).centroid - shape.center).norm(), 1e-12);
