@@ -29,6 +29,7 @@ class Deforming : public Moving {
   coupling::Dynamics& dynamics() override { return *capsule_; }
   const Body& body() const override { return *body_; }
   Net start() const override { return body_->rest; }
+  const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
   void resume(Resumed& resumed) override {
     if (resumed.body || symmetry(scene_, *body_, resumed.state.x).order() != body_->symmetry.order())

@@ -8,7 +8,6 @@
 
 #include <Eigen/Geometry>
 
-#include "base/errors.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
@@ -84,12 +83,17 @@ double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n
 
 double sum(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.); }
 
+/// The elements of this rank: whole blocks.
+std::vector<int> own_elements(const surface::Geometry& geometry, const coupling::Ranks& ranks) {
+  return surface::elements_of(ranks.share(geometry.n_blocks()), geometry.bezier().n_elements());
+}
+
 /// Ranks share blocks of elements, and sites.
 Whole whole(const Scene& scene, const Body& body, const coupling::Capsule& capsule, const motion::State& state, const coupling::Ranks& ranks) {
   const surface::Geometry& geometry = capsule.geometry();
   const membrane::Membrane& membrane = capsule.membrane();
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
-  const std::vector<int> elements = surface::elements_of(blocks, static_cast<int>(body.space.elements.size()));
+  const std::vector<int> elements = own_elements(geometry, ranks);
   const std::vector<int>& sites = body.symmetry.fundamental();  // the others are images of these
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
@@ -106,21 +110,20 @@ Whole whole(const Scene& scene, const Body& body, const coupling::Capsule& capsu
           std::ranges::max(fastest)};
 }
 
-/// Ranks share the extremes; all throw where one does.
+/// Ranks share the elements.
 surface::Deformation deformation(const surface::Geometry& geometry, const Net& x, const surface::Measures& measures, const coupling::Ranks& ranks) {
-  std::array<surface::Range, surface::Geometry::n_extremes> extremes{};
-  std::string error;
-  try {
-    extremes = geometry.extremes(x, measures.centroid, ranks.share(surface::Geometry::n_extremes));
-  } catch (const RunFailure& failure) {
-    error = failure.what();
+  std::array<surface::Range, surface::Geometry::n_extremes> extremes = geometry.extremes(x, measures.centroid, own_elements(geometry, ranks));
+  const size_t n = 2 * extremes.size();
+  std::vector<double> ends(n * static_cast<size_t>(ranks.size()), 0.);  // of all ranks, one after another
+  for (size_t k = 0; k < extremes.size(); ++k) {
+    double* const own = &ends[n * static_cast<size_t>(ranks.rank()) + 2 * k];
+    own[0] = extremes[k].smallest, own[1] = extremes[k].largest;
   }
-  double failed = !error.empty();
-  std::vector<double> ends;
-  for (const surface::Range& range : extremes) ends.insert(ends.end(), {range.smallest, range.largest});
-  ranks.add_all({ends, std::span(&failed, 1)});
-  if (failed > 0) throw RunFailure(error.empty() ? "the shape cannot be measured" : error);
-  for (size_t k = 0; k < extremes.size(); ++k) extremes[k] = {ends[2 * k], ends[2 * k + 1]};
+  ranks.add(ends);
+  for (size_t k = 0; k < ends.size(); k += 2) {
+    surface::Range& range = extremes[k % n / 2];
+    range = wider(range, {ends[k], ends[k + 1]});
+  }
   return surface::Geometry::deformation(measures, extremes);
 }
 

@@ -70,6 +70,7 @@ class Free : public Moving {
   Net start() const override { return coupling::placed(free_->centre()); }
   void resume(Resumed& resumed) override { before_ = resumed.standing.work.evaluations; }
   bool adapt(motion::State&, Standing&) override { return false; }
+  const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
   const std::vector<Column>& columns() const override { return columns_; }
 

@@ -50,6 +50,7 @@ class Moving {
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual const std::vector<Column>& columns() const = 0;
   virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;
+  virtual const surface::BezierMap& bezier() const = 0;                          ///< the extraction of body()
   virtual Portrait portrait(const motion::State& state) = 0;
 };
 

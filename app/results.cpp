@@ -112,14 +112,14 @@ std::map<std::string, std::string> Results::origin() const {
   return made_by;
 }
 
-Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns,
-                 const coupling::Ranks& ranks)
+Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map,
+                 const std::vector<Column>& columns, const coupling::Ranks& ranks)
     : scene_(scene), request_(request), body_(&body), columns_(columns), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
   write([&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
   });
-  remesh(body);
+  remesh(body, map);
 }
 
 /// The files of a new run.
@@ -144,9 +144,9 @@ void Results::declare_columns() {
   for (const Column& column : columns_) record_->declare(column.name, column.unit, column.description);
 }
 
-void Results::remesh(const Body& body) {
+void Results::remesh(const Body& body, const surface::BezierMap& map) {
   body_ = &body;
-  nodes_.emplace(body.space, output::lagrange_mesh(body.space, body.unstressed));
+  nodes_.emplace(map, output::lagrange_mesh(body.space, body.unstressed));
 }
 
 std::optional<Resumed> Results::resumed() {

@@ -27,13 +27,14 @@ std::string kept_outline(const Scene& scene);  ///< the name of Tube/outline, wi
 /// disk refuses, UserError where a run cannot begin in its directory.
 class Results {
  public:
-  Results(const Scene& scene, const RunRequest& request, const Body& body, const std::vector<Column>& columns, const coupling::Ranks& ranks);
+  Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const std::vector<Column>& columns,
+          const coupling::Ranks& ranks);
 
   /// The newest checkpoint of the directory when the run is resumed; the record is cut back to it. Throws UserError when there is none.
   std::optional<Resumed> resumed();
 
-  /// The body that is drawn from now on.
-  void remesh(const Body& body);
+  /// The body that is drawn from now on, and its extraction.
+  void remesh(const Body& body, const surface::BezierMap& map);
 
   /// One finished step: a row of the record, written at once.
   void record(const std::vector<double>& row);

@@ -17,6 +17,7 @@
 #include "app/warnings.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/kernel_count.hpp"
 #include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
@@ -92,7 +93,7 @@ class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->columns(), ranks_),
+        results_(scene, request, particle_->body(), particle_->bezier(), particle_->columns(), ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);
   }
@@ -100,6 +101,7 @@ class Run {
   int go() {
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particle_->body(), ranks_.size())).c_str(), stdout);
     begin();
+    clock_.emplace(phases_, "time stepping");
     heed_signals();
     output::Progress progress(state_.time, scene_.time.final_time, request_.quiet || ranks_.rank() != 0);
     std::string reason;
@@ -113,6 +115,7 @@ class Run {
     progress.close();
     if (stopped_) reason = by_signal;
     if (results_.last_saved() != standing_.step) save();
+    clock_.reset();
     return end(reason);
   }
 
@@ -121,7 +124,7 @@ class Run {
     if (auto resumed = results_.resumed()) {
       const bool adapted = resumed->body != nullptr;
       particle_->resume(*resumed);
-      if (adapted) results_.remesh(particle_->body());
+      if (adapted) results_.remesh(particle_->body(), particle_->bezier());
       state_ = resumed->state;
       standing_ = resumed->standing;
       watch_.add(standing_.wall_seconds);
@@ -155,7 +158,7 @@ class Run {
     ++standing_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
-    if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body());
+    if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body(), particle_->bezier());
     for (const std::string& sentence : particle_->remarks()) results_.warn(sentence);
     record();
     if (!scene_.tube.present) return;
@@ -202,7 +205,7 @@ class Run {
     const bool doubtful = quality_.jacobian_ratio < 0.25;
     if (scene_.particle.rigid() || (standing_.step % 4 != 0 && !doubtful)) return;
     const auto clock = phases_.time("soundness");
-    quality_ = soundness_(particle_->body(), state_.x, ranks_);
+    quality_ = soundness(particle_->bezier(), state_.x, ranks_);
   }
 
   /// What the step has come near to.
@@ -240,7 +243,7 @@ class Run {
 
   int end(const std::string& reason) {
     if (scene_.output.surface_text) results_.write_surface(particle_->portrait(state_).surface);
-    const output::Entries<long> work = counts(standing_, particle_->work(), particle_->kernel_evaluations());
+    const output::Entries<long> work = counts(standing_, particle_->work(), coupling::of_all(particle_->kernel_evaluations(), ranks_));
     std::ostringstream remark;
     if (!reason.empty()) remark << reason << " at time " << state_.time;
     return results_.close(plan(scene_, particle_->body(), ranks_.size()), work, phases_, remark.str());
@@ -257,6 +260,7 @@ class Run {
   const RunRequest& request_;
   Watch watch_;
   Phases phases_;
+  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up", program_began()};  // of what no other phase counts
   coupling::Ranks ranks_;
   std::unique_ptr<Moving> particle_;
   Results results_;
@@ -269,7 +273,6 @@ class Run {
   bool snapshot_due_ = false;
   bool stopped_ = false;  // within a step, of which nothing is kept
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
-  Soundness soundness_;
   surface::Quality quality_;
   Warnings warnings_{scene_};
 };

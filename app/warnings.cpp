@@ -137,10 +137,8 @@ surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& rank
 
 }  // namespace
 
-surface::Quality Soundness::operator()(const Body& body, const Net& x, const coupling::Ranks& ranks) {
-  const bool same = map_ && map_->n_points() == body.space.n_points && map_->n_elements() == static_cast<int>(body.space.elements.size());
-  if (!same) map_.emplace(body.space);
-  const surface::Quality quality = worst(surface::quality(*map_, x, ranks.share(map_->n_elements())), ranks);
+surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks) {
+  const surface::Quality quality = worst(surface::quality(map, x, ranks.share(map.n_elements())), ranks);
   surface::require_sound(quality);
   return quality;
 }

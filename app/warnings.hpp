@@ -53,14 +53,8 @@ class Warnings {
 /// Stiffness rho of an elastic membrane on elements of size h, 1/time: (4.5) with the mean of the viscosities, or that of waves that are bent.
 double stiffness(const Scene& scene, double h);
 
-/// The quality of a mesh over a run; the extraction is made once a mesh.
-class Soundness {
- public:
-  /// Throws RunFailure where an element is folded or a control point is no number. Ranks share the elements; all throw. Collective.
-  surface::Quality operator()(const Body& body, const Net& x, const coupling::Ranks& ranks);
-
- private:
-  std::optional<surface::BezierMap> map_;
-};
+/// The quality of a shape. Throws RunFailure where an element is folded or a control point is no number. Ranks share the elements; all throw.
+/// Collective.
+surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks);
 
 }  // namespace tanktread

@@ -4,6 +4,12 @@
 
 namespace tanktread {
 
+namespace {
+const Phases::Clock::time_point before_main = Phases::Clock::now();
+}
+
+Phases::Clock::time_point program_began() { return before_main; }
+
 double Phases::seconds(std::string_view name) const {
   const auto it = std::ranges::find(phases_, name, &Phase::name);
   return it == phases_.end() ? 0 : it->seconds;

@@ -20,10 +20,13 @@ class Phases {
     long calls = 0;
   };
 
-  /// Runs the clock of one phase for as long as it lives.
+  using Clock = std::chrono::steady_clock;
+
+  /// Runs the clock of one phase for as long as it lives, or since an earlier time when no other was running.
   class [[nodiscard]] Scope {
    public:
     Scope(Phases& phases, std::string_view name) : phases_(phases) { phases_.enter(name); }
+    Scope(Phases& phases, std::string_view name, Clock::time_point since) : Scope(phases, name) { phases_.since_ = since; }
     ~Scope() { phases_.leave(); }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -40,7 +43,6 @@ class Phases {
   double total() const;                         ///< sum over the phases
 
  private:
-  using Clock = std::chrono::steady_clock;
   void enter(std::string_view name);
   void leave();
   void charge();
@@ -49,5 +51,8 @@ class Phases {
   std::vector<std::size_t> open_;  // positions in phases_, innermost last
   Clock::time_point since_;
 };
+
+/// When the program was started, but for the loading of libraries.
+Phases::Clock::time_point program_began();
 
 }  // namespace tanktread

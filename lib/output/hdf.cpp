@@ -103,18 +103,18 @@ Draft::Draft() : memory_(std::make_unique<Memory>()) {
   silence();
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
   H5FD_file_image_callbacks_t callbacks = memory_->callbacks();
-  check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
+  check(H5Pset_fapl_core(access, 1 << 16, false), "no file in memory");
   check(H5Pset_file_image_callbacks(access, &callbacks), "no file in memory");
   check(H5Pset_meta_block_size(access, 1 << 15), "no place for names in front of the data");
   file_.emplace(H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory");
 }
 Draft::~Draft() = default;
 
-std::int64_t Draft::room(hid_t parent, const std::string& name, const Shape& shape) {
+std::int64_t Draft::room(hid_t parent, const std::string& name, const Shape& shape, hid_t type) {
   const Id space = space_of(shape), how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "no creation list");
   check(H5Pset_alloc_time(how, H5D_ALLOC_TIME_EARLY), "no early place");
   check(H5Pset_fill_time(how, H5D_FILL_TIME_NEVER), "no place without values");
-  const Id set(H5Dcreate2(parent, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, "cannot create " + name);
+  const Id set(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, "cannot create " + name);
   const haddr_t place = H5Dget_offset(set);
   if (place == HADDR_UNDEF && H5Sget_simple_extent_npoints(space) > 0) throw std::runtime_error("HDF5: no place for " + name);
   return static_cast<std::int64_t>(place);

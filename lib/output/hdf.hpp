@@ -49,8 +49,8 @@ class Draft {
   ~Draft();
   operator hid_t() const { return *file_; }
 
-  /// A dataset of doubles that has no values yet. Returns where in the file its first one belongs.
-  std::int64_t room(hid_t parent, const std::string& name, const Shape& shape);
+  /// A dataset that has no values yet. Returns where in the file its first one belongs.
+  std::int64_t room(hid_t parent, const std::string& name, const Shape& shape, hid_t type = H5T_NATIVE_DOUBLE);
 
   /// Closes the file: its size, and bytes that it begins with. Behind them stands nothing but what is to be filled.
   struct Bytes {

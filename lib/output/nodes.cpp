@@ -50,7 +50,7 @@ Nodes::Table Nodes::table(int degree) {
   return result;
 }
 
-Nodes::Nodes(const spline::Space& space, LagrangeMesh mesh) : mesh_(std::move(mesh)), map_(space) {
+Nodes::Nodes(surface::BezierMap map, LagrangeMesh mesh) : mesh_(std::move(mesh)), map_(std::move(map)) {
   for (const surface::Block& block : map_.blocks().blocks) tables_[static_cast<std::size_t>(block.degree)] = table(block.degree);
   const std::int64_t* node = mesh_.connectivity.data();
   for (int e = 0; e < map_.n_elements(); ++e) {

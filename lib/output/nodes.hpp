@@ -22,7 +22,7 @@ struct NodeRange {
 /// What is at a node does not depend, to the last bit, on the range with which it is asked for; without one, all nodes are meant.
 class Nodes {
  public:
-  Nodes(const spline::Space& space, LagrangeMesh mesh);
+  Nodes(surface::BezierMap map, LagrangeMesh mesh);
 
   const LagrangeMesh& mesh() const { return mesh_; }
   NodeRange all() const { return {0, static_cast<int>(mesh_.sites.size())}; }

@@ -25,7 +25,7 @@ std::string key_text(const std::string& name) {
   constexpr std::string_view others[] = {"yes", "no", "on", "off", "y", "n", "true", "false", "null"};
   constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz";
   const bool plain = std::ranges::find(others, name) == std::end(others) && !name.empty() && letters.find(name.front()) != letters.npos &&
-                     name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_ ") == name.npos && name.back() != ' ';
+                     name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_- ") == name.npos && name.back() != ' ';
   return plain ? name : in_quotes(name);
 }
 

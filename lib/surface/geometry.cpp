@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/errors.hpp"
 #include "surface/integrals_kernel.hpp"
 
 namespace tanktread::surface {
@@ -139,18 +140,17 @@ Measures Geometry::measures(const Net& net, std::span<const double> of_blocks) {
 Deformation Geometry::deformation(const Net& net) const { return deformation(net, measures(net)); }
 
 Deformation Geometry::deformation(const Net& net, const Measures& measures) const {
-  constexpr int all[] = {0, 1, 2, 3};
-  return deformation(measures, extremes(net, measures.centroid, all));
+  return deformation(measures, extremes(net, measures.centroid, all_));
 }
 
-std::array<Range, Geometry::n_extremes> Geometry::extremes(const Net& net, const Vec3& centroid, std::span<const int> asked) const {
-  const Patches patches(map_, net);
-  std::array<Range, n_extremes> result{};
-  for (const int k : asked) result[k] = k == 0 ? section_distances(patches, centroid) : coordinate_range(patches, k - 1);
-  return result;
+std::array<Range, Geometry::n_extremes> Geometry::extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const {
+  const Patches patches(map_, net, elements);
+  return {section_distances(patches, centroid), coordinate_range(patches, 0), coordinate_range(patches, 1), coordinate_range(patches, 2)};
 }
 
 Deformation Geometry::deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes) {
+  if (!(extremes[0].smallest <= extremes[0].largest))
+    throw RunFailure("the plane x2 = const. through the centroid misses the surface: it is no longer closed or not a number");
   Deformation result;
   const Mat3& m = measures.second_moments;
   const double mean = (m(0, 0) + m(2, 2)) / 2, difference = (m(0, 0) - m(2, 2)) / 2, radius = std::hypot(difference, m(0, 2));

@@ -72,9 +72,10 @@ class Geometry {
   Deformation deformation(const Net& net) const;
   Deformation deformation(const Net& net, const Measures& measures) const;
 
-  /// The longest and shortest distance (0) and the extents (1, 2, 3) that it needs: those asked for, zero for the others. Throws as it does.
+  /// What it needs, of these elements: longest and shortest distance (0), extents (1, 2, 3); of all, the wider of parts. It throws RunFailure
+  /// when the plane misses the surface.
   static constexpr int n_extremes = 4;
-  std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> asked) const;
+  std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const;
   static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);
 
  private:

@@ -1,5 +1,7 @@
 #include "surface/patch.hpp"
 
+#include <numeric>
+
 #include <Eigen/Geometry>
 
 #include "spline/bernstein.hpp"
@@ -65,14 +67,20 @@ ElementPoints::ElementPoints(const spline::Space& space, const Net& net, int ele
         points_[c * from.extraction.cols() + b] += from.extraction(a, b) * net(from.points[a], c);
 }
 
-Patches::Patches(const BezierMap& map, const Net& net) : patches_(map.n_elements()) {
+Patches::Patches(const BezierMap& map, const Net& net) {
+  std::vector<int> all(map.n_elements());
+  std::iota(all.begin(), all.end(), 0);
+  *this = Patches(map, net, all);
+}
+
+Patches::Patches(const BezierMap& map, const Net& net, std::span<const int> elements) {
   std::size_t size = 0;
-  for (int e = 0; e < map.n_elements(); ++e) size += 3 * map.n_bezier(e);
+  for (const int e : elements) size += 3 * map.n_bezier(e);
   points_.resize(size);
   double* next = points_.data();
-  for (int e = 0; e < map.n_elements(); ++e) {
+  for (const int e : elements) {
     map.points(e, net, next);
-    patches_[e] = {map.degree(e), next};
+    patches_.push_back({map.degree(e), next});
     next += 3 * map.n_bezier(e);
   }
 }

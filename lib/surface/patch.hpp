@@ -1,6 +1,7 @@
 #pragma once
 // One Bezier element with its points in space.
 
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -43,10 +44,11 @@ class ElementPoints {
   std::vector<double> points_;
 };
 
-/// The Bezier points of all elements of a surface.
+/// The Bezier points of all elements of a surface, or of some in their order.
 class Patches {
  public:
   Patches(const BezierMap& map, const Net& net);
+  Patches(const BezierMap& map, const Net& net, std::span<const int> elements);
   int size() const { return static_cast<int>(patches_.size()); }
   const Patch& operator[](int element) const { return patches_[element]; }
 

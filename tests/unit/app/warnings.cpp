@@ -100,13 +100,13 @@ TEST(Soundness, EndsARunWhoseElementFolds) {
   deck::Document deck = deck::read({}, {"Surface/elements per side=4"});
   deck.declare(scene);
   const Body sphere = body(scene);
-  Soundness soundness;
+  const surface::BezierMap map(sphere.space);
   const coupling::Ranks ranks;
-  EXPECT_GT(soundness(sphere, sphere.rest, ranks).jacobian_ratio, 0.4);
+  EXPECT_GT(soundness(map, sphere.rest, ranks).jacobian_ratio, 0.4);
   Net folded = sphere.rest;
   const std::vector<int>& points = sphere.space.elements[14].points;
   folded.row(points[5]) += 3 * (folded.row(points[6]) - folded.row(points[5]));  // pulled over its neighbour
-  EXPECT_THROW(soundness(sphere, folded, ranks), RunFailure);
+  EXPECT_THROW(soundness(map, folded, ranks), RunFailure);
 }
 
 }  // namespace

@@ -36,6 +36,20 @@ TEST(Phases, CountsCallsAndKeepsTheOrderOfFirstEntry) {
   EXPECT_EQ(phases.all()[1].calls, 3);
 }
 
+TEST(Phases, AScopeMayHaveBegunEarlier) {
+  Phases phases;
+  const auto begin = Phases::Clock::now();
+  work(20);
+  {
+    const Phases::Scope scope(phases, "set-up", begin);
+    const auto inner = phases.time("inner");
+  }
+  const double elapsed = std::chrono::duration<double>(Phases::Clock::now() - begin).count();
+  EXPECT_GE(phases.seconds("set-up"), 0.020);
+  EXPECT_LE(phases.total(), elapsed);
+  EXPECT_LE(program_began(), begin);
+}
+
 TEST(Phases, APhaseThatNeverRanHasNoSeconds) { EXPECT_EQ(Phases().seconds("absent"), 0); }
 
 TEST(Phases, SecondsOutsideEveryScopeAreNobodys) {

@@ -27,7 +27,7 @@ struct Scene {
   Scene() {
     add_patch(space, net, 3, [](double s, double t) { return Vec3(s, t, s * t); });
     add_patch(space, net, 4, [](double s, double t) { return Vec3(1 + s, t, (1 + s) * t); });
-    nodes.emplace(space, lagrange_mesh(space, net));
+    nodes.emplace(surface::BezierMap(space), lagrange_mesh(space, net));
   }
   std::vector<Field> fields(NodeRange range) const {
     std::vector<Field> result = picture(*nodes, net, range);

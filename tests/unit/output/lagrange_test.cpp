@@ -40,7 +40,7 @@ TEST(LagrangeMesh, NodesStandInTheOrderOfVtk) {
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
   const std::vector<std::array<int, 2>> order{{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 0}, {2, 0}, {3, 1}, {3, 2},
                                               {1, 3}, {2, 3}, {0, 1}, {0, 2}, {1, 1}, {2, 1}, {1, 2}, {2, 2}};
-  const Eigen::MatrixXd points = Nodes(sheet_.space, mesh).values(sheet_.net);
+  const Eigen::MatrixXd points = Nodes(surface::BezierMap(sheet_.space), mesh).values(sheet_.net);
   for (int k = 0; k < 16; ++k) {
     EXPECT_NEAR(points(mesh.connectivity[k], 0), order[k][0] / 3., 1e-14);
     EXPECT_NEAR(points(mesh.connectivity[k], 1), order[k][1] / 3., 1e-14);
@@ -50,8 +50,8 @@ TEST(LagrangeMesh, NodesStandInTheOrderOfVtk) {
 TEST(LagrangeMesh, NodesLieOnTheSurfaceWithItsExactNormals) {
   const Sheet sheet_;
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
-  const Eigen::MatrixXd points = Nodes(sheet_.space, mesh).values(sheet_.net);
-  const Net normals = Nodes(sheet_.space, mesh).normals(sheet_.net);
+  const Eigen::MatrixXd points = Nodes(surface::BezierMap(sheet_.space), mesh).values(sheet_.net);
+  const Net normals = Nodes(surface::BezierMap(sheet_.space), mesh).normals(sheet_.net);
   // Round-off of interpolating heights up to 27.
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     EXPECT_NEAR((points.row(k).transpose() - sheet(points(k, 0), points(k, 1))).norm(), 0, 1e-12);
@@ -62,14 +62,14 @@ TEST(LagrangeMesh, NodesLieOnTheSurfaceWithItsExactNormals) {
 TEST(LagrangeMesh, SitesNameThePlaceOfEachNode) {
   const Sheet sheet_;
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
-  const Eigen::MatrixXd points = Nodes(sheet_.space, mesh).values(sheet_.net);
+  const Eigen::MatrixXd points = Nodes(surface::BezierMap(sheet_.space), mesh).values(sheet_.net);
   for (std::size_t k = 0; k < mesh.sites.size(); ++k)
     EXPECT_NEAR(points(static_cast<Eigen::Index>(k), 0), mesh.sites[k].element + mesh.sites[k].s, 1e-13);
 }
 
 TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) {
   const Sheet sheet_;
-  const Nodes nodes(sheet_.space, lagrange_mesh(sheet_.space, sheet_.net));
+  const Nodes nodes(surface::BezierMap(sheet_.space), lagrange_mesh(sheet_.space, sheet_.net));
   const std::vector<surface::Jet> jets = nodes.jets(sheet_.net);
   ASSERT_EQ(jets.size(), nodes.mesh().sites.size());
   for (std::size_t k = 0; k < jets.size(); ++k) {
@@ -82,7 +82,7 @@ TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) 
 
 TEST(Nodes, WhatIsThereDoesNotDependOnTheRangeThatItIsAskedForWith) {
   const Sheet sheet_;
-  const Nodes nodes(sheet_.space, lagrange_mesh(sheet_.space, sheet_.net));
+  const Nodes nodes(surface::BezierMap(sheet_.space), lagrange_mesh(sheet_.space, sheet_.net));
   const Net values = nodes.values(sheet_.net), normals = nodes.normals(sheet_.net);
   const std::vector<surface::Jet> jets = nodes.jets(sheet_.net);
   for (const NodeRange range : {NodeRange{0, 1}, NodeRange{5, 17}, NodeRange{16, 51}, NodeRange{20, 20}, nodes.all()}) {
@@ -106,8 +106,8 @@ TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   }
   const LagrangeMesh mesh = lagrange_mesh(space, net);
   EXPECT_EQ(mesh.sites.size(), 2u * 12 + 1);
-  const Eigen::MatrixXd points = Nodes(space, mesh).values(net);
-  const Net normals = Nodes(space, mesh).normals(net);
+  const Eigen::MatrixXd points = Nodes(surface::BezierMap(space), mesh).values(net);
+  const Net normals = Nodes(surface::BezierMap(space), mesh).normals(net);
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const Vec3 exact = -Vec3(2 * points(k, 0), 2 * points(k, 1), 1).normalized();
     // At the pole the normal is taken 1e-4 of the patch inside; the curvature is 2.
