@@ -17,6 +17,7 @@
 #include "app/warnings.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/kernel_count.hpp"
 #include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
@@ -242,7 +243,7 @@ class Run {
 
   int end(const std::string& reason) {
     if (scene_.output.surface_text) results_.write_surface(particle_->portrait(state_).surface);
-    const output::Entries<long> work = counts(standing_, particle_->work(), particle_->kernel_evaluations());
+    const output::Entries<long> work = counts(standing_, particle_->work(), coupling::of_all(particle_->kernel_evaluations(), ranks_));
     std::ostringstream remark;
     if (!reason.empty()) remark << reason << " at time " << state_.time;
     return results_.close(plan(scene_, particle_->body(), ranks_.size()), work, phases_, remark.str());

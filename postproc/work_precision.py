@@ -75,9 +75,9 @@ class Scene:
 
 
 class Point:
-    def __init__(self, picked, default, outcome, error, ranks=1):
+    def __init__(self, picked, default, outcome, error):
         self.picked, self.outcome, self.error = picked, outcome, error
-        self.seconds, self.kernels = outcome.processor_seconds, ranks * outcome.kernel_evaluations  # the first rank counts its own
+        self.seconds, self.kernels = outcome.processor_seconds, outcome.kernel_evaluations
         self.evaluations = outcome.counts.get("evaluations", 1)
         self.label = ", ".join(option for choice, option in picked.items() if option != default[choice]) or "default"
 
@@ -175,7 +175,7 @@ def main():
             print(f"{name}: {'not in this program' if outcome.refused else 'failed'}: {outcome.message}", flush=True)
             rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
             continue
-        point = Point(picked, default, outcome, error_of(outcome), ranks)
+        point = Point(picked, default, outcome, error_of(outcome))
         points.append(point)
         rows.append((*picked.values(), point.error, point.seconds, point.kernels, point.evaluations, ""))
         print(f"{name:44} error {point.error:.2e}  {point.seconds:7.2f} s  {point.kernels:.3g} kernel, {point.evaluations} velocity evaluations", flush=True)

@@ -4,6 +4,7 @@
 import pathlib
 
 import numpy
+import yaml
 
 from harness import check, deck, main, run, series
 
@@ -35,6 +36,11 @@ def _pictures(results):
     return arrays
 
 
+def _kernel_evaluations(results):
+    counts = yaml.safe_load((pathlib.Path(results) / "summary.yaml").read_text())["counts"]
+    return sum(number for name, number in counts.items() if name.startswith("kernel_evaluations"))
+
+
 def _compare_pictures(one, many):
     """Each rank has filled in its own nodes."""
     check(one.keys() == many.keys() and any(name.endswith("Normals") for name in one), one.keys() ^ many.keys())
@@ -50,6 +56,8 @@ def _compare(*settings):
     for ranks in 1, 2, 3:
         run(deck(DECK), *words, "--output", f"on_{ranks}", "--quiet", ranks=ranks)
     for ranks in 2, 3:
+        alone, together = _kernel_evaluations("on_1"), _kernel_evaluations(f"on_{ranks}")  # parts that every rank needs are made by each
+        check(0.99 * alone <= together <= 1.3 * alone, f"{alone} kernel evaluations on one rank, {together} on {ranks}")
         _compare_pictures(_pictures("on_1"), _pictures(f"on_{ranks}"))
         check(_names("on_1") == _names(f"on_{ranks}"), "other series")
         for name in _names("on_1"):
