@@ -10,6 +10,7 @@
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/kernel_count.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
@@ -105,7 +106,8 @@ struct Row {
   std::vector<double> values;
 };
 
-Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s, double seconds) {
+Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
+        const stokes::Evaluations& kernel, double seconds) {
   const surface::Measures measures = surface::measures(body.space, body.rest);
   const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
   const Vec3 &f = s.force, &t = s.torque;
@@ -113,7 +115,7 @@ Row row(const Scene& scene, const Body& body, const coupling::Resistance& resist
                            s.error, s.integral_error, s.torque_error, s.surface.pressure, s.surface.normal,
                            stresslet(0, 0), stresslet(1, 1), stresslet(2, 2), stresslet(0, 1), stresslet(0, 2), stresslet(1, 2),
                            measures.volume, measures.area, static_cast<double>(body.space.n_points), static_cast<double>(s.iterations),
-                           static_cast<double>(resistance.kernel_evaluations().total()), seconds};
+                           static_cast<double>(kernel.total()), seconds};
   Row row;
   for (size_t k = 0; k < std::size(values); ++k) {
     if (std::isnan(values[k])) continue;
@@ -175,7 +177,8 @@ int resist(const Scene& scene, const RunRequest& request) {
   clock.reset();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  const Row only = row(scene, body, resistance, solution, seconds);
+  const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
+  const Row only = row(scene, body, resistance, solution, kernel, seconds);
 
   clock.emplace(phases, "output");
   Results results(scene, request, body, surface::BezierMap(body.space), only.columns, ranks);
@@ -184,7 +187,6 @@ int resist(const Scene& scene, const RunRequest& request) {
   state.x = body.rest;
   results.save(state, {}, portrait(scene, body, solution), state.time);
   clock.reset();
-  const stokes::Evaluations kernel = resistance.kernel_evaluations();
   return results.close(chosen,
                        {{"unknowns", 3L * body.space.n_points},
                         {"solver_iterations", solution.iterations},
