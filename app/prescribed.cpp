@@ -1,16 +1,15 @@
 #include "app/prescribed.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
-#include <optional>
 
 #include "app/results.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "coupling/kernel_count.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
@@ -68,33 +67,27 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
 }
 
 const std::vector<Column>& prescribed_columns() {
-  static const std::vector<Column> all = {
-      {"time", "time", "the problem is steady"},
-      {"drag_x1", "force", "force on the particle, component 1"},
-      {"drag_x2", "force", "force on the particle, component 2"},
-      {"drag_x3", "force", "force on the particle, component 3"},
-      {"torque_x1", "force length", "torque on the particle about its centre, component 1"},
-      {"torque_x2", "force length", "torque on the particle about its centre, component 2"},
-      {"torque_x3", "force length", "torque on the particle about its centre, component 3"},
-      {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
-      {"gap", "length", "smallest distance between particle and wall"},
-      {"drag_error", "1", "|F - F_exact|/|F_exact|"},
-      {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"},
-      {"torque_error", "1", "|T - T_exact|/|T_exact|"},
-      {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n"},
-      {"normal_l2_error", "1", "L2 norm of n_h - n over that of n"},
-      {"stresslet_11", "force length", "particle stresslet, component 11"},
-      {"stresslet_22", "force length", "particle stresslet, component 22"},
-      {"stresslet_33", "force length", "particle stresslet, component 33"},
-      {"stresslet_12", "force length", "particle stresslet, component 12"},
-      {"stresslet_13", "force length", "particle stresslet, component 13"},
-      {"stresslet_23", "force length", "particle stresslet, component 23"},
-      {"volume", "length^3", "enclosed volume"},
-      {"area", "length^2", "area of the surface"},
-      {"n_control_points", "1", "control points of the surface"},
-      {"solver_iterations", "1", "iterations of the linear solver for the traction"},
-      {"kernel_evaluations", "1", "of the layer operator, all rules together"},
-      {"wall_seconds", "s", "time since the run was started"}};
+  static const std::vector<Column> all = [] {
+    std::vector<Column> list = {{"time", "time", "the problem is steady"},
+                                {"drag_x1", "force", "force on the particle, component 1"},
+                                {"drag_x2", "force", "force on the particle, component 2"},
+                                {"drag_x3", "force", "force on the particle, component 3"},
+                                {"torque_x1", "force length", "torque on the particle about its centre, component 1"},
+                                {"torque_x2", "force length", "torque on the particle about its centre, component 2"},
+                                {"torque_x3", "force length", "torque on the particle about its centre, component 3"},
+                                {"drag_error", "1", "|F - F_exact|/|F_exact|"},
+                                {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"},
+                                {"torque_error", "1", "|T - T_exact|/|T_exact|"},
+                                {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n"},
+                                {"normal_l2_error", "1", "L2 norm of n_h - n over that of n"},
+                                {"solver_iterations", "1", "iterations of the linear solver for the traction"},
+                                {"kernel_evaluations", "1", "of the layer operator, all rules together"}};
+    std::ranges::copy(named(tube_columns(), {"disturbed_pressure_drop", "gap"}), std::back_inserter(list));
+    std::ranges::copy(named(columns(), {"stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "volume",
+                                        "area", "n_control_points", "wall_seconds"}),
+                      std::back_inserter(list));
+    return list;
+  }();
   return all;
 }
 
@@ -106,16 +99,14 @@ struct Row {
   std::vector<double> values;
 };
 
-Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
-        const stokes::Evaluations& kernel, double seconds) {
+Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s, double seconds) {
   const surface::Measures measures = surface::measures(body.space, body.rest);
   const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
   const Vec3 &f = s.force, &t = s.torque;
-  const double values[] = {0, f[0], f[1], f[2], t[0], t[1], t[2], s.pressure_drop, s.gap,
-                           s.error, s.integral_error, s.torque_error, s.surface.pressure, s.surface.normal,
+  const double values[] = {0, f[0], f[1], f[2], t[0], t[1], t[2], s.error, s.integral_error, s.torque_error, s.surface.pressure, s.surface.normal,
+                           static_cast<double>(s.iterations), static_cast<double>(resistance.kernel_evaluations().total()), s.pressure_drop, s.gap,
                            stresslet(0, 0), stresslet(1, 1), stresslet(2, 2), stresslet(0, 1), stresslet(0, 2), stresslet(1, 2),
-                           measures.volume, measures.area, static_cast<double>(body.space.n_points), static_cast<double>(s.iterations),
-                           static_cast<double>(kernel.total()), seconds};
+                           measures.volume, measures.area, static_cast<double>(body.space.n_points), seconds};
   Row row;
   for (size_t k = 0; k < std::size(values); ++k) {
     if (std::isnan(values[k])) continue;
@@ -168,25 +159,21 @@ int resist(const Scene& scene, const RunRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases;
-  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up", program_began());
   const Body body = tanktread::body(scene);
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
-  clock.reset();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
-  const Row only = row(scene, body, resistance, solution, kernel, seconds);
+  const Row only = row(scene, body, resistance, solution, seconds);
 
-  clock.emplace(phases, "output");
-  Results results(scene, request, body, surface::BezierMap(body.space), only.columns, ranks);
+  Results results(scene, request, body, only.columns, ranks);
   results.record(only.values);
   motion::State state;
   state.x = body.rest;
   results.save(state, {}, portrait(scene, body, solution), state.time);
-  clock.reset();
+  const stokes::Evaluations kernel = resistance.kernel_evaluations();
   return results.close(chosen,
                        {{"unknowns", 3L * body.space.n_points},
                         {"solver_iterations", solution.iterations},

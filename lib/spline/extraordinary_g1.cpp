@@ -72,37 +72,44 @@ Eigen::MatrixXd averaged_bicubic() {
   return out;
 }
 
-Eigen::MatrixXd constrained_biquartic() {
-  const double w0 = -1;  // 2 cos(2 pi / 3)
-  const Eigen::MatrixXd bicubic = averaged_bicubic();
+namespace {
+
+constexpr double w0 = -1;  // 2 cos(2 pi / 3)
+
+// Unknowns: changes of c1 and of the inner points (v, u) = 11, 12, 21, 22, of each of the three faces and spokes.
+enum { c1, b11, b12, b21, b22, kinds };
+constexpr int unknowns = kinds * N;
+int unknown(int kind, int j) { return kinds * ((j + N) % N) + kind; }
+
+/// The same surface in degree 4: row 5 v + u.
+Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   Eigen::MatrixXd biquartic(25, Ring::size);
-  {
-    const Eigen::MatrixXd up = elevation(3, 4);
-    for (int v = 0; v < 5; ++v)
-      for (int u = 0; u < 5; ++u) {
-        Row sum = Row::Zero();
-        for (int j = 0; j < 4; ++j)
-          for (int i = 0; i < 4; ++i) sum += up(v, j) * up(u, i) * bicubic.row(4 * j + i);
-        biquartic.row(5 * v + u) = sum;
-      }
-  }
+  const Eigen::MatrixXd up = elevation(3, 4);
+  for (int v = 0; v < 5; ++v)
+    for (int u = 0; u < 5; ++u) {
+      Row sum = Row::Zero();
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) sum += up(v, j) * up(u, i) * bicubic.row(4 * j + i);
+      biquartic.row(5 * v + u) = sum;
+    }
+  return biquartic;
+}
 
-  // Unknowns: changes of c1 and of the inner points (v, u) = 11, 12, 21, 22, of each of the three faces and spokes.
-  enum { c1, b11, b12, b21, b22, kinds };
-  auto unknown = [](int kind, int j) { return kinds * ((j + N) % N) + kind; };
-  constexpr int unknowns = kinds * N;
-
+/// The G1 conditions of the spokes, on the changed values: G x = g, three a spoke.
+struct Conditions {
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
+};
+Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biquartic) {
   std::array<Row, N> s0, s1, s2, s3;  // the spoke cubics
-  auto old = [&](int v, int u, int j) { return turned(biquartic.row(5 * v + u), j % N); };
   for (int j = 0; j < N; ++j) {
     s0[j] = turned(bicubic.row(0), j);
     s1[j] = turned(bicubic.row(1), j);
     s2[j] = turned(bicubic.row(2), j);
     s3[j] = turned(bicubic.row(3), j);
   }
-
-  // G1 conditions of the spokes, on the changed values.
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g(3 * N, Ring::size);
+  const auto old = [&](int v, int u, int j) { return turned(biquartic.row(5 * v + u), j % N); };
+  Conditions out;
+  auto& [G, g] = out;
   for (int j = 0; j < N; ++j) {
     const int left = (j + N - 1) % N, right = (j + 1) % N;
     G(3 * j, unknown(c1, left)) += 1;
@@ -120,15 +127,20 @@ Eigen::MatrixXd constrained_biquartic() {
     G(3 * j + 2, unknown(c1, j)) += -1;
     g.row(3 * j + 2) = s1[j] + s2[j] + w0 / 8 * (s3[j] - s2[j]) - old(1, 2, j) - old(2, 1, left);
   }
+  return out;
+}
 
-  // The change on the 5 x 5 grid of face j as rows over the unknowns.
-  auto change = [&](int v, int u, int j) -> Eigen::RowVectorXd {
-    Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
-    if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;
-    if (u == 0 && (v == 1 || v == 2)) d[unknown(c1, j + 1)] = v == 1 ? 0.75 : 0.5;
-    if (u >= 1 && u <= 2 && v >= 1 && v <= 2) d[unknown(v == 1 ? (u == 1 ? b11 : b12) : (u == 1 ? b21 : b22), j)] = 1;
-    return d;
-  };
+/// The change of point (v, u) on the 5 x 5 grid of face j, as a row over the unknowns.
+Eigen::RowVectorXd change(int v, int u, int j) {
+  Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
+  if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;
+  if (u == 0 && (v == 1 || v == 2)) d[unknown(c1, j + 1)] = v == 1 ? 0.75 : 0.5;
+  if (u >= 1 && u <= 2 && v >= 1 && v <= 2) d[unknown(v == 1 ? (u == 1 ? b11 : b12) : (u == 1 ? b21 : b22), j)] = 1;
+  return d;
+}
+
+/// Differences of the changes of neighbours on all grids, whose squares add up to the energy.
+Eigen::MatrixXd differences() {
   Eigen::MatrixXd L(N * 40, unknowns);
   int row = 0;
   for (int j = 0; j < N; ++j)
@@ -137,13 +149,23 @@ Eigen::MatrixXd constrained_biquartic() {
         L.row(row++) = change(a, b + 1, j) - change(a, b, j);
         L.row(row++) = change(b + 1, a, j) - change(b, a, j);
       }
+  return L;
+}
 
-  // min |L x| subject to G x = g: a particular solution plus the kernel of G.
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(G);
-  const Eigen::MatrixXd kernel = lu.kernel(), particular = lu.solve(g);
+/// min |L x| subject to G x = g: a particular solution plus the kernel of G.
+Eigen::MatrixXd least(const Eigen::MatrixXd& L, const Conditions& on) {
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(on.G);
+  const Eigen::MatrixXd kernel = lu.kernel(), particular = lu.solve(on.g);
   const Eigen::MatrixXd LZ = L * kernel;
-  const Eigen::MatrixXd x = particular - kernel * (LZ.transpose() * LZ).ldlt().solve(LZ.transpose() * (L * particular));
+  return particular - kernel * (LZ.transpose() * LZ).ldlt().solve(LZ.transpose() * (L * particular));
+}
 
+}  // namespace
+
+Eigen::MatrixXd constrained_biquartic() {
+  const Eigen::MatrixXd bicubic = averaged_bicubic();
+  Eigen::MatrixXd biquartic = raised(bicubic);
+  const Eigen::MatrixXd x = least(differences(), conditions(bicubic, biquartic));
   for (int v = 0; v < 5; ++v)
     for (int u = 0; u < 5; ++u) biquartic.row(5 * v + u) += change(v, u, 0) * x;
   return biquartic;

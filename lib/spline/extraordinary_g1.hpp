@@ -21,7 +21,7 @@ Eigen::MatrixXd averaged_bicubic();
 /// The spoke cubics c0 .. c3 and all that the outer neighbours need for C1 keep their values; c1 and the four inner points of each face
 /// move as little as they can, in the Dirichlet energy of the change over the 5 x 5 grid of every face, such that over spoke t -> c(t)
 ///
-///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)
+///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///
 /// This is the full least-squares form of the extraction of the paper's reference [70]; the published data leave out the inner point (2, 2)
 /// for the outer points of the ring and so lose the partition of unity.

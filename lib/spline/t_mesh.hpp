@@ -17,8 +17,8 @@ struct TMesh {
   bool edge_of_cell(int c, int k) const { return edge(lattice->corners[c][k], lattice->slot[c][k]); }
 };
 
-/// The uniform mesh on the surface of a cube: n^2 elements a face, n >= 3, and room for `levels` bisections of each element; spaces by extraction.hpp.
-/// Throws UserError when n < 3 (rings of extraordinary points would meet) or when the lattice would not fit into memory.
+/// The uniform mesh on the surface of a cube: n^2 elements a face, n >= 3, and room for `levels` bisections of each element; spaces by
+/// extraction.hpp. Throws UserError when n < 3 (rings of extraordinary points would meet) or when the lattice would not fit into memory.
 TMesh cube(int elements_per_side, int levels = 0);
 
 /// The uniform mesh on a sphere with two poles: m elements around, r from pole to pole, and room for `levels` bisections; spaces by polar.hpp.

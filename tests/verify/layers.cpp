@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -48,30 +49,26 @@ struct Scene {
 
   /// (H v)_i of (2.2) with v = f.
   Net double_reference() const {
-    const verify::BruteForce surface(space, x);
-    std::vector<verify::Casteljau> velocity;
-    for (const spline::Element& e : space.elements) velocity.emplace_back(e, f);
-    Net u(space.n_points, 3);
-    for (int i = 0; i < space.n_points; ++i) {
-      const auto& sites = space.collocation[i];
-      const Vec3 x0 = surface.point(sites.front()), v0 = velocity[sites.front().element](sites.front().s, sites.front().t)[0];
-      u.row(i) = surface.integrate(x0, sites, [&](const verify::SurfacePoint& p) -> Vec3 {
-        return stokes::stresslet(p.x - x0, p.normal) * (velocity[p.element](p.s, p.t)[0] - v0);
-      }) / (8 * std::numbers::pi);
-    }
-    return u;
+    return by_brute_force([](const Vec3& r, const Vec3& n) { return stokes::stresslet(r, n); }, true);
   }
 
   Net reference() const {
+    return by_brute_force([](const Vec3& r, const Vec3&) { return stokes::stokeslet(r); }, false);
+  }
+
+ private:
+  /// (1 / 8 pi) int kernel(x - x_i, n) f dG at every collocation point, or of f - f(x_i).
+  Net by_brute_force(const std::function<Mat3(const Vec3& r, const Vec3& n)>& kernel, bool less_its_own) const {
     const verify::BruteForce surface(space, x);
-    std::vector<verify::Casteljau> load;
-    for (const spline::Element& e : space.elements) load.emplace_back(e, f);
+    std::vector<verify::Casteljau> field;
+    for (const spline::Element& e : space.elements) field.emplace_back(e, f);
     Net u(space.n_points, 3);
     for (int i = 0; i < space.n_points; ++i) {
       const auto& sites = space.collocation[i];
-      const Vec3 x0 = surface.point(sites.front());
+      const Vec3 x0 = surface.point(sites.front()), own = field[sites.front().element](sites.front().s, sites.front().t)[0];
+      const Vec3 f0 = less_its_own ? own : Vec3(Vec3::Zero());
       u.row(i) = surface.integrate(x0, sites, [&](const verify::SurfacePoint& p) -> Vec3 {
-        return stokes::stokeslet(p.x - x0) * load[p.element](p.s, p.t)[0];
+        return kernel(p.x - x0, p.normal) * (field[p.element](p.s, p.t)[0] - f0);
       }) / (8 * std::numbers::pi);
     }
     return u;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "samples.hpp"
+#include "spline/coarsening.hpp"
 #include "spline/extended_mesh.hpp"
 #include "spline/extraction.hpp"
 #include "spline/refinement.hpp"
@@ -17,6 +18,17 @@
 #include "suitability.hpp"
 
 namespace tanktread::spline {
+
+/// The mesh after merging elements wherever that is allowed, until it is `base` again or eight times.
+inline TMesh merged_wherever_allowed(TMesh mesh, const TMesh& base) {
+  for (int round = 0; round < 8 && mesh.edges != base.edges; ++round) {
+    std::vector<Merge> all;
+    for (int i = 0; i < int(elements(mesh).tiles.size()); ++i) all.push_back({i, 3, 3});
+    mesh = coarsen(mesh, all).mesh;
+    EXPECT_EQ(suitability(mesh).crossings, 0);
+  }
+  return mesh;
+}
 
 /// The worst of everything seen along one or more sequences.
 struct Findings {
