@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <optional>
 
 #include "app/results.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/kernel_count.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
@@ -99,12 +101,13 @@ struct Row {
   std::vector<double> values;
 };
 
-Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s, double seconds) {
+Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
+        const stokes::Evaluations& kernel, double seconds) {
   const surface::Measures measures = surface::measures(body.space, body.rest);
   const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
   const Vec3 &f = s.force, &t = s.torque;
   const double values[] = {0, f[0], f[1], f[2], t[0], t[1], t[2], s.error, s.integral_error, s.torque_error, s.surface.pressure, s.surface.normal,
-                           static_cast<double>(s.iterations), static_cast<double>(resistance.kernel_evaluations().total()), s.pressure_drop, s.gap,
+                           static_cast<double>(s.iterations), static_cast<double>(kernel.total()), s.pressure_drop, s.gap,
                            stresslet(0, 0), stresslet(1, 1), stresslet(2, 2), stresslet(0, 1), stresslet(0, 2), stresslet(1, 2),
                            measures.volume, measures.area, static_cast<double>(body.space.n_points), seconds};
   Row row;
@@ -159,21 +162,25 @@ int resist(const Scene& scene, const RunRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases;
+  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up", program_began());
   const Body body = tanktread::body(scene);
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
+  clock.reset();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  const Row only = row(scene, body, resistance, solution, seconds);
+  const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
+  const Row only = row(scene, body, resistance, solution, kernel, seconds);
 
-  Results results(scene, request, body, only.columns, ranks);
+  clock.emplace(phases, "output");
+  Results results(scene, request, body, surface::BezierMap(body.space), only.columns, ranks);
   results.record(only.values);
   motion::State state;
   state.x = body.rest;
   results.save(state, {}, portrait(scene, body, solution), state.time);
-  const stokes::Evaluations kernel = resistance.kernel_evaluations();
+  clock.reset();
   return results.close(chosen,
                        {{"unknowns", 3L * body.space.n_points},
                         {"solver_iterations", solution.iterations},
