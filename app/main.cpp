@@ -39,9 +39,8 @@ void state(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
 
-/// What may not differ from the deck of the checkpoint.
-void check_changes(const std::string& stored, const deck::Document& now) {
-  Scene scene;
+/// What may not differ from the deck of the checkpoint, which is read into `scene`.
+void check_changes(const std::string& stored, const deck::Document& now, Scene& scene) {
   deck::Document before = deck::read_text(stored, "The stored deck");
   before.declare(scene);
   auto old_values = before.values();
@@ -78,10 +77,10 @@ int run(const Arguments& arguments, bool speaks) {
     throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
 
   const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
-  Scene scene;
+  Scene scene, before;
   deck::Document deck = deck::read(arguments.decks, arguments.settings, stored);
   deck.declare(scene);
-  if (resume) check_changes(stored, deck);
+  if (resume) check_changes(stored, deck, before);
   if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
   if (auto& file = scene.particle.shape.file) file = found(*file, kept_surface, arguments);
   scene.particle.shape.read();
@@ -99,6 +98,7 @@ int run(const Arguments& arguments, bool speaks) {
   request.name = named.stem();
   request.output = resume ? arguments.resume : arguments.output.empty() ? "results/" + request.name : arguments.output;
   request.resume = resume;
+  request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   request.quiet = arguments.quiet;
   request.deck_text = deck.effective();
   return simulate(scene, request);

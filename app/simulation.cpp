@@ -126,6 +126,7 @@ class Run {
       particle_->resume(*resumed);
       if (adapted) results_.remesh(particle_->body(), particle_->bezier());
       state_ = resumed->state;
+      if (request_.another_scheme) motion::forget(state_);
       standing_ = resumed->standing;
       watch_.add(standing_.wall_seconds);
       return;

@@ -11,11 +11,12 @@ namespace tanktread {
 
 /// What the command line says beside the deck.
 struct RunRequest {
-  std::string name;       ///< of the run: the deck's file name without its ending
-  std::string output;     ///< directory of the results
-  bool resume = false;    ///< go on from the newest checkpoint there
-  bool quiet = false;     ///< no progress bar
-  std::string deck_text;  ///< the effective deck, to be stored with the results
+  std::string name;             ///< of the run: the deck's file name without its ending
+  std::string output;           ///< directory of the results
+  bool resume = false;          ///< go on from the newest checkpoint there
+  bool another_scheme = false;  ///< than the checkpoint's, of whose memory only shape, slope and step mean something to it
+  bool quiet = false;           ///< no progress bar
+  std::string deck_text;        ///< the effective deck, to be stored with the results
 };
 
 /// What of `Expect` is missed whatever the run finds: a sentence for each time that it does not reach. Throws UserError where a series is expected

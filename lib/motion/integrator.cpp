@@ -24,6 +24,12 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::sh
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
 }
 
+void forget(State& state) {
+  state.history.resize(std::min<std::size_t>(state.history.size(), 1));
+  state.memory.clear();
+  state.secants = {};
+}
+
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options) {
   if (options.fixed_step) return *options.fixed_step;
   const Net& slope = state.history.front();

@@ -25,6 +25,9 @@ struct State {
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if none were
 };
 
+/// Leaves what every scheme understands: place, slope, step and frozen operator. For the state that another scheme made.
+void forget(State& state);
+
 /// What one call of `advance` did.
 struct StepReport {
   double step = 0;        ///< size of the accepted step

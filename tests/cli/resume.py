@@ -133,6 +133,18 @@ def a_damaged_newest_checkpoint_is_passed_over():
     _same_bits("whole", "damaged")
 
 
+def another_scheme_goes_on_from_the_shape():
+    end = "Time/final time=0.6"
+    run(deck(DECK), "--set", end, "--output", "whole", "--quiet")
+    d = series("whole", "taylor_inertia")[-1]
+    crank = ["--set", "Time/step control=error", "--set", "Time/nonlinear solver=anderson"]
+    for one, other, more in ("tr-bdf2", "auto", []), ("auto", "bdf3", []), ("bdf3", "auto", []), ("tr-bdf2", "crank-nicolson", crank), ("rkc2", "auto", []):
+        name = f"{one}_{other}"
+        run("deck.yaml", "--set", "Time/final time=0.3", "--set", f"Time/scheme={one}", "--output", name, "--quiet")
+        run("--resume", name, "--set", end, "--set", f"Time/scheme={other}", *more, "--quiet")
+        check(abs(series(name, "taylor_inertia")[-1] - d) < 2e-4, f"{name}: another D than {d}")  # steps of 1e-5
+
+
 def the_final_time_may_change_and_the_membrane_may_not():
     deck(DECK)
     run("deck.yaml", "--output", "short", "--set", "Time/final time=0.5", "--quiet")
