@@ -200,30 +200,34 @@ output::Checkpoint Results::checkpoint(const motion::State& state, const Standin
   return checkpoint;
 }
 
-/// The first rank lays the file out; each fills in its share of the nodes, piece by piece, so that the fields of one stay in the cache.
+/// The first rank lays the file out, while others evaluate the fields at their nodes already; each fills in its own, piece by piece, and the last
+/// one the cells.
 void Results::write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
                             double picture_time) {
-  constexpr int most = 4096;
+  constexpr int most = 16384;  // shorter pieces take longer to write, longer ones more memory
   const std::int64_t n = nodes_->all().size(), rank = ranks_.rank(), size = ranks_.size();
   const int end = static_cast<int>((rank + 1) * n / size);
   output::NodeRange piece{static_cast<int>(rank * n / size), 0};
   std::vector<output::Field> fields;
-  const auto evaluate = [&] {
-    piece.end = std::min(piece.begin + most, end);
+  const auto evaluate = [&](int length) {
+    piece.end = std::min(piece.begin + length, end);
     fields = output::picture(*nodes_, portrait.surface, piece);
     for (output::Field& field : portrait.fields(*nodes_, piece)) fields.push_back(std::move(field));
   };
-  evaluate();
-  std::vector<std::int64_t> places(fields.size());
-  write([&] { places = output::lay_out_snapshot(path, checkpoint(state, standing, picture_time), nodes_->mesh(), fields); });
+  evaluate(writes_ ? 0 : most);
+  const output::Checkpoint saved = checkpoint(state, standing, picture_time);
+  std::vector<std::int64_t> places(output::n_places(saved, fields));
+  write([&] { places = output::lay_out_snapshot(path, saved, nodes_->mesh(), fields); });
   ranks_.first(places);
   together(true, [&] {
-    output::SnapshotFields file(path, places);
-    while (true) {
-      file.write(fields, piece);
-      if (piece.end == end) break;
+    output::SnapshotParts file(path, places);
+    if (writes_) file.write(saved);
+    if (rank == size - 1) file.write(nodes_->mesh());
+    file.write(fields, piece);
+    while (piece.end < end) {
       piece.begin = piece.end;
-      evaluate();
+      evaluate(most);
+      file.write(fields, piece);
     }
     file.close();
   });

@@ -193,7 +193,9 @@ TEST(Snapshot, IsTheSameFileWhetherOneProcessFillsItOrEachItsNodes) {
   scene.write(scratch / "one", checkpoint);
   const std::vector<std::int64_t> places = lay_out_snapshot(scratch / "many", checkpoint, scene.nodes->mesh(), scene.fields({0, 0}));
   for (const NodeRange range : {NodeRange{20, scene.nodes->all().end}, NodeRange{0, 7}, NodeRange{7, 20}}) {
-    SnapshotFields part(scratch / "many", places);
+    SnapshotParts part(scratch / "many", places);
+    if (range.begin == 0) part.write(checkpoint);
+    if (range.begin == 7) part.write(scene.nodes->mesh());
     part.write(scene.fields(range), range);
     part.close();
     EXPECT_FALSE(exists(scratch / "many"));
