@@ -39,14 +39,16 @@ class Errors:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", nargs="+", help="directories of runs' results")
-    parser.add_argument("--curve", required=True, metavar="FILE", help="the reference: a table with named columns")
+    parser.add_argument("--curve", required=True, metavar="FILE", help="the reference: a table with named columns, here or among the literature's curves")
     parser.add_argument("--series", default="taylor_inertia", help="which series, and column of the curve (default: %(default)s)")
     parser.add_argument("-o", "--output", default="convergence.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    if not pathlib.Path(arguments.curve).is_file():
-        sys.exit(f"{arguments.curve} is no file: give a table with named columns")
-    curve = numpy.genfromtxt(arguments.curve, delimiter=",", names=True)
+    places = [pathlib.Path(arguments.curve), literature.DEFAULT / arguments.curve]
+    table = next((place for place in places if place.is_file()), None)
+    if table is None:
+        sys.exit(f"{arguments.curve} is no file, here or among the literature's curves: give a table with named columns")
+    curve = numpy.genfromtxt(table, delimiter=",", names=True)
     runs = sorted((Errors(read.run(directory), curve, arguments.series) for directory in arguments.results), key=lambda one: one.points)
     families = sorted({one.family for one in runs})
     color = dict(zip(families, style.RUNS * len(families)))

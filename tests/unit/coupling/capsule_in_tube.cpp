@@ -15,7 +15,7 @@
 namespace tanktread::coupling {
 namespace {
 
-/// A capsule of a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube.
+/// A capsule of a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube; or a drop whose control points move as `interface` says.
 struct Confined {
   Ranks ranks;
   Phases phases;
@@ -26,7 +26,7 @@ struct Confined {
   std::optional<surface::TubeWall> wall;
   std::unique_ptr<Capsule> capsule;
 
-  Confined(double viscosity_ratio, const std::string& form) {
+  Confined(double viscosity_ratio, const std::string& form, const std::string& interface = {}) {
     const spline::TMesh mesh = spline::cube(3);
     space = spline::space(mesh, spline::ExtraordinaryRule::g1);
     const surface::LeastSquaresFit fit(space);
@@ -54,6 +54,12 @@ struct Confined {
     parameters.solvers.tolerance = 1e-11;
     parameters.quadrature.tolerance = 1e-7;  // differences of velocities are looked at
     TubeParameters in_tube;
+    if (!interface.empty()) {
+      parameters.law = membrane::SurfaceTension{10};
+      parameters.measure = in_tube.measure = stokes::Measure::current;
+      parameters.interface_motion = interface;
+      parameters.interface_speed = 1;
+    }
     in_tube.viscosity = 1.3;
     in_tube.viscosity_ratio = viscosity_ratio;
     capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
@@ -69,6 +75,19 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
       Confined blocks(ratio, form);
       EXPECT_LT((blocks.capsule->velocity(blocks.x) - v).norm(), 1e-8 * v.norm()) << form;  // residuals of 1e-11, conditions of 1e3
       EXPECT_GT(blocks.capsule->work().velocity_iterations, 0);
+    }
+  }
+}
+
+// The wall answers to the fluid on the interface, and what the mesh does along it is no matter.
+TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove) {
+  for (const double ratio : {0.2, 4.0}) {
+    Confined material(ratio, "schur", "material");
+    const double drop = material.capsule->response(material.x).pressure_drop;
+    for (const char* motion : {"normal", "relaxed"}) {
+      Confined sliding(ratio, "schur", motion);
+      EXPECT_NEAR(sliding.capsule->response(sliding.x).pressure_drop, drop, 1e-9 * std::abs(drop)) << ratio << " " << motion;
+      EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
     }
   }
 }
