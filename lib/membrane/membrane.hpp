@@ -51,9 +51,6 @@ class Membrane {
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
-  /// Principal tensions, smaller first, over the modulus, at the given sites. Shape (sites, 2).
-  Eigen::MatrixX2d tensions(const Net& x, std::span<const spline::Site> sites) const;
-
   /// The strong form t = -div_s tau at a site, bending left out, with second derivatives of both nets. Force per current area. P-3
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 

@@ -68,13 +68,4 @@ Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstress
   return result;
 }
 
-Eigen::MatrixX2d Membrane::tensions(const Net& x, std::span<const spline::Site> sites) const {
-  std::vector<surface::Jet> before, now;
-  for (const auto& [element, s, t] : sites) {
-    before.push_back(surface::jet(surface::ElementPoints(*space_, unstressed_, element).patch(), s, t));
-    now.push_back(surface::jet(surface::ElementPoints(*space_, x, element).patch(), s, t));
-  }
-  return membrane::tensions(law_, before, now);
-}
-
 }  // namespace tanktread::membrane

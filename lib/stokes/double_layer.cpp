@@ -41,18 +41,6 @@ void DoubleLayer::apply(const Net& x, const Net& v, std::span<const int> targets
   integrate(targets, v0, hv);
 }
 
-std::vector<Mat3> DoubleLayer::solid_angle(const Net& x, std::span<const int> targets) {
-  place(x, targets);
-  std::vector<Mat3> angle(targets.size());
-  Net column = Net::Zero(surface_.n_points, 3);
-  for (int j = 0; j < 3; ++j) {
-    take(Vec3::Unit(j).transpose().replicate(surface_.n_points, 1));
-    integrate(targets, std::vector<Vec3>(targets.size(), Vec3::Zero()), column);
-    for (std::size_t k = 0; k < targets.size(); ++k) angle[k].col(j) = column.row(targets[k]).transpose();
-  }
-  return angle;
-}
-
 Stresslets DoubleLayer::nodes() const {
   const auto& node = surface_.node;
   return {surface_.panels.n_nodes(), node[0].data(),      node[1].data(),    node[2].data(),    velocity_[0].data(),

@@ -28,9 +28,6 @@ class DoubleLayer {
   /// Rows `targets` of H v, shape (N, 3), for the velocity with control values v on the surface x.
   void apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv);
 
-  /// (1 / 8 pi) int T_ijk n_k dG at collocation points, which is -delta_ij / 2 (2.3): what the rules make of it.
-  std::vector<Mat3> solid_angle(const Net& x, std::span<const int> targets);
-
   /// The operator itself: three rows a target, in the order of `targets`; shape (3 targets, 3 N).
   void assemble(const Net& x, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& x, std::span<const int> targets, Rows<double>& a);

@@ -58,7 +58,6 @@ Net DuctFlow::tractions(const Net& x, const Net& n) const {
 
 Vec3 DuctFlow::velocity(const Vec3& x) const { return velocities(Net(x.transpose())).row(0); }
 Mat3 DuctFlow::gradient(const Vec3& x) const { return gradients(Net(x.transpose()))[0]; }
-Vec3 DuctFlow::traction(const Vec3& x, const Vec3& n) const { return tractions(Net(x.transpose()), Net(n.transpose())).row(0); }
 
 DuctFlow::Maximum DuctFlow::maximum() const {
   constexpr int grid = 40;

@@ -36,9 +36,8 @@ class DuctFlow {
 
   Vec3 velocity(const Vec3& x) const;
   Mat3 gradient(const Vec3& x) const;                 ///< L_ij = dv_i/dx_j; only L_12 and L_13 are not zero
-  Vec3 traction(const Vec3& x, const Vec3& n) const;  ///< f_inf = (-p 1 + 2 mu E) n, p = -G x1: full, of the outer viscosity
   Net velocities(const Net& x) const;                 ///< a row each; much faster than one by one
-  Net tractions(const Net& x, const Net& n) const;
+  Net tractions(const Net& x, const Net& n) const;    ///< f_inf = (-p 1 + 2 mu E) n, p = -G x1: full, of the outer viscosity
   std::vector<Mat3> gradients(const Net& x) const;
 
   const surface::Outline& outline() const { return outline_; }

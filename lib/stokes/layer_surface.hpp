@@ -40,8 +40,8 @@ class LayerSurface {
   /// Collocation points of the shape.
   void collocation_points(std::span<const int> targets, std::vector<Vec3>& at);
 
-  /// Far nodes of some panels, panel by panel, and some collocation points with all their images into a tree. Clusters must not depend on who asks for
-  /// which targets: all who share the sums give the same.
+  /// Far nodes of some panels, panel by panel, and some collocation points with all their images into a tree. Clusters must not depend on who asks
+  /// for which targets: all who share the sums give the same.
   void place(TreeSum& tree, std::span<const int> some, std::span<const int> points);
 
   /// Those of all panels, and all collocation points (and images, where there is a symmetry).

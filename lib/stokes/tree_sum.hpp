@@ -20,8 +20,8 @@ class TreeSum {
   /// `tolerance`: of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance);
 
-  /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all n targets. Row i + n k of the sums is that of the
-  /// image of target i in reflections[k - 1]; the clusters of images are the images of clusters.
+  /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all n targets. Row i + n k of the sums is that of
+  /// the image of target i in reflections[k - 1]; the clusters of images are the images of clusters.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 

@@ -31,22 +31,6 @@ Blocks blocks_by_degree(const spline::Space& space) {
   return result;
 }
 
-Eigen::MatrixXd bezier_points(const spline::Space& space, const Block& block, const Net& net) {
-  const int n_e = static_cast<int>(block.elements.size());
-  const int n_b = (block.degree + 1) * (block.degree + 1);
-  Eigen::MatrixXd result(n_b, 3 * n_e);
-  for (int k = 0; k < n_e; ++k) {
-    const spline::Element& element = space.elements[block.elements[k]];
-    for (int b = 0; b < n_b; ++b) {
-      Vec3 sum = Vec3::Zero();
-      for (int a = 0; a < static_cast<int>(element.points.size()); ++a)
-        sum += element.extraction(a, b) * net.row(element.points[a]).transpose();
-      for (int c = 0; c < 3; ++c) result(b, c * n_e + k) = sum[c];
-    }
-  }
-  return result;
-}
-
 BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), blocks_(blocks_by_degree(space)) {
   std::unordered_map<std::string, int> known;
   for (const spline::Element& element : space.elements) {
@@ -95,15 +79,6 @@ void BezierMap::add_transposed(int element, const double* in, Net& net) const {
   three_sums(operation.m, operation.n_b, operation.by_bezier.data(), [&](int b, int c) { return in[c * operation.n_b + b]; }, out);
   for (int a = 0; a < operation.m; ++a)
     for (int c = 0; c < 3; ++c) net(ids[a], c) += out[c * operation.m + a];
-}
-
-void BezierMap::add_transposed(int element, const double* in, Eigen::VectorXd& field) const {
-  const Operator& operation = operators_[elements_[element].operation];
-  const int* ids = points_.data() + elements_[element].first;
-  std::vector<double> values(operation.m);
-  for (int b = 0; b < operation.n_b; ++b)
-    for (int a = 0; a < operation.m; ++a) values[a] += operation.by_bezier[b * operation.m + a] * in[b];
-  for (int a = 0; a < operation.m; ++a) field[ids[a]] += values[a];
 }
 
 }  // namespace tanktread::surface

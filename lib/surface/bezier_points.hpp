@@ -22,10 +22,6 @@ struct Blocks {
 };
 Blocks blocks_by_degree(const spline::Space& space);
 
-/// Bezier points of every element of a block. Column c * n_e + k holds component c of element k: shape ((p+1)^2, 3 n_e), column-major,
-/// so that (Bernstein table) * (this) gives one contiguous array a component over all nodes of all elements.
-Eigen::MatrixXd bezier_points(const spline::Space& space, const Block& block, const Net& net);
-
 /// The extraction of a space as a map between control nets and Bezier points, made once a mesh and good for any number of nets.
 /// Equal extraction matrices are kept once (a uniform mesh has one for nearly all elements), so they stay in the cache.
 class BezierMap {
@@ -41,15 +37,13 @@ class BezierMap {
   /// Bezier points of one element, `out` of shape (3, n_b): all of x1, then x2, then x3.
   void points(int element, const Net& net, double* out) const;
 
-  /// The same for every element of a block, shape ((p+1)^2, 3 n_e) as above; `out` is resized only if it has another shape.
+  /// The same for the n_e elements of a block: column c n_e + k holds component c of element k, shape ((p+1)^2, 3 n_e), column-major, so that
+  /// (Bernstein table) * (this) gives one contiguous array a component over all nodes of all elements. `out` is resized only if it has another shape.
   void points(const Block& block, const Net& net, Eigen::MatrixXd& out) const;
 
   /// The transpose of `points`: net_A += sum_b extraction(A, b) in_b, with `in` of shape (3, n_b). Turns derivatives with respect to
   /// Bezier points into derivatives with respect to control points.
   void add_transposed(int element, const double* in, Net& net) const;
-
-  /// The same for a scalar quantity, `in` of length n_b, `field` of length N.
-  void add_transposed(int element, const double* in, Eigen::VectorXd& field) const;
 
  private:
   struct Operator {

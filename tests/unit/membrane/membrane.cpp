@@ -183,6 +183,16 @@ TEST(Membrane, PreInflationLeavesTheStretchOneToOnePlusAlpha) {
   EXPECT_NEAR(membrane.tension_summary(rest).smallest, principal_tensions(NeoHookean{1}, 1.05, 1.05)[0], 1e-12);  // round-off
 }
 
+/// Principal tensions of a membrane at some sites, smaller first, over the modulus.
+Eigen::MatrixX2d tensions_at(const Membrane& membrane, const Net& x, std::span<const spline::Site> sites) {
+  std::vector<surface::Jet> before, now;
+  for (const auto& [element, s, t] : sites) {
+    before.push_back(surface::jet(surface::ElementPoints(membrane.space(), membrane.unstressed(), element).patch(), s, t));
+    now.push_back(surface::jet(surface::ElementPoints(membrane.space(), x, element).patch(), s, t));
+  }
+  return tensions(membrane.law(), before, now);
+}
+
 /// x = F X: at the pole on x3 the stretches are those of F in the x1 x2 plane.
 TEST(Membrane, PrincipalTensionsOfAHomogeneousStretch) {
   const Sphere& s = sphere(4);  // an even mesh has a vertex on each axis
@@ -194,7 +204,7 @@ TEST(Membrane, PrincipalTensionsOfAHomogeneousStretch) {
       const Net x = s.net * Vec3(l1, l2, 0.7).asDiagonal();
       auto expected = principal_tensions(law, l1, l2);
       if (expected[0] > expected[1]) std::swap(expected[0], expected[1]);
-      const auto found = Membrane(s.space, s.net, law).tensions(x, std::span(&site, 1));
+      const auto found = tensions_at(Membrane(s.space, s.net, law), x, std::span(&site, 1));
       EXPECT_NEAR(found(0, 0), expected[0] / modulus(law), 1e-12);  // round-off
       EXPECT_NEAR(found(0, 1), expected[1] / modulus(law), 1e-12);
     }
@@ -210,8 +220,8 @@ TEST(Membrane, SmallestTensionIsTheSmallestOfItsPoints) {
     if (s.space.elements[e].degree == 3)
       for (int q = 0; q < rule.size(); ++q) sites.push_back({e, rule.s[q], rule.t[q]});
   const TensionSummary summary = membrane.tension_summary(x);
-  EXPECT_LE(summary.smallest, membrane.tensions(x, sites).col(0).minCoeff() + 1e-12);  // points of other elements may be lower
-  EXPECT_NEAR(summary.smallest, membrane.tensions(x, sites).col(0).minCoeff(), 0.05);
+  EXPECT_LE(summary.smallest, tensions_at(membrane, x, sites).col(0).minCoeff() + 1e-12);  // points of other elements may be lower
+  EXPECT_NEAR(summary.smallest, tensions_at(membrane, x, sites).col(0).minCoeff(), 0.05);
   EXPECT_GT(summary.compressed_area, 0);
   EXPECT_LT(summary.compressed_area, 1);
 }

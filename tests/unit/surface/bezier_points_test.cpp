@@ -22,22 +22,21 @@ TEST(BezierPoints, BlocksHoldEveryElementOnceGroupedByDegree) {
   }
 }
 
-TEST(BezierPoints, MapAndFreeFunctionAndDefinitionAgree) {
+TEST(BezierPoints, MapAndDefinitionAgree) {
   const CubeMesh cube(3);
   const Net net = cube.crumpled(0.1);
   const BezierMap map(cube.space);
   for (const Block& block : map.blocks().blocks) {
-    const Eigen::MatrixXd direct = bezier_points(cube.space, block, net);
     Eigen::MatrixXd mapped;
     map.points(block, net, mapped);
-    EXPECT_LT((direct - mapped).cwiseAbs().maxCoeff(), 1e-14);  // sums of 19 terms of order one
     const int n_e = static_cast<int>(block.elements.size());
     for (int k = 0; k < n_e; ++k) {
       const spline::Element& element = cube.space.elements[block.elements[k]];
       Net local(element.points.size(), 3);
       for (std::size_t a = 0; a < element.points.size(); ++a) local.row(a) = net.row(element.points[a]);
       const Eigen::MatrixXd expected = element.extraction.transpose() * local;
-      for (int c = 0; c < 3; ++c) EXPECT_LT((direct.col(c * n_e + k) - expected.col(c)).cwiseAbs().maxCoeff(), 1e-14);
+      for (int c = 0; c < 3; ++c)  // sums of 19 terms of order one
+        EXPECT_LT((mapped.col(c * n_e + k) - expected.col(c)).cwiseAbs().maxCoeff(), 1e-14);
     }
   }
 }
@@ -53,9 +52,6 @@ TEST(BezierPoints, BackwardMapIsTheTranspose) {
     Net dual = Net::Zero(map.n_points(), 3);
     map.add_transposed(e, weights.data(), dual);
     EXPECT_NEAR(points.dot(weights), dual.cwiseProduct(net).sum(), 1e-12);
-    Eigen::VectorXd scalar = Eigen::VectorXd::Zero(map.n_points());
-    map.add_transposed(e, weights.data() + map.n_bezier(e), scalar);
-    EXPECT_LT((scalar - dual.col(1)).cwiseAbs().maxCoeff(), 1e-14);
   }
 }
 
