@@ -33,17 +33,23 @@ Blocks blocks_by_degree(const spline::Space& space) {
 
 BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), blocks_(blocks_by_degree(space)) {
   std::unordered_map<std::string, int> known;
+  const Eigen::MatrixXd* last = nullptr;  // of the element before, which mostly has the same
+  int operation = 0;
   for (const spline::Element& element : space.elements) {
     const Eigen::MatrixXd& c = element.extraction;
-    const auto [found, fresh] = known.try_emplace(bytes(c), static_cast<int>(operators_.size()));
-    if (fresh) {
-      Operator operation{static_cast<int>(c.rows()), static_cast<int>(c.cols()), {}, {}};
-      operation.by_bezier.assign(c.data(), c.data() + c.size());
-      for (int a = 0; a < operation.m; ++a)
-        for (int b = 0; b < operation.n_b; ++b) operation.by_function.push_back(c(a, b));
-      operators_.push_back(std::move(operation));
+    if (!last || last->rows() != c.rows() || last->cols() != c.cols() || *last != c) {
+      const auto [found, fresh] = known.try_emplace(bytes(c), static_cast<int>(operators_.size()));
+      operation = found->second;
+      if (fresh) {
+        Operator map{static_cast<int>(c.rows()), static_cast<int>(c.cols()), {}, {}};
+        map.by_bezier.assign(c.data(), c.data() + c.size());
+        for (int a = 0; a < map.m; ++a)
+          for (int b = 0; b < map.n_b; ++b) map.by_function.push_back(c(a, b));
+        operators_.push_back(std::move(map));
+      }
     }
-    elements_.push_back({element.degree, static_cast<int>(points_.size()), found->second});
+    last = &c;
+    elements_.push_back({element.degree, static_cast<int>(points_.size()), operation});
     points_.insert(points_.end(), element.points.begin(), element.points.end());
   }
 }
