@@ -204,7 +204,7 @@ output::Checkpoint Results::checkpoint(const motion::State& state, const Standin
 /// one the cells.
 void Results::write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
                             double picture_time) {
-  constexpr int most = 16384;  // shorter pieces take longer to write, longer ones more memory
+  constexpr int most = 4096;  // shorter pieces take longer to write, longer ones wait for those of others
   const std::int64_t n = nodes_->all().size(), rank = ranks_.rank(), size = ranks_.size();
   const int end = static_cast<int>((rank + 1) * n / size);
   output::NodeRange piece{static_cast<int>(rank * n / size), 0};

@@ -32,9 +32,13 @@ std::vector<Field> picture(const Nodes& nodes, const Net& net, NodeRange range);
 std::vector<std::int64_t> lay_out_snapshot(const std::filesystem::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh,
                                            std::span<const Field> fields);
 
-inline std::size_t n_places(const Checkpoint& checkpoint, std::span<const Field> fields) { return checkpoint.arrays.size() + 2 + fields.size(); }
+/// How many those are.
+inline std::size_t n_places(const Checkpoint& checkpoint, std::span<const Field> fields) {
+  return 2 + checkpoint.arrays.size() + fields.size();
+}
 
-/// A snapshot that has been laid out, while it is filled: by any number of processes, each with other nodes, one with the checkpoint, one with the cells.
+/// A snapshot that has been laid out, while it is filled: by any number of processes, each with other nodes, one with the checkpoint, one with the
+/// cells.
 /// When all have closed theirs, `finish` (file.hpp) puts it in its place. Throws as the former does.
 class SnapshotParts {
  public:
