@@ -34,7 +34,7 @@ class Secants {
   const Net& correction(Eigen::Index i) const { return pairs_[static_cast<std::size_t>(2 * i)]; }
 
   std::vector<Net> pairs_;
-  Eigen::LDLT<Eigen::MatrixXd> gram_;
+  Eigen::LDLT<Eigen::MatrixXd> gram_{Eigen::MatrixXd(0, 0)};
 };
 
 }  // namespace tanktread::coupling
