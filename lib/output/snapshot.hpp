@@ -38,8 +38,7 @@ inline std::size_t n_places(const Checkpoint& checkpoint, std::span<const Field>
 }
 
 /// A snapshot that has been laid out, while it is filled: by any number of processes, each with other nodes, one with the checkpoint, one with the
-/// cells.
-/// When all have closed theirs, `finish` (file.hpp) puts it in its place. Throws as the former does.
+/// cells. When all have closed theirs, `finish` (file.hpp) puts it in its place. Throws as the former does.
 class SnapshotParts {
  public:
   SnapshotParts(const std::filesystem::path& path, std::vector<std::int64_t> places);
