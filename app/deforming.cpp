@@ -75,7 +75,10 @@ class Deforming : public Moving {
 
   Portrait portrait(const motion::State& state) override {
     const Net load = capsule_->load(state.x);
-    return {state.x, [this, &state, load](const output::Nodes& nodes, output::NodeRange range) { return fields(nodes, range, state, load); }};
+    const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
+    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes, output::NodeRange range) {
+              return fields(nodes, range, state.x, load, velocity);
+            }};
   }
 
  private:
@@ -112,8 +115,10 @@ class Deforming : public Moving {
              change.change));
   }
 
-  std::vector<output::Field> fields(const output::Nodes& nodes, output::NodeRange range, const motion::State& state, const Net& load) const {
-    const std::vector<surface::Jet> before = nodes.jets(body_->unstressed, range), now = nodes.jets(state.x, range);
+  /// `velocity`: of the fluids, or empty.
+  std::vector<output::Field> fields(const output::Nodes& nodes, output::NodeRange range, const Net& x, const Net& load,
+                                    const Net& velocity) const {
+    const std::vector<surface::Jet> before = nodes.jets(body_->unstressed, range), now = nodes.jets(x, range);
     const auto n = static_cast<Eigen::Index>(now.size());
     Net traction = nodes.values(load, range);
     std::vector<output::Field> fields{{"load", traction}};
@@ -121,8 +126,8 @@ class Deforming : public Moving {
       for (Eigen::Index i = 0; i < n; ++i)
         traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
     fields.push_back({"traction", traction});
-    fields.push_back({"displacement", nodes.values(state.x - body_->unstressed, range)});
-    if (!state.history.empty()) fields.push_back({"velocity", nodes.values(state.history.front(), range)});
+    fields.push_back({"displacement", nodes.values(x - body_->unstressed, range)});
+    if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity, range)});
     const Eigen::MatrixX2d tensions = membrane::tensions(body_->law, before, now);
     fields.push_back({"smallest tension", tensions.col(0)});
     fields.push_back({"largest tension", tensions.col(1)});

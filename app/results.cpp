@@ -153,6 +153,8 @@ std::optional<Resumed> Results::resumed() {
   if (!request_.resume) return {};
   const auto saved = output::newest_checkpoint(directory_);  // every rank reads it: one file, read-only
   if (!saved) throw UserError("--resume " + directory_.string() + ": there is no checkpoint in this directory");
+  for (const output::Snapshot& file : saved->damaged)
+    warn(file.path.filename().string() + " is damaged: the run goes on from " + saved->file.path.filename().string());
   Resumed resumed = stored_run(scene_, *body_, saved->checkpoint, directory_);
   last_saved_ = resumed.standing.step;
   write([&] {

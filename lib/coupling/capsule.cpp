@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/formatted.hpp"
 #include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
 #include "surface/fundamental.hpp"
@@ -113,11 +114,14 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
   return field;
 }
 
-Net Capsule::energy_gradient(const Net& x) {
-  Net d(x.rows(), 3);
-  membrane_.load(x, own_elements_, d);
-  replicate_sums(d);
-  return d;
+/// Kept until another shape is asked about: a row of the series asks for the last velocity's.
+const Net& Capsule::energy_gradient(const Net& x) {
+  if (same(x, gradient_at_)) return gradient_;
+  gradient_.resize(x.rows(), 3);
+  membrane_.load(x, own_elements_, gradient_);
+  replicate_sums(gradient_);
+  gradient_at_ = x;
+  return gradient_;
 }
 
 Net Capsule::load(const Net& x) { return same(x, latest_.x) ? latest_.load : load_there(x, nullptr); }
@@ -257,7 +261,7 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   work_.velocity_iterations += report.iterations;
   work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
   if (v.allFinite())
-    require_convergence(report, "the velocity at viscosity ratio " + std::to_string(parameters_.viscosity_ratio), parameters_.solvers.tolerance);
+    require_convergence(report, formatted("the velocity at viscosity ratio %g", parameters_.viscosity_ratio), parameters_.solvers.tolerance);
 }
 
 /// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks

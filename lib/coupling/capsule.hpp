@@ -96,7 +96,10 @@ class Capsule : public Dynamics {
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say.
   Net load(const Net& x);
 
-  /// The fluids' velocity on the surface at x: `velocity`, unless control points slide along an interface.
+  /// Whether control points slide along the interface, so that their velocity is not the fluids'.
+  bool slides() const { return interface_.has_value(); }
+
+  /// The fluids' velocity on the surface at x: `velocity`, unless control points slide.
   Net fluid_velocity(const Net& x, const Net& near = {});
 
   /// Particle stresslet S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
@@ -130,7 +133,7 @@ class Capsule : public Dynamics {
   void add(Net& net);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
-  Net energy_gradient(const Net& x);
+  const Net& energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
@@ -179,6 +182,7 @@ class Capsule : public Dynamics {
     std::optional<Tube::Response> response;
   };
   Latest latest_;  // evaluation
+  Net gradient_at_, gradient_;  // x and dE/dx there
   Net placed_;     // the tube's particle
 };
 

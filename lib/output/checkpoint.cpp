@@ -6,6 +6,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "output/hdf.hpp"
 
@@ -106,11 +107,11 @@ std::optional<double> snapshot_time(const fs::path& path) {
 }
 
 std::optional<Saved> newest_checkpoint(const fs::path& directory) {
-  auto found = snapshots(directory);
-  for (; !found.empty(); found.pop_back()) try {
-      return Saved{found.back(), read_checkpoint(found.back().path)};
+  std::vector<Snapshot> damaged;
+  for (auto found = snapshots(directory); !found.empty(); found.pop_back()) try {
+      return Saved{found.back(), read_checkpoint(found.back().path), std::move(damaged)};
     } catch (const std::exception&) {
-      continue;
+      damaged.push_back(found.back());
     }
   return std::nullopt;
 }

@@ -43,9 +43,10 @@ std::optional<double> snapshot_time(const std::filesystem::path& path);
 struct Saved {
   Snapshot file;
   Checkpoint checkpoint;
+  std::vector<Snapshot> damaged;  ///< newer ones that cannot be read, the newest first
 };
 
-/// The newest snapshot of a directory that can be read; damaged ones are passed over. None: empty.
+/// The newest snapshot of a directory that can be read. None: empty.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
 }  // namespace tanktread::output

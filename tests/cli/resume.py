@@ -129,7 +129,8 @@ def a_damaged_newest_checkpoint_is_passed_over():
     run("deck.yaml", "--output", "damaged", "--quiet")
     newest = sorted(pathlib.Path("damaged").glob("snapshot_*.hdf"))[-1]
     newest.write_bytes(newest.read_bytes()[:2000])
-    run("--resume", "damaged", "--quiet")
+    said = run("--resume", "damaged", "--quiet").stderr
+    check(f"{newest.name} is damaged: the run goes on from snapshot_" in said, said)
     _same_bits("whole", "damaged")
 
 

@@ -103,6 +103,9 @@ TEST(NewestCheckpoint, PassesOverDamagedFiles) {
   const auto newest = newest_checkpoint(scratch.path());
   EXPECT_EQ(newest->file.step, 7);
   EXPECT_EQ(newest->checkpoint.numbers.at("time"), 3.5);
+  ASSERT_EQ(newest->damaged.size(), 2u);
+  EXPECT_EQ(newest->damaged[0].step, 1000000);
+  EXPECT_EQ(newest->damaged[1].step, 12);
 }
 
 /// Not where HDF5 leaves room, nor in the picture.
