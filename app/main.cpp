@@ -10,7 +10,6 @@
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
-#include "base/heap.hpp"
 #include "coupling/departure.hpp"
 #include "coupling/ranks.hpp"
 #include "deck/document.hpp"
@@ -140,7 +139,6 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  settle_heap();
   const coupling::Session session(&argc, &argv);
   std::string message;
   const int code = guarded(argc, argv, session.rank() == 0, message);

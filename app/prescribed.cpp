@@ -161,8 +161,8 @@ int resist(const Scene& scene, const RunRequest& request) {
     throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with.");
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
-  Phases phases;
-  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up", program_began());
+  Phases phases = started();
+  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
   const Body body = tanktread::body(scene);
   const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);

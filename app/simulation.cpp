@@ -260,8 +260,8 @@ class Run {
   const Scene& scene_;
   const RunRequest& request_;
   Watch watch_;
-  Phases phases_;
-  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up", program_began()};  // of what no other phase counts
+  Phases phases_ = started();
+  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // of what no other phase counts
   coupling::Ranks ranks_;
   std::unique_ptr<Moving> particle_;
   Results results_;

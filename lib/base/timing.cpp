@@ -8,7 +8,11 @@ namespace {
 const Phases::Clock::time_point before_main = Phases::Clock::now();
 }
 
-Phases::Clock::time_point program_began() { return before_main; }
+Phases started() {
+  Phases phases;
+  { const Phases::Scope start(phases, "start", before_main); }
+  return phases;
+}
 
 double Phases::seconds(std::string_view name) const {
   const auto it = std::ranges::find(phases_, name, &Phase::name);

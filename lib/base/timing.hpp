@@ -22,7 +22,7 @@ class Phases {
 
   using Clock = std::chrono::steady_clock;
 
-  /// Runs the clock of one phase for as long as it lives, or since an earlier time when no other was running.
+  /// Runs the clock of one phase for as long as it lives, or from an earlier time when no other was running.
   class [[nodiscard]] Scope {
    public:
     Scope(Phases& phases, std::string_view name) : phases_(phases) { phases_.enter(name); }
@@ -52,7 +52,7 @@ class Phases {
   Clock::time_point since_;
 };
 
-/// When the program was started, but for the loading of libraries.
-Phases::Clock::time_point program_began();
+/// Phases of a run: the first one, `start`, holds what has passed since the program was started, but for the loading of libraries.
+Phases started();
 
 }  // namespace tanktread
