@@ -15,7 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Partitions to choose from where few points have work: their elements reach far beyond them, and how far is chance. More take longer than they save.
+/// Partitions to choose from where few points have work: their elements reach far beyond them, and how far is chance. More take longer than they
+/// save.
 constexpr int few_points_seeds = 4;
 
 /// Neighbours of every element in compressed rows, weighted by the number of common control points.
