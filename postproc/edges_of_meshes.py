@@ -141,7 +141,7 @@ def hyperbolic(study):
         axis.set_xlabel("Ca")
     left.set_ylabel("smallest mean curvature, times radius")
     right.set_ylabel("smallest tension over G_s")
-    left.legend(loc="best")
+    left.legend(loc="center right", bbox_to_anchor=(1, 0.33))
     return figure, ["mesh", "capillary_number", "smallest_curvature", "smallest_tension", "taylor_inertia", "control_points", "message"], rows
 
 
