@@ -80,6 +80,7 @@ void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
   for (const int i : rows) number.push_back(static_cast<int>(std::ranges::lower_bound(points_, i) - points_.begin()));
   for (std::size_t g = 0; g <= images_.size(); ++g)
     for (const int k : number) wanted.push_back(k + static_cast<int>(g * points_.size()));
+  assert(std::ranges::all_of(number, [&, k = 0](int at) mutable { return points_[at] == rows[k++]; }) && "rows are of fundamental points");
   tree_->want(wanted);
   std::vector<double> carried[3];
   for (std::size_t k = 0; k < fundamental.size(); ++k) {
