@@ -30,6 +30,9 @@ class LayerSurface {
   /// Panels in a far sum over fundamental ones, and their weights there.
   const surface::FundamentalElements& fundamental() const { return fundamental_; }
 
+  /// All images of the symmetry but the identity, about the middle of the shape placed.
+  const std::vector<surface::Reflection>& reflections() const { return images_.reflections; }
+
   /// Takes a shape; the one that it has already, at no cost.
   void place(const Net& x);
 

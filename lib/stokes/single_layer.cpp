@@ -24,7 +24,6 @@ SingleLayer::SingleLayer(const spline::Space& space, const quadrature::Options& 
 
 void SingleLayer::set_symmetry(const surface::Symmetry& symmetry) {
   surface_.set_symmetry(symmetry);
-  images_ = symmetry.images();
   points_ = symmetry.fundamental();
 }
 
@@ -73,12 +72,13 @@ void SingleLayer::load(int e) {
 
 void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
   const auto& [fundamental, weight] = surface_.fundamental();
+  const std::vector<surface::Reflection>& images = surface_.reflections();
   for (const int e : fundamental) surface_.locate(e);
   surface_.place(*tree_, fundamental, points_);
   const std::span<const int> rows = this->rows(targets);
   std::vector<int> wanted, number;
   for (const int i : rows) number.push_back(static_cast<int>(std::ranges::lower_bound(points_, i) - points_.begin()));
-  for (std::size_t g = 0; g <= images_.size(); ++g)
+  for (std::size_t g = 0; g <= images.size(); ++g)
     for (const int k : number) wanted.push_back(k + static_cast<int>(g * points_.size()));
   assert(std::ranges::all_of(number, [&, k = 0](int at) mutable { return points_[at] == rows[k++]; }) && "rows are of fundamental points");
   tree_->want(wanted);
@@ -91,13 +91,13 @@ void SingleLayer::add_by_tree(std::span<const int> targets, Net& u) {
     for (int c = 0; c < 3; ++c)
       for (int q = 0; q < n; ++q) carried[c].push_back(asked ? weight[k] * force_[c][first + q] : 0);
   }
-  Net there(points_.size() * (images_.size() + 1), 3);
+  Net there(points_.size() * (images.size() + 1), 3);
   tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, there.data());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     auto row = u.row(rows[k]);
     row = there.row(number[k]);
-    for (std::size_t g = 0; g < images_.size(); ++g)
-      row += there.row(number[k] + static_cast<Eigen::Index>((g + 1) * points_.size())).cwiseProduct(images_[g].signs.transpose());
+    for (std::size_t g = 0; g < images.size(); ++g)
+      row += there.row(number[k] + static_cast<Eigen::Index>((g + 1) * points_.size())).cwiseProduct(images[g].signs.transpose());
   }
   evaluations_.far += tree_->interactions();
 }

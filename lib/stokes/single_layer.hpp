@@ -85,7 +85,6 @@ class SingleLayer {
 
   LayerSurface surface_;
   std::optional<TreeSum> tree_;                             // where clusters are faster
-  std::vector<surface::Image> images_;                      // of all that is summed by them, without the identity
   std::vector<int> points_;                                 // targets in the tree
   std::vector<int> everybody_;                              // rows that far sums are shared of; empty: they are not
   Measure measure_ = Measure::current;
