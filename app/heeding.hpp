@@ -19,6 +19,8 @@ class Heeding : public coupling::Dynamics {
     if (told_()) throw Stopped();
     return motion_.velocity(x);
   }
+  void at(double time, double start) override { motion_.at(time, start); }
+  double next_kink(double time) const override { return motion_.next_kink(time); }
   void freeze(const Net& x) override { motion_.freeze(x); }
   double frozen_bytes() const override { return motion_.frozen_bytes(); }
   void linearise(const Net& x) override { motion_.linearise(x); }

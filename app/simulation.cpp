@@ -132,7 +132,7 @@ class Run {
       return;
     }
     state_.x = particle_->start();
-    state_.history = {particle_->dynamics().velocity(state_.x)};
+    motion::begin(particle_->dynamics(), state_);
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(particle_->dynamics(), state_, scene_.time);
     record();
     save();
@@ -141,11 +141,13 @@ class Run {
   void step() {
     const double snapshot = next_snapshot(scene_, state_.time);
     const bool lands = scene_.lands_on_snapshots();
-    const motion::State before = state_;
+    motion::State before = state_;
     pictured_.reset();
     standing_.work = particle_->work();
     Heeding motion(particle_->dynamics(), [this] { return ranks_.any(asked_to_stop != 0); });
     try {
+      if (motion::cross_kink(motion, state_)) before = state_;
+      began_ = state_.time;
       report_ = scheme_->advance(motion, state_, lands ? snapshot : scene_.time.final_time);
       judge();
     } catch (const Stopped&) {
@@ -195,6 +197,7 @@ class Run {
 
   void record() {
     const auto clock = phases_.time("diagnostics");
+    particle_->dynamics().at(state_.time, began_);
     row_ = particle_->row(state_, report_, ranks_.first(watch_.seconds()));
     look();
     const auto output = phases_.time("output");
@@ -230,6 +233,7 @@ class Run {
     if (!stopped_) standing_.work = particle_->work();
     standing_.wall_seconds = watch_.seconds();
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
+    particle_->dynamics().at(pictured.time, began_);
     results_.save(state_, standing_, particle_->portrait(pictured), pictured.time);
   }
 
@@ -268,6 +272,7 @@ class Run {
   std::unique_ptr<motion::Integrator> scheme_;
   motion::State state_;
   motion::StepReport report_;
+  double began_ = 0;  // the last step
   Standing standing_;
   std::vector<double> row_;
   bool warned_of_wall_ = false;

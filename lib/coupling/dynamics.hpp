@@ -1,15 +1,24 @@
 #pragma once
 // What a time integrator sees of the coupled system: dx/dt = v(x) and its quasi-Newton Jacobian.
 
+#include <limits>
+
 #include "base/types.hpp"
 #include "coupling/secants.hpp"
 
 namespace tanktread::coupling {
 
-/// The system (4.2). Nets are replicated; every call is collective.
+/// The system (4.2). Nets are replicated; every call is collective. Where the motion changes in time, all is of the time that at() was told last.
 class Dynamics {
  public:
   virtual ~Dynamics() = default;
+
+  /// The time of all that follows, in a step that began at `start`: where the motion jumps, a step up to there has what was before, and one that
+  /// starts there what comes after.
+  virtual void at(double /*time*/, double /*start*/) {}
+
+  /// The first time after `time` at which the motion is not smooth; no step may go beyond.
+  virtual double next_kink(double /*time*/) const { return std::numeric_limits<double>::infinity(); }
 
   /// One velocity evaluation (4.2) at the control net x, volume constraint included. Not finite where the shape is beyond repair.
   virtual Net velocity(const Net& x) = 0;

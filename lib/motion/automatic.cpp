@@ -46,6 +46,7 @@ void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choi
   if (choice.points == points && choice.age < measured_every) return;
   if (choice.points == 0) state.history.emplace_back();
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
+  dynamics.at(state.time, state.time);
   choice.stiffness = stiffness(dynamics, state.x, state.history.front(), state.history.back(), choice.points == points ? 3 : 8);
   choice.points = points;
   choice.age = 0;
@@ -74,7 +75,7 @@ void Automatic::reconsider(const State& state, const StepReport& report, Choice&
 }
 
 StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double limit) {
-  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  begin(dynamics, state);
   Choice choice = Choice::from(state.memory);
   if (dynamics.frozen_bytes() > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
     choice.scheme = rkc2;

@@ -100,6 +100,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     Stage stage;
     stage.y = predicted;
     stage.contraction = memory.expected_contraction(dt);
+    dynamics.at(state.time + dt, state.time);
     solve(dynamics, options_, rhs, scheme.shift, secants, stage);
     report.iterations += stage.iterations;
 

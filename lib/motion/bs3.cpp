@@ -8,7 +8,7 @@
 namespace tanktread::motion {
 
 StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
-  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  begin(dynamics, state);
   StepReport report;
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
 
@@ -16,11 +16,15 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
     refuse_tiny_step(h, state.time, limit, options_);
     const double dt = step_towards(state.time, limit, h);
     const Net& k1 = state.history.front();
-    const Net k2 = dynamics.velocity(state.x + dt / 2 * k1);
-    const Net k3 = dynamics.velocity(state.x + 3 * dt / 4 * k2);
+    const auto slope = [&](double part, const Net& x) {
+      dynamics.at(state.time + part * dt, state.time);
+      return dynamics.velocity(x);
+    };
+    const Net k2 = slope(0.5, state.x + dt / 2 * k1);
+    const Net k3 = slope(0.75, state.x + 3 * dt / 4 * k2);
     Net y = state.x + dt * (2. / 9 * k1 + 1. / 3 * k2 + 4. / 9 * k3);
     dynamics.restore_volume(y);
-    const Net k4 = dynamics.velocity(y);
+    const Net k4 = slope(1, y);
     report.iterations += 3;
 
     const double error = dynamics.norm(dt * (-5. / 72 * k1 + 1. / 12 * k2 + 1. / 9 * k3 - 1. / 8 * k4)) / options_.tolerance;

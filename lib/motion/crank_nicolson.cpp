@@ -20,6 +20,7 @@ CrankNicolson::CrankNicolson(const TimeOptions& options, const std::shared_ptr<T
 
 /// From the start of the iteration in attempt.y.
 void CrankNicolson::iterate(coupling::Dynamics& dynamics, const State& state, double dt, Attempt& attempt) const {
+  dynamics.at(state.time + dt, state.time);
   const Net known = state.x + dt / 2 * state.history.front();
   const auto map = [&](const Net& y) -> Net {
     ++attempt.iterations;
@@ -42,7 +43,7 @@ void CrankNicolson::iterate(coupling::Dynamics& dynamics, const State& state, do
 }
 
 StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, double limit) {
-  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  begin(dynamics, state);
   StepReport report;
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
   const bool known = by_error_ && state.history.size() > 1;  // State::memory: the last step and its error over the tolerance

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "motion/automatic.hpp"
@@ -14,7 +15,11 @@
 
 namespace tanktread::motion {
 
-std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
+namespace {
+
+constexpr double same_time = 1e-12;  // relative: limits and kinks are sums and products of a deck's numbers
+
+std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
   if (options.scheme == "tr-bdf2") return std::make_unique<TrBdf2>(options);
   if (options.scheme == "bs3") return std::make_unique<Bs3>(options);
   if (options.scheme == "crank-nicolson") return std::make_unique<CrankNicolson>(options, nox);
@@ -22,6 +27,44 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::sh
   if (options.scheme == "bdf3") return std::make_unique<Bdf3>(options);
   if (options.scheme == "rkc2") return std::make_unique<Rkc2>(options);
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
+}
+
+/// A scheme whose steps end at kinks of the motion, and that begins anew there.
+class PiecewiseSmooth : public Integrator {
+ public:
+  explicit PiecewiseSmooth(std::unique_ptr<Integrator> scheme) : scheme_(std::move(scheme)) {}
+
+  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override {
+    const double kink = dynamics.next_kink(state.time * (1 + same_time));
+    const double end = kink < limit * (1 - same_time) ? kink : limit;
+    cross_kink(dynamics, state);
+    return scheme_->advance(dynamics, state, end);
+  }
+
+ private:
+  std::unique_ptr<Integrator> scheme_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
+  return std::make_unique<PiecewiseSmooth>(smooth_integrator(options, nox));
+}
+
+bool cross_kink(coupling::Dynamics& dynamics, State& state) {
+  if (dynamics.next_kink(state.time * (1 - same_time)) > state.time * (1 + same_time)) return false;
+  State after = state;
+  forget(after);
+  after.history.clear();
+  begin(dynamics, after);
+  state = std::move(after);
+  return true;
+}
+
+void begin(coupling::Dynamics& dynamics, State& state) {
+  if (!state.history.empty()) return;
+  dynamics.at(state.time, state.time);
+  state.history = {dynamics.velocity(state.x)};
 }
 
 void forget(State& state) {
@@ -36,6 +79,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double speed = dynamics.norm(slope);
   if (speed == 0) return std::min(1e-3 * options.final_time, options.maximum_step.value_or(1e300));
   const double trial = 1e-3 / speed;
+  dynamics.at(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(change, speed * speed)));
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});

@@ -28,6 +28,13 @@ struct State {
 /// Leaves what every scheme understands: place, slope, step and frozen operator. For the state that another scheme made.
 void forget(State& state);
 
+/// The first slope of a state that has none.
+void begin(coupling::Dynamics& dynamics, State& state);
+
+/// Where the state is at a kink of the motion, leaves place, step and frozen operator, with the slope that the motion goes on with; whether it is
+/// there. `advance` does it by itself; until then the state has the slope with which its last step ended.
+bool cross_kink(coupling::Dynamics& dynamics, State& state);
+
 /// What one call of `advance` did.
 struct StepReport {
   double step = 0;        ///< size of the accepted step
@@ -42,7 +49,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// One accepted step, not beyond `limit`. Throws RunFailure when the step falls below the minimum; the state is then unchanged.
+  /// One accepted step, not beyond `limit` nor the next kink of the motion. Throws RunFailure when the step falls below the minimum; the state is then
+  /// unchanged, but for what cross_kink does.
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 

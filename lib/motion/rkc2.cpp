@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "motion/stiffness.hpp"
@@ -29,6 +30,7 @@ void measure(coupling::Dynamics& dynamics, State& state, Memory& memory, StepRep
   const auto points = static_cast<double>(state.x.rows());
   const int iterations = memory.points == points ? 3 : 8;
   state.history.resize(2);
+  dynamics.at(state.time, state.time);
   memory.stiffness = stiffness(dynamics, state.x, state.history[0], state.history[1], iterations);
   memory.age = 0;
   memory.points = points;
@@ -47,8 +49,8 @@ struct Chebyshev {
   }
 };
 
-/// The step from x with slope v to x + dt, by s - 1 velocity evaluations.
-Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double dt, int s) {
+/// The step from x with slope v at `start` to start + dt, by s - 1 velocity evaluations at start + c dt.
+Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start, double dt, int s) {
   const double w0 = 1 + 2. / 13 / (s * s);  // damping of two parts in thirteen
   const Chebyshev c(s, w0);
   const double w1 = c.d[s] / c.dd[s];
@@ -57,12 +59,15 @@ Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double dt, in
   b[0] = b[1] = b[2];
 
   Net before = x, y = x + b[1] * w1 * dt * v;
+  double c_before = 0, c_y = b[1] * w1;
   for (int j = 2; j <= s; ++j) {
     const double mu = 2 * b[j] * w0 / b[j - 1], nu = -b[j] / b[j - 2], weight = 2 * b[j] * w1 / b[j - 1];
     const double first = -(1 - b[j - 1] * c.t[j - 1]) * weight;
+    dynamics.at(start + c_y * dt, start);
     Net next = (1 - mu - nu) * x + mu * y + nu * before + dt * (weight * dynamics.velocity(y) + first * v);
     before = std::move(y);
     y = std::move(next);
+    c_before = std::exchange(c_y, mu * c_y + nu * c_before + weight + first);
   }
   return y;
 }
@@ -72,7 +77,7 @@ Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double dt, in
 int rkc2_stages(double dt, double rho) { return std::max(2, 1 + static_cast<int>(std::sqrt(1 + 1.54 * dt * rho))); }
 
 StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
-  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  begin(dynamics, state);
   Memory memory = Memory::from(state.memory);
   StepReport report;
   if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure(dynamics, state, memory, report);
@@ -85,8 +90,9 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
     const double dt = step_towards(state.time, limit, h);
     const Net& v = state.history.front();
     const int stages = rkc2_stages(dt, rho);
-    Net y = step(dynamics, state.x, v, dt, stages);
+    Net y = step(dynamics, state.x, v, state.time, dt, stages);
     dynamics.restore_volume(y);
+    dynamics.at(state.time + dt, state.time);
     const Net slope = dynamics.velocity(y);
     report.iterations += stages;
 

@@ -15,7 +15,7 @@ const double w = std::sqrt(2.0) / 4;
 }  // namespace
 
 StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
-  if (state.history.empty()) state.history = {dynamics.velocity(state.x)};
+  begin(dynamics, state);
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
   Memory memory = Memory::from(state.memory);
   coupling::Secants secants = state.secants;
@@ -32,6 +32,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
 
     const Net rhs2 = state.x + shift * k1;
     second.y = rhs2 + shift * slopes.at(2 * d * dt, options_.predictor_order);
+    dynamics.at(state.time + 2 * d * dt, state.time);
     solve(dynamics, options_, rhs2, shift, secants, second);
     const Net& k2 = second.slope;
     third.contraction = second.contraction;
@@ -40,6 +41,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       slopes.add(2 * d * dt, k2);
       const Net rhs3 = state.x + dt * w * (k1 + k2);
       third.y = rhs3 + shift * slopes.at(dt, options_.predictor_order);
+      dynamics.at(state.time + dt, state.time);
       solve(dynamics, options_, rhs3, shift, secants, third);
     }
     report.iterations += second.iterations + third.iterations;

@@ -113,6 +113,53 @@ TEST(Integrators, Bdf3IsOfThirdOrder) { EXPECT_NEAR(observed_order("bdf3", 2, 0.
 TEST(Integrators, Rkc2IsOfSecondOrder) { EXPECT_NEAR(observed_order("rkc2", 2), 2, 0.15); }
 TEST(Integrators, CrankNicolsonIsOfSecondOrder) { EXPECT_NEAR(observed_order("crank-nicolson", 2), 2, 0.15); }
 
+/// x' = -2 (x - c(t)) + c'(t), y' = -y c(t) by the clock: x = c, y = exp(-int c), with c = cos t until the kink and cos t - 1 from there on.
+class Clocked : public Model {
+ public:
+  static constexpr double kink = 0.3;
+  Clocked() : Model(2) {}
+  void at(double time, double start) override { time_ = time, jumped_ = start >= kink; }
+  double next_kink(double time) const override { return time < kink ? kink : Model::next_kink(time); }
+  Net velocity(const Net& x) override {
+    const double c = std::cos(time_) - jumped_;
+    Net v(1, 3);
+    v << -2 * (x(0, 0) - c) - std::sin(time_), -x(0, 1) * c, 0;
+    return v;
+  }
+  Net solve(double shift, const Net& r, double, const coupling::Secants&) override {
+    Net delta = r;
+    delta(0, 0) /= 1 + 2 * shift;
+    delta(0, 1) /= 1 + shift * (std::cos(time_) - jumped_);
+    return delta;
+  }
+  static Vec3 at_one() { return {std::cos(1.0) - 1 + std::exp(-2 * (1 - kink)), std::exp(-std::sin(1.0) + 1 - kink), 0}; }
+
+ private:
+  double time_ = 0;
+  bool jumped_ = false;
+};
+
+double clocked_error(const std::string& scheme, double step) {
+  TimeOptions options = with(scheme);
+  options.fixed_step = step;
+  Clocked model;
+  State state = start(step);
+  const auto integrate = integrator(options);
+  bool landed = false;
+  while (state.time < 1) {
+    integrate->advance(model, state, 1);
+    landed = landed || state.time == Clocked::kink;
+  }
+  EXPECT_TRUE(landed) << scheme;
+  return (state.x.transpose() - Clocked::at_one()).norm();
+}
+
+TEST(Integrators, KeepTheirOrderWhereTheMotionChangesInTimeAndJumps) {
+  const std::pair<const char*, double> orders[] = {{"tr-bdf2", 2}, {"bs3", 3}, {"bdf3", 3}, {"rkc2", 2}, {"crank-nicolson", 2}, {"auto", 3}};
+  for (const auto& [scheme, order] : orders)
+    EXPECT_NEAR(std::log2(clocked_error(scheme, 0.005) / clocked_error(scheme, 0.0025)), order, 0.15) << scheme;
+}
+
 TEST(Integrators, EverySolverOfCrankNicolsonFindsTheSameSteps) {
   TimeOptions options = with("crank-nicolson");
   const double plain = error_at_one(options, 0.02, 2);
