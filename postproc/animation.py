@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The particle in motion, as a GIF: its surface with the elements and a field, and D with the number of control points over time.
+"""The particle in motion, as a GIF: its surface with the elements and a field, and below it over time D and the number of control points,
+or of a rigid particle its inclination and angular velocity.
 
 A frame is a saved step: `Output/interval` says how many there are. Between two of them nothing is made up.
 """
@@ -7,6 +8,7 @@ A frame is a saved step: `Output/interval` says how many there are. Between two 
 import argparse
 import sys
 
+import needs  # before what it looks for
 import numpy
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.cm import ScalarMappable
@@ -14,27 +16,30 @@ from matplotlib.cm import ScalarMappable
 import read
 import shape
 import style
+from deformation import unbroken
 from style import plt
+
+DEFORMABLE = {"taylor_inertia": "D", "n_control_points": "control points"}  # series, and what stands beside them
+RIGID = {"inclination": "inclination, °", "angular_velocity_x2": "angular velocity ω₂"}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", help="directory of a run's results")
+    parser.add_argument("results", help="directory of a run's results, or a deck, which is run when it has none")
     parser.add_argument("-o", "--output", default="animation.gif", metavar="FILE", help="the animation (default: %(default)s)")
     parser.add_argument("--field", default="traction", help="field that colours the surface (default: %(default)s)")
-    parser.add_argument("--view", type=float, nargs=2, default=[-75, 20], metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
+    parser.add_argument("--view", type=float, nargs=2, default=shape.VIEW, metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     parser.add_argument("--rate", type=float, default=8, help="frames a second (default: %(default)s)")
     parser.add_argument("--width", type=int, default=720, help="of the animation, in pixels (default: %(default)s)")
     parser.add_argument("--frame", type=float, metavar="TIME", help="one picture of this time instead, a PNG")
     arguments = parser.parse_args()
 
     run = read.run(arguments.results)
-    run.require("taylor_inertia")
     shots = run.snapshots() if arguments.frame is None else [run.snapshot_at(arguments.frame)]
     field = arguments.field
     if field not in shots[0].fields:
         sys.exit(f"{shots[0].path} holds no field {arguments.field}; there are: {', '.join(sorted(shots[0].fields))}")
-    film = Film(run, run.snapshots(), field, arguments.view)
+    film = Film(run, run.snapshots(), field, arguments.view, arguments.width * 2 // 3)
     if arguments.frame is not None:
         film.show(shots[0])
         style.save(film.figure, arguments.output)
@@ -47,8 +52,8 @@ def main():
 class Film:
     """One figure in which frame after frame is drawn: the same scale, the same window, the same colours in all of them."""
 
-    def __init__(self, run, shots, field, view):
-        self.run, self.field, self.view = run, field, view
+    def __init__(self, run, shots, field, view, pixels):
+        self.run, self.field, self.view, self.pixels = run, field, view, pixels
         places = numpy.concatenate([shot.points - middle(shot) for shot in shots]) @ shape.view_axes(*view)[:2].T
         self.window = places.min(0), places.max(0)
         self.norm, self.colours = shape.scale([shape.magnitude(shot.fields[field]) for shot in shots])
@@ -60,37 +65,40 @@ class Film:
         bar = self.figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
         vector = numpy.ndim(shots[0].fields[field]) > 1
         self.figure.colorbar(ScalarMappable(self.norm, self.colours), cax=bar, label=f"|{field}|" if vector else field)
-        self.deformation = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
-        self.points = self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=self.deformation)
+        upper = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
+        self.panels = [upper, self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper)]
+        self.shown = DEFORMABLE if "taylor_inertia" in run.series else RIGID
+        run.require(*self.shown)
         self.marks = self.draw_series()
 
     def draw_series(self):
-        time, deformation, points = (self.run.series[name] for name in ("time", "taylor_inertia", "n_control_points"))
-        self.deformation.plot(time, deformation, color=style.RUNS[0])
-        self.deformation.set_ylabel("D")
-        self.deformation.tick_params(labelbottom=False)
-        self.points.step(time, points, where="post", color=style.RUNS[1])
-        self.points.set_ylabel("control points")
-        self.points.set_xlabel("time · rate")
-        self.points.set_xlim(time[0], time[-1])
-        self.points.set_ylim(0, 1.1 * points.max())
-        self.deformation.set_ylim(0, 1.1 * max(deformation.max(), 1e-6))
-        return [axis.plot([], [], "o", color=style.INK, markersize=4.5, clip_on=False)[0] for axis in (self.deformation, self.points)]
+        marks = []
+        for axis, (name, label), color in zip(self.panels, self.shown.items(), style.RUNS):
+            values = self.run.series[name]
+            drawn = unbroken(self.run.time, values) if name == "inclination" else (self.run.time, values)
+            axis.plot(*drawn, color=color, drawstyle="steps-post" if name == "n_control_points" else "default")
+            axis.set_ylabel(label)
+            if values.min() >= 0:
+                axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
+            marks.append(axis.plot([], [], "o", color=style.INK, markersize=4.5, clip_on=False)[0])
+        self.panels[0].tick_params(labelbottom=False)
+        self.panels[1].set_xlabel(self.run.time_label)
+        self.panels[1].set_xlim(self.run.time[0], self.run.time[-1])
+        return marks
 
     def show(self, shot):
         self.surface.clear()
-        shape.draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view)
+        shape.draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view, pixels=self.pixels)
         middle_seen = shape.view_axes(*self.view)[:2] @ middle(shot)
         room = 0.09 * (self.window[1] - self.window[0])[0]
         (left, low), (right, high) = self.window + middle_seen
         self.surface.set_xlim(left - room, right + room)
         self.surface.set_ylim(low - room, high + room)
-        series = self.run.series
-        points = series["n_control_points"][numpy.searchsorted(series["time"], shot.time * (1 + 1e-12), side="right") - 1]
-        self.surface.set_title(f"{self.run.name}, t = {shot.time:.2f}: {points:.0f} control points")
-        deformation = numpy.interp(shot.time, series["time"], series["taylor_inertia"])
-        for mark, value in zip(self.marks, (deformation, points)):
-            mark.set_data([shot.time], [value])
+        row = numpy.searchsorted(self.run.series["time"], shot.time * (1 - 1e-12))  # of this saved step, the last one if none came after
+        row = min(row, len(self.run.time) - 1)
+        self.surface.set_title(f"{self.run.name}, t = {shot.time:.4g}: {self.run.series['n_control_points'][row]:.0f} control points")
+        for mark, name in zip(self.marks, self.shown):
+            mark.set_data([self.run.time[row]], [self.run.series[name][row]])
         return self.marks
 
 

@@ -12,6 +12,7 @@ import argparse
 import sys
 import textwrap
 
+import needs  # before what it looks for
 import edges_of_membranes
 import edges_of_meshes
 import edges_of_steps

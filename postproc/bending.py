@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A capsule that resists bending, in shear: D over time beside the literature's curves, on several meshes and moduli.
 
-    postproc/bending.py --curves ../shared/reference/curves
+    postproc/bending.py --curves DIR      # beside the literature's curves
 
 Runs inputs/shear_bending.yaml (Ca = 0.15, E_b = 0.0375 R^2 E_s), with its own reference curvature and relaxed when flat, and without bending. The curves
 are tables of time and D, `bending_<author>_<year>.csv` or `.txt` (columns t, shortest, longest, D, angle).
@@ -10,6 +10,7 @@ are tables of time and D, `bending_<author>_<year>.csv` or `.txt` (columns t, sh
 import argparse
 import pathlib
 
+import needs  # before what it looks for
 import numpy
 
 import literature
@@ -36,14 +37,14 @@ def curves(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--curves", default=literature.DEFAULT, type=pathlib.Path, metavar="DIR", help="the literature's (default: %(default)s)")
+    parser.add_argument("--curves", type=pathlib.Path, metavar="DIR", help="folder of the literature's (default: none)")
     parser.add_argument("--meshes", nargs="+", type=int, default=[6, 9, 12], metavar="N", help="elements along a side of the cube (default: 6 9 12)")
     studies.arguments(parser, "results/bending")
     parsed = parser.parse_args()
     study = studies.study(parsed)
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.6), width_ratios=[1.6, 1])
-    for k, curve in enumerate(curves(parsed.curves)):
+    for k, curve in enumerate(curves(parsed.curves) if parsed.curves else []):
         left.plot(curve.t, curve.d, linestyle="none", marker=style.MARKS[k % len(style.MARKS)], ms=3, color=style.FAINT, mew=0.8,
                   mfc="none", label=curve.label)
     rows = []

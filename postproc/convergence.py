@@ -3,13 +3,14 @@
 
     postproc/convergence.py results/n3 results/n6 results/n12 --curve nh_shear_ca0.3_spectral.csv
 
-The curve is a table with the columns `t` and `taylor_inertia`. A line joins runs that agree in Time/scheme and Time/tolerance.
+The curve is a table with the columns `t`, which is time times the rate of the flow, and `taylor_inertia`. A line joins runs that agree in Time/scheme and Time/tolerance.
 """
 
 import argparse
 import pathlib
 import sys
 
+import needs  # before what it looks for
 import numpy
 
 import literature
@@ -22,7 +23,7 @@ class Errors:
     """Of one run: `times` and `errors` of the series within the curve, its largest error, its mesh and what it cost."""
 
     def __init__(self, run, curve, series):
-        t = run.series["time"]
+        t = run.time
         inside = (t >= curve["t"][0]) & (t <= curve["t"][-1])
         self.run, self.times = run, t[inside]
         self.errors = numpy.array([literature.difference([time], [value], curve["t"], curve[series])
@@ -39,16 +40,14 @@ class Errors:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", nargs="+", help="directories of runs' results")
-    parser.add_argument("--curve", required=True, metavar="FILE", help="the reference: a table with named columns, here or among the literature's curves")
+    parser.add_argument("--curve", required=True, metavar="FILE", help="the reference: a table with named columns")
     parser.add_argument("--series", default="taylor_inertia", help="which series, and column of the curve (default: %(default)s)")
     parser.add_argument("-o", "--output", default="convergence.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    places = [pathlib.Path(arguments.curve), literature.DEFAULT / arguments.curve]
-    table = next((place for place in places if place.is_file()), None)
-    if table is None:
-        sys.exit(f"{arguments.curve} is no file, here or among the literature's curves: give a table with named columns")
-    curve = numpy.genfromtxt(table, delimiter=",", names=True)
+    if not pathlib.Path(arguments.curve).is_file():
+        sys.exit(f"{arguments.curve} is no file: give a table with named columns")
+    curve = numpy.genfromtxt(arguments.curve, delimiter=",", names=True)
     runs = sorted((Errors(read.run(directory), curve, arguments.series) for directory in arguments.results), key=lambda one: one.points)
     families = sorted({one.family for one in runs})
     color = dict(zip(families, style.RUNS * len(families)))
@@ -72,7 +71,7 @@ def draw_times(axis, runs):
     for one, shade in zip(runs, shades):
         axis.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
     axis.set_ylim(0.1 * min(numpy.median(one.errors) for one in runs), 30 * runs[0].largest)  # room for the legend
-    axis.set_xlabel("time")
+    axis.set_xlabel(read.time_label([one.run for one in runs]))
     axis.set_ylabel("error")
     axis.legend(loc="upper left", ncols=2)
 

@@ -3,6 +3,9 @@
 
 import argparse
 
+import needs  # before what it looks for
+import numpy
+
 import literature
 import read
 import style
@@ -13,9 +16,9 @@ EXPECTED = "expected by the deck"
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", nargs="+", help="directories of runs' results")
+    parser.add_argument("results", nargs="+", help="directories of runs' results, or decks, which are run when they have none")
     parser.add_argument("-o", "--output", default="deformation.png", metavar="FILE", help="the picture (default: %(default)s)")
-    parser.add_argument("--curves", default=literature.DEFAULT, metavar="DIR", help="folder of literature curves (default: %(default)s)")
+    parser.add_argument("--curves", metavar="DIR", help="folder of literature curves, named as postproc/literature.py says (default: none)")
     parser.add_argument("--deformation", default="taylor_inertia", choices=["taylor_inertia", "taylor_surface"], help="which Taylor parameter")
     arguments = parser.parse_args()
 
@@ -29,14 +32,14 @@ def main():
     for run, color in zip(runs, style.RUNS * len(runs)):
         draw_run(upper, lower, run, arguments.deformation, color)
         report(run, literature.curves(run, arguments.curves))
-    draw_literature(upper, lower, known, end=max(run.series["time"][-1] for run in runs))
+    draw_literature(upper, lower, known, end=max(run.time[-1] for run in runs))
 
     upper.set_ylabel("Taylor parameter D" if arguments.deformation == "taylor_inertia" else "Taylor parameter D (surface)")
     upper.set_ylim(bottom=0)
     upper.set_title(title(runs))
     upper.legend(loc="lower right") if len(runs) == 1 else upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     lower.set_ylabel("inclination, degrees")
-    lower.set_xlabel("time · shear rate" if all("shear" in str(run.value("Flow/type")) for run in runs) else "time")
+    lower.set_xlabel(read.time_label(runs))
     lower.set_xlim(left=0)
     style.save(figure, arguments.output)
 
@@ -55,16 +58,22 @@ def label(run):
 
 
 def draw_run(upper, lower, run, deformation, color):
-    t = run.series["time"]
+    t = run.time
     upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
     shaped = run.series["taylor_inertia"] > 1e-8  # a sphere has no inclination
-    lower.plot(t[shaped], run.series["inclination"][shaped], color=color, zorder=3)
+    lower.plot(*unbroken(t[shaped], run.series["inclination"][shaped]), color=color, zorder=3)
     for axes, name in (upper, deformation), (lower, "inclination"):
         expected = run.value(f"Expect/{name}")
         if expected:
-            at = expected.get("at", t[-1])
+            at = expected["at"] * run.rate[0] if "at" in expected else t[-1]
             known = {text.get_label() for text in axes.lines}
             axes.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6, label=EXPECTED if EXPECTED not in known else None)
+
+
+def unbroken(t, angle):
+    """Times and angles with a gap where an axis, which has no direction, passes from one end of its range of 180 degrees to the other."""
+    passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
+    return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
 
 def draw_literature(upper, lower, known, end):
@@ -85,7 +94,7 @@ def draw_literature(upper, lower, known, end):
 
 
 def report(run, known):
-    t = run.series["time"]
+    t = run.time
     for curve in known:
         if not curve.exact:
             continue

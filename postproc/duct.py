@@ -4,6 +4,7 @@
 import argparse
 import sys
 
+import needs  # before what it looks for
 import h5py
 import numpy
 
@@ -16,13 +17,13 @@ STEP = 0.2  # between contours, in mean velocities
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", nargs="+", help="directories of runs' results, one panel each")
+    parser.add_argument("results", nargs="+", help="directories of runs' results, or decks, which are run when they have none; one panel each")
     parser.add_argument("-o", "--output", default="duct.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--no-path", action="store_true", help="without the path of the centroid")
     arguments = parser.parse_args()
 
-    ducts = [duct(directory) for directory in arguments.results]
     runs = [read.run(directory) for directory in arguments.results]
+    ducts = [duct(run.directory) for run in runs]
     top = max(d["maximum"][2] / d["mean_velocity"] for d in ducts)
     places = numpy.concatenate([d["outline"] for d in ducts])
     room = 0.02 * numpy.ptp(places, axis=0).max()

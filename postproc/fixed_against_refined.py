@@ -3,6 +3,7 @@
 
 import argparse
 
+import needs  # before what it looks for
 import numpy
 from matplotlib.collections import LineCollection
 
@@ -32,7 +33,7 @@ def main():
     norm, colours = shape.scale([shape.magnitude(shot.fields[arguments.field]) for shot in shots])
     for k, (shot, name) in enumerate(zip(shots, names)):
         axis = figure.add_subplot(grid[0, k])
-        shape.draw_surface(axis, shot, arguments.field, norm, colours, -75, 20)
+        shape.draw_surface(axis, shot, arguments.field, norm, colours, *shape.VIEW)
         axis.set_title(name)
     vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
     words = f"|{arguments.field}|" if vector else arguments.field

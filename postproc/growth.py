@@ -10,6 +10,7 @@ Exponents are fitted by least squares to the meshes from --from control points o
 import argparse
 import json
 
+import needs  # before what it looks for
 import numpy
 
 import style

@@ -6,8 +6,6 @@ import re
 
 import numpy
 
-DEFAULT = pathlib.Path(__file__).resolve().parents[2] / "shared" / "reference" / "curves"
-
 # First letters of a file name -> source. The capillary numbers in these names are of the Young modulus E_s = 3 G_s: ours are three
 # times as large. The logarithmic neo-Hookean law differs from ours by up to 7 % in D.
 SHEAR_SOURCES = {
@@ -30,7 +28,9 @@ class Curve:
 
 
 def curves(run, folder):
-    """Those that belong to the run's scene: a neo-Hookean sphere in simple shear, by its capillary number."""
+    """Those of a folder (None: none) that belong to the run's scene: a neo-Hookean sphere in simple shear, by its capillary number."""
+    if folder is None:
+        return []
     folder = pathlib.Path(folder)
     membrane = run.deck.get("Membrane", {})
     plain = all(not membrane.get(key, 0) for key in ("pre-inflation", "bending modulus")) and run.value("Particle/viscosity ratio", 1) == 1

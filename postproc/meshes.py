@@ -6,6 +6,7 @@ The angle is that of the ellipse as long and as high as the section, of which it
 
 import argparse
 
+import needs  # before what it looks for
 import numpy
 
 import read
@@ -18,12 +19,12 @@ GRID = 12  # facets along a side of a cell where the section is cut
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", nargs="+", help="directories of runs' results; of several, each at the last of the times")
+    parser.add_argument("results", nargs="+", help="directories of runs' results, or decks; of several, each at the last of the times")
     parser.add_argument("-o", "--output", default="meshes.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--times", type=float, nargs="+", help="simulated times (default: the start, the middle and the end)")
     parser.add_argument("--field", default="traction", help="field whose variation is drawn (default: %(default)s)")
     parser.add_argument("--reference", type=float, nargs="+", help="reference value of its variation, a circle in the lower row; one, or one a panel")
-    parser.add_argument("--view", type=float, nargs=2, default=[-75, 20], metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
+    parser.add_argument("--view", type=float, nargs=2, default=shape.VIEW, metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in arguments.results]
@@ -48,9 +49,8 @@ def main():
         if reference and (k == 0 or len(set(arguments.reference)) > 1):
             polar.legend(loc="upper left", bbox_to_anchor=(-0.1, 0.04))
     share_window(surfaces)
-    for top, polar in tops:
-        if top < 1e-9 * max(top for top, _ in tops):  # rounding, at rest
-            polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
+    for _, polar in tops:
+        polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
     vector = numpy.ndim(shots[0][1].fields[arguments.field]) > 1
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]), orientation="horizontal",
                     label=f"|{arguments.field}|" if vector else arguments.field)
@@ -105,7 +105,6 @@ def draw_variation(axis, shot, field, reference):
     if reference:
         axis.plot(numpy.linspace(0, 2 * numpy.pi, 200), [reference] * 200, color=style.RUNS[1], linestyle=":", linewidth=1.6,
                   label=f"reference, {reference:g}")
-    axis.set_ylim(0, 1.05 * top)
     axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
     axis.set_rlabel_position(55)
     axis.tick_params(labelsize=7.5)

@@ -2,21 +2,27 @@
 """Results of a run as numpy arrays: `read.run("results/shear")`. As a program it lists what a run recorded.
 
     import read
-    run = read.run("results/shear_neo_hookean")
+    run = read.run("results/shear_neo_hookean")   # or a deck, which is run when it has no results yet
     run.series["taylor_inertia"]       # one value a step, with .units[...] and .descriptions[...]
     run.deck["Flow"]["type"]           # the effective deck
     last = run.snapshots()[-1]         # a saved step
     last.fields["traction"]            # at the nodes of its cells
+    run.time, run.time_label           # of the series, times the rate of the flow
 """
 
 import argparse
 import json
+import os
 import pathlib
+import subprocess
 import sys
 
+import needs  # before what it looks for
 import h5py
 import numpy
 import yaml
+
+PROGRAM = pathlib.Path(os.environ.get("TANKTREAD") or pathlib.Path(__file__).resolve().parents[1] / "build/release/app/tanktread")
 
 
 class Run:
@@ -37,6 +43,30 @@ class Run:
     @property
     def name(self):
         return self.directory.resolve().name
+
+    @property
+    def rate(self):
+        """What makes time a number: the rate of the flow, or in a duct its mean velocity over the duct's radius (of equal area); with its name.
+        (1, None) where the flow has no rate."""
+        kind = self.value("Flow/type")
+        if kind == "duct":
+            with h5py.File(self.directory / "duct.h5", "r") as file:
+                return float(file["mean_velocity"][()] / file["radius"][()]), "mean velocity / tube radius"
+        if kind == "linear":
+            gradient = numpy.reshape(numpy.array(self.value("Flow/gradient"), float), (3, 3))
+            return float(numpy.linalg.norm(gradient, 2)), "rate"
+        rates = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
+        return (float(self.value("Flow/shear rate", 1)), rates[kind]) if kind in rates else (1.0, None)
+
+    @property
+    def time(self):
+        """Of the series, without a unit where the flow has a rate: what `time_label` says."""
+        return self.series["time"] * self.rate[0]
+
+    @property
+    def time_label(self):
+        name = self.rate[1]
+        return f"time · {name}" if name else "time, in the deck's unit"
 
     def value(self, path, default=None):
         """One key of the deck: `value("Membrane/capillary number")`."""
@@ -99,30 +129,52 @@ class Snapshot:
                 "texts": {name: _text(data[()]) for name, data in root["texts"].items()},
             }
 
-    def sampled(self, values, k=8):
-        """A field at the (k + 1)^2 points of a uniform grid on every cell: shape (cells, k + 1, k + 1[, components]); t first, then s.
+    def sampled(self, values, k=8, cells=None):
+        """A field at the (k + 1)^2 points of a uniform grid on every cell, or on `cells` (numbers): shape (cells, k + 1, k + 1[, components]);
+        t first, then s.
 
         Exact: a cell holds the polynomial of its element.
         """
         values = numpy.asarray(values)
-        result = numpy.empty((len(self.cells), k + 1, k + 1) + values.shape[1:])
-        for n in {len(cell) for cell in self.cells}:
-            which = [i for i, cell in enumerate(self.cells) if len(cell) == n]
-            table = _lagrange_table(int(round(n**0.5)) - 1, k)
-            nodes = values[numpy.array([self.cells[i] for i in which])]
-            sampled = numpy.einsum("gn,cn...->cg...", table, nodes)
+        chosen = self.cells if cells is None else [self.cells[i] for i in cells]
+        result = numpy.empty((len(chosen), k + 1, k + 1) + values.shape[1:], values.dtype)
+        for n in {len(cell) for cell in chosen}:
+            which = [i for i, cell in enumerate(chosen) if len(cell) == n]
+            table = _lagrange_table(int(round(n**0.5)) - 1, k).astype(values.dtype)
+            nodes = values[numpy.array([chosen[i] for i in which])]
+            sampled = table @ nodes.reshape(len(which), n, -1)
             result[which] = sampled.reshape((len(which), k + 1, k + 1) + values.shape[1:])
         return result
 
 
-def run(directory):
-    """The run whose results stand in a directory. One sentence and the end of the program where there are none."""
+def run(where):
+    """The run whose results stand in a directory, or those of a deck (a .yaml file), which is run when it has none. One sentence and the end of the
+    program where that fails."""
+    directory = results_of(where) if str(where).endswith(".yaml") else where
     try:
         return Run(directory)
     except FileNotFoundError:
-        sys.exit(f"{directory} holds no run.h5: give the directory of a run's results")
+        sys.exit(f"{directory} holds no run.h5: give the directory of a run's results, or a deck")
     except OSError as error:
         sys.exit(f"{directory}/run.h5 cannot be read: {error}")
+
+
+def results_of(deck, program=None):
+    """Where a deck's results stand: results/<name of the deck>. The deck is run when there are none."""
+    directory, program = pathlib.Path("results") / pathlib.Path(deck).stem, program or PROGRAM
+    if not (directory / "run.h5").exists():
+        if not program.exists():
+            sys.exit(f"{program} does not exist, so {deck} cannot be run: build it (app/quickstart does), or give the directory of a run's results")
+        print(f"{program} {deck} --output {directory}", file=sys.stderr)
+        code = subprocess.run([program, deck, "--output", directory, "--quiet"], check=False).returncode
+        if code not in (0, 1):  # 1: an expectation was missed, which a picture shows
+            sys.exit(f"{deck} did not run to its end (exit code {code}); nothing is drawn")
+    return directory
+
+
+def time_label(runs):
+    """What is on the axis of time of several runs."""
+    return " or ".join(dict.fromkeys(one.time_label for one in runs))
 
 
 def _text(value):
@@ -149,7 +201,7 @@ def _lagrange_table(p, k):
 
 def main():
     parser = argparse.ArgumentParser(description="List what a run recorded.")
-    parser.add_argument("results", help="directory of a run's results")
+    parser.add_argument("results", help="directory of a run's results, or a deck")
     parser.add_argument("-s", "--series", nargs="+", metavar="NAME", help="print these series, one line a step, instead of the list")
     arguments = parser.parse_args()
     result = run(arguments.results)

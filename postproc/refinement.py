@@ -6,6 +6,7 @@ Of several runs of one scene, how far D is from the first one's stands below, at
 
 import argparse
 
+import needs  # before what it looks for
 import numpy
 
 import read
@@ -15,7 +16,7 @@ from style import plt
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", nargs="+", help="directories of runs' results")
+    parser.add_argument("results", nargs="+", help="directories of runs' results, or decks")
     parser.add_argument("-o", "--output", default="refinement.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--steady", type=float, nargs="+", default=[], metavar="D", help="steady values of the literature, drawn at the right")
     parser.add_argument("--deformation", default="taylor_inertia", choices=["taylor_inertia", "taylor_surface"], help="which Taylor parameter")
@@ -29,16 +30,16 @@ def main():
     figure, axes = plt.subplots(len(heights), 1, figsize=(6.4, 1.25 * sum(heights)), sharex=True, height_ratios=heights)
     upper, lower = axes[0], axes[-1]
     for run, color in zip(runs, style.RUNS * len(runs)):
-        t, deformation, points = (run.series[name] for name in ("time", arguments.deformation, "n_control_points"))
+        t, deformation, points = run.time, run.series[arguments.deformation], run.series["n_control_points"]
         changes = numpy.flatnonzero(numpy.diff(points)) + 1
         upper.plot(t, deformation, color=color, label=f"{run.name}: {points[0]:.0f} → {points[-1]:.0f} control points, D = {deformation[-1]:.4f}")
         upper.plot(t[changes], deformation[changes], "o", color=color, markerfacecolor="white", markersize=4.5)
         lower.step(t, points, where="post", color=color)
         if compares and run is not runs[0]:
-            both, mine, firsts = numpy.intersect1d(t.round(9), runs[0].series["time"].round(9), return_indices=True)
+            both, mine, firsts = numpy.intersect1d(t.round(9), runs[0].time.round(9), return_indices=True)
             axes[1].plot(both, 1e3 * (deformation[mine] - runs[0].series[arguments.deformation][firsts]), "o-", markersize=3, color=color)
         print(f"{run.name}: {len(changes)} changes of the mesh, D({t[-1]:g}) = {deformation[-1]:.6f}, {points[-1]:.0f} control points")
-    end = max(run.series["time"][-1] for run in runs)
+    end = max(run.time[-1] for run in runs)
     for steady in arguments.steady:
         upper.plot([0.97 * end, 1.03 * end], [steady] * 2, color=style.INK)
     if arguments.steady:
@@ -51,7 +52,7 @@ def main():
     upper.legend(loc="lower right")
     lower.set_ylabel("control points")
     lower.set_ylim(bottom=0)
-    lower.set_xlabel("time · rate")
+    lower.set_xlabel(read.time_label(runs))
     style.save(figure, arguments.output)
 
 

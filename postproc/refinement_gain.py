@@ -8,6 +8,7 @@ interpolation of logarithms. Kernel evaluations tell the work on a machine that 
 
 import argparse
 
+import needs  # before what it looks for
 import numpy
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 

@@ -4,26 +4,28 @@
 import argparse
 import sys
 
+import needs  # before what it looks for
 import numpy
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 
 import read
+import render
 import style
 from style import plt
 
-CELL_GRID = 8     # facets along a side of a cell in the picture
-SECTION_GRID = 24  # and where the section is cut
+VIEW = [-85, 18]   # azimuth and elevation of the eye, degrees: x1 to the right and x3 up, with hardly a tilt, and a little from above
+SECTION_GRID = 24  # facets along a side of a cell where the section is cut
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", nargs="+", help="directories of runs' results; their sections share one panel")
+    parser.add_argument("results", nargs="+", help="directories of runs' results, or decks, which are run when they have none; their sections share one panel")
     parser.add_argument("-o", "--output", default="shape.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--time", type=float, help="simulated time of the snapshot (default: the last one)")
     parser.add_argument("--field", default="traction", help="field of the snapshot that colours the surface (default: %(default)s)")
-    parser.add_argument("--view", type=float, nargs=2, default=[-60, 25], metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
+    parser.add_argument("--view", type=float, nargs=2, default=VIEW, metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in arguments.results]
@@ -65,40 +67,21 @@ def view_axes(azimuth, elevation):
     return numpy.array([right, numpy.cross(eye, right), eye])
 
 
-def draw_surface(axis, shot, field, norm, colours, azimuth, elevation):
-    """Facets that face the eye, the farthest first, lit from the upper left; element edges on top."""
+def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640):
+    """What the eye sees of it, with the elements that it is made of."""
     view = view_axes(azimuth, elevation)
-    grid = shot.sampled(shot.points, CELL_GRID) @ view.T
-    values = shot.sampled(shot.fields[field], CELL_GRID)
-    if numpy.ndim(shot.fields[field]) > 1:
-        values = magnitude(values)
-    corners = numpy.stack([grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]], axis=3).reshape(-1, 4, 3)
-    colour_of = (values[:, :-1, :-1] + values[:, :-1, 1:] + values[:, 1:, 1:] + values[:, 1:, :-1]).ravel() / 4
-    normal = numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    normal /= numpy.maximum(numpy.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-
-    facing = numpy.flatnonzero(normal[:, 2] > -0.02)
-    facing = facing[numpy.argsort(corners[facing, :, 2].mean(1), kind="stable")]
-    light = numpy.array([-0.4, 0.6, 0.7]) / numpy.linalg.norm([-0.4, 0.6, 0.7])
-    shade = 0.62 + 0.38 * numpy.clip(normal[facing] @ light, 0, 1)
-    rgba = plt.get_cmap(colours)(norm(colour_of[facing]))
-    rgba[:, :3] *= shade[:, None]
-    axis.add_collection(PolyCollection(corners[facing, :, :2], facecolors=rgba, edgecolors=rgba, linewidths=0.3, rasterized=True))
-
-    edges = numpy.concatenate([grid[:, 0], grid[:, -1], grid[:, :, 0], grid[:, :, -1]])
-    cell_normals = normal.reshape(len(grid), CELL_GRID, CELL_GRID, 3)
-    sides = [cell_normals[:, 0], cell_normals[:, -1], cell_normals[:, :, 0], cell_normals[:, :, -1]]
-    seen = numpy.concatenate([side[:, :, 2] for side in sides]) > 0
-    pieces = numpy.stack([edges[:, :-1, :2], edges[:, 1:, :2]], axis=2)[seen]
-    axis.add_collection(LineCollection(pieces, colors="#ffffff", linewidths=0.45, alpha=0.55))
-    draw_triad(axis, view, grid)
-    axis.set_aspect("equal", anchor="N")
+    values = shot.fields[field]
+    image, extent = render.picture(shot, magnitude(values), view, lambda seen: plt.get_cmap(colours)(norm(seen)), pixels)
+    axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
+    draw_triad(axis, view, numpy.array(extent))
+    axis.set_anchor("N")
     axis.autoscale_view()
     axis.axis("off")
 
 
-def draw_triad(axis, view, grid):
-    low, high = grid[..., :2].min((0, 1, 2)), grid[..., :2].max((0, 1, 2))
+def draw_triad(axis, view, extent):
+    """The axes as seen, lower left of the extent (left, right, low, high); one that points at the eye or away is a point."""
+    low, high = extent[[0, 2]], extent[[1, 3]]
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
     for k, arm in enumerate(view[:2].T * length):

@@ -11,6 +11,7 @@ import pathlib
 import subprocess
 import sys
 
+import needs  # before what it looks for
 import numpy
 
 import read

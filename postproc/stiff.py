@@ -14,6 +14,7 @@ import pathlib
 import subprocess
 import sys
 
+import needs  # before what it looks for
 import numpy
 import yaml
 

@@ -10,6 +10,7 @@
 
 import argparse
 
+import needs  # before what it looks for
 from matplotlib.collections import LineCollection
 
 import read

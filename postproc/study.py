@@ -14,7 +14,6 @@ import time
 import read
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
-PROGRAM = SOURCE / "build" / "release" / "app" / "tanktread"
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
@@ -60,7 +59,7 @@ class Outcome:
 class Study:
     """Runs `program`; results in `directory`. `limit`: processor seconds that one run may take. `jobs`: runs at a time, for what is not timed."""
 
-    def __init__(self, program=PROGRAM, directory="results/study", limit=300, jobs=1, fresh=False):
+    def __init__(self, program=read.PROGRAM, directory="results/study", limit=300, jobs=1, fresh=False):
         self.program, self.directory, self.limit, self.jobs, self.fresh = pathlib.Path(program), pathlib.Path(directory), limit, jobs, fresh
         if not self.program.exists():
             sys.exit(f"{program} does not exist: build it (cmake --workflow --preset release), or give --program")
@@ -144,7 +143,7 @@ def edge(holds, low, high, factor=1.05):
 
 def arguments(parser, results):
     """The options that all studies share."""
-    parser.add_argument("--program", default=PROGRAM, type=pathlib.Path, help="default: %(default)s")
+    parser.add_argument("--program", default=read.PROGRAM, type=pathlib.Path, help="default: %(default)s")
     parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
                         help="of pictures, tables and, under runs/, results (default: %(default)s)")
     parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")

@@ -12,6 +12,7 @@ RUNS = ["#0b6fb8", "#d1622b", "#2d8a57", "#8452a1", "#b8860b"]  # one a run, tol
 MARKS = ["o", "s", "^", "D", "v", "P"]                          # one a literature source
 FIELD = "viridis"                                               # colour map of a field without sign
 SIGNED = "RdBu_r"                                               # and of one with a sign
+TIME = "copper_r"                                               # of moments, which no field has
 
 plt.rcParams.update({
     "figure.dpi": 150,

@@ -7,6 +7,7 @@ tank-treading and pressure drop of all runs.
 
 import argparse
 
+import needs  # before what it looks for
 import numpy
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
@@ -18,6 +19,7 @@ import shape
 import style
 from style import plt
 
+FLOOR = 1e-4  # of the distance from the largest velocity: what the tolerances of a run let through is none
 TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 20.0]
 PANELS = [("migration_velocity", "migration velocity / vₘ"), ("velocity_x1", "velocity along the tube / vₘ"),
           ("tank_treading_velocity", "tank-treading velocity / vₘ"), ("disturbed_pressure_drop", "disturbed pressure drop / (μ vₘ/R_T)")]
@@ -25,7 +27,7 @@ PANELS = [("migration_velocity", "migration velocity / vₘ"), ("velocity_x1", "
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", nargs="+", help="directories of runs' results")
+    parser.add_argument("results", nargs="+", help="directories of runs' results, or decks, which are run when they have none")
     parser.add_argument("-o", "--output", default="tube.png", metavar="FILE", help="the picture of the shapes (default: %(default)s)")
     parser.add_argument("--motion", metavar="FILE", help="a second picture: how the runs move")
     parser.add_argument("--times", type=float, nargs="+", default=TIMES, help="simulated times of the shapes (default: %(default)s)")
@@ -33,7 +35,7 @@ def main():
     runs = [read.run(directory) for directory in arguments.results]
     for run in runs:
         run.require("centroid_x1")
-    ducts = [duct.duct(directory) for directory in arguments.results]
+    ducts = [duct.duct(run.directory) for run in runs]
     style.save(shapes(runs, ducts, arguments.times), arguments.output)
     if arguments.motion:
         style.save(motion(runs, ducts), arguments.motion)
@@ -53,18 +55,19 @@ def shapes(runs, ducts, times):
     figure = plt.figure(figsize=(11.5, 4.0 * len(runs)))
     for row, (part, run, d) in enumerate(zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts)):
         shots = shots_of(run, times)
-        colours = plt.get_cmap(style.FIELD)(numpy.linspace(0.0, 0.88, len(shots)))
+        colours = plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))
         upper, lower = part.subfigures(2, 1, height_ratios=[0.42, 0.58])
         norm = Normalize(0, max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots))
+        unit = run.value("Flow/viscosity", 1) * run.rate[0]
         axes = upper.subplots(1, len(shots))
         for axis, shot, colour in zip(numpy.atleast_1d(axes), shots, colours):
-            shape.draw_surface(axis, shot, "traction", norm, style.FIELD, -60, 20)
+            shape.draw_surface(axis, shot, "traction", norm, style.FIELD, *shape.VIEW, pixels=360)
             axis.set_title(f"t = {shot.time:g}", color=colour, loc="center")
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
         left, middle = lower.subplots(1, 2, width_ratios=[2.1, 1])
         along(left, run, d, shots, colours)
         across(middle, run, d, shots, colours)
-        upper.colorbar(ScalarMappable(norm, style.FIELD), ax=axes, label="traction / (μ vₘ/R_T)", shrink=0.8)
+        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=axes, label="traction / (μ vₘ/R_T)", shrink=0.8)
     return figure
 
 
@@ -121,13 +124,13 @@ def motion(runs, ducts):
     for run, d, colour in zip(runs, ducts, style.RUNS):
         speed, radius = d["mean_velocity"], d["radius"]
         s = run.series
-        time = s["time"] * speed / radius
+        time = run.time
         axes[0].plot(*d["outline"].T / radius, color=colour, linewidth=1)
         axes[0].plot(s["centroid_x2"] / radius, s["centroid_x3"] / radius, color=colour, label=run.name)
         axes[0].plot(s["centroid_x2"][0] / radius, s["centroid_x3"][0] / radius, color=colour, marker="o", markersize=3.5)
         axes[0].plot(*d["maximum"][:2] / radius, color=colour, marker="+", markersize=8)
         off = numpy.hypot(s["centroid_x2"] - d["maximum"][0], s["centroid_x3"] - d["maximum"][1]) / radius
-        axes[1].semilogy(time, off, color=colour)
+        axes[1].semilogy(time, numpy.maximum(off, FLOOR), color=colour)
         for axis, (name, label) in zip(axes[2:], PANELS):
             scale = run.value("Flow/viscosity", 1) * speed / radius if "pressure" in name else speed
             axis.plot(time[1:], s[name][1:] / scale, color=colour)
@@ -136,6 +139,7 @@ def motion(runs, ducts):
     axes[0].set_title("paths of the centroid; + largest velocity")
     axes[0].set_xlabel("x₂ / R_T")
     axes[0].set_ylabel("x₃ / R_T")
+    axes[1].set_ylim(bottom=FLOOR)
     axes[1].set_title("distance from the largest velocity / R_T")
     for axis in axes[1:]:
         axis.set_xlabel("t vₘ / R_T")

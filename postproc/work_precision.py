@@ -15,6 +15,7 @@ import itertools
 import math
 import pathlib
 
+import needs  # before what it looks for
 import numpy
 import yaml
 
@@ -62,9 +63,8 @@ class Scene:
         if "final" in self.error:
             return lambda outcome: abs(outcome.final[self.error["final"]] - self.error.get("value", 0.0))
         series = self.error["series"]
-        curve_path = self.curves / self.error.get("curve", "")
-        if "curve" in self.error and curve_path.exists():
-            curve = numpy.genfromtxt(curve_path, delimiter=",", names=True)
+        if self.curves and "curve" in self.error:
+            curve = numpy.genfromtxt(self.curves / self.error["curve"], delimiter=",", names=True)
             t, values = curve["t"], curve[series]
         else:
             reference = study.run(self.decks, self.base | self.error["reference"])
@@ -159,7 +159,7 @@ def main():
     parser.add_argument("study", help="the study: a file of tests/benchmark")
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2), help="choices that may differ from the default at a time (default: 2)")
     parser.add_argument("--only", nargs="+", metavar="CHOICE", help="vary these choices only")
-    parser.add_argument("--curves", default=literature.DEFAULT, type=pathlib.Path, metavar="DIR", help="reference curves (default: %(default)s)")
+    parser.add_argument("--curves", type=pathlib.Path, metavar="DIR", help="folder of reference curves (default: none, a run of the study's `reference` instead)")
     studies.arguments(parser, "results/work_precision")
     parsed = parser.parse_args()
     study, scene = studies.study(parsed), Scene(parsed.study, parsed.curves)

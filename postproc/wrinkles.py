@@ -11,6 +11,7 @@ have no shortest unstable wave, so the shortest that elements carry grows fastes
 
 import argparse
 
+import needs  # before what it looks for
 import numpy
 
 import study as studies

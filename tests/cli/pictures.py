@@ -2,8 +2,20 @@
 # The scripts of postproc/ draw what a run wrote, and say in one sentence when they cannot.
 import pathlib
 import subprocess
+import sys
+from unittest import mock
 
-from harness import SOURCE, check, deck, main, run
+import numpy
+
+from harness import PROGRAM, SOURCE, check, close, deck, main, run
+
+sys.path.append(str(SOURCE / "postproc"))
+import deformation
+import read
+import refinement
+import render
+import shape
+import style
 
 DECK = """
 Tanktread:
@@ -28,11 +40,11 @@ def a_run_is_drawn():
     run("deck.yaml", "--output", "results", "--quiet")
     pathlib.Path("curve.csv").write_text("t,taylor_inertia\n" + "".join(f"{0.05 * k},{0.05 * k}\n" for k in range(5)))
     words = {"convergence.py": ["--curve", "curve.csv"]}
-    for name in "deformation.py", "shape.py", "meshes.py", "refinement.py", "convergence.py":
+    for name in "deformation.py", "shape.py", "meshes.py", "refinement.py", "convergence.py", "rheology.py":
         _script(name, "results", *words.get(name, []), "-o", f"{name}.png")
         with open(f"{name}.png", "rb") as file:
             check(file.read(8) == b"\x89PNG\r\n\x1a\n", f"{name}.png is no picture")
-    _script("animation.py", "results", "-o", "animation.gif")
+    _script("animation.py", "results", "-o", "animation.gif", "--width", "240")
     with open("animation.gif", "rb") as file:
         check(file.read(6) == b"GIF89a", "animation.gif is no animation")
     check("taylor_inertia" in _script("read.py", "results"), "read.py does not list the series")
@@ -40,11 +52,70 @@ def a_run_is_drawn():
     check("colour" in said and "load" in said, said)
 
 
+def _drawn_by(module, *arguments):
+    """The figure that a script draws."""
+    with mock.patch.object(style, "save") as save, mock.patch.object(sys, "argv", [module.__name__, *arguments]):
+        module.main()
+    return save.call_args.args[0]
+
+
+def axis_and_label_of_time_agree():
+    deck(DECK.replace("simple shear", "simple shear, shear rate: 500").replace("final time: 0.2", "final time: 0.0004").replace("interval: 0.1", "interval: 0.0002"))
+    run("deck.yaml", "--output", "fast", "--quiet")
+    close(read.run("fast").time[-1], 0.2, 1e-12, "time times rate at the end")
+    for module in deformation, refinement:
+        lowest = _drawn_by(module, "fast").axes[-1]
+        check(lowest.get_xlabel() == "time · shear rate", module.__name__, lowest.get_xlabel())
+        close(lowest.lines[0].get_xdata()[-1], 0.2, 1e-12, f"end of the curve of {module.__name__}")
+
+
+def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
+    deck(DECK.replace("shape: sphere", "shape: red cell").replace("final time: 0.2", "final time: 0.001"))
+    run("deck.yaml", "--output", "cell", "--quiet")
+    shot = read.run("cell").snapshot_at(0)
+    view = shape.view_axes(-85, 15)  # the rim hides a part of the dimple
+    depth, found, corner, size = render.seen(shot, shot.points @ view[2], view, 100)
+    hit = numpy.isfinite(depth)
+    check(abs(found[hit][:, 0] * size - depth[hit]).max() < 1e-3, "a value that is not of the place that is seen")
+    x = shot.sampled(shot.points, 40).reshape(-1, 3) @ view.T
+    column, row = ((x[:, :2] - corner) * size).astype(int).T
+    slope = 3  # pixels of depth within a pixel, where the surface faces the eye by more than 0.3
+    facing = (shot.sampled(shot.fields["Normals"], 40).reshape(-1, 3) @ view.T)[:, 2] > 0.3
+    hidden = depth[column, row] - x[:, 2] * size
+    check(hidden[facing].min() > -2 * slope, "a pixel shows what lies behind", hidden[facing].min())
+    check((hidden[facing] > 10).any(), "nothing is hidden: the test shows nothing")
+    image, _ = render.picture(shot, shot.points[:, 0], view, lambda values: numpy.tile([0.2, 0.4, 0.6, 1.0], (len(values), 1)), 100)
+    solid = image[image[..., 3] == 1][:, :3]
+    check((abs(solid - [0.2, 0.4, 0.6]).max(axis=1) < render.RIM * 0.6).mean() > 0.75, "most of the surface has other colours than the bar")
+
+
+def an_axis_that_turns_over_is_no_vertical_line():
+    t, angle = deformation.unbroken(numpy.arange(4.0), numpy.array([-80.0, -89.0, 88.0, 80.0]))
+    check(numpy.isnan(angle[2]) and numpy.isnan(t[2]) and len(angle) == 5, angle)
+
+
+def a_deck_is_run_when_it_has_no_results():
+    deck(DECK)
+    with mock.patch.object(read, "PROGRAM", PROGRAM):
+        check(read.run("deck.yaml").directory == pathlib.Path("results/deck"), "another place")
+        before = pathlib.Path("results/deck/run.h5").stat().st_mtime_ns
+        read.run("deck.yaml")
+        check(pathlib.Path("results/deck/run.h5").stat().st_mtime_ns == before, "a run that is there is made again")
+
+
+def a_python_without_numpy_is_told_which_one_to_use():
+    for script in "shape.py", "read.py", "atlas.py":
+        result = subprocess.run(["/usr/bin/python3", "-S", SOURCE / "postproc" / script, "nowhere"], capture_output=True, text=True)
+        check(result.returncode == 1 and "/usr/bin/python3" in result.stderr and result.stderr.count("\n") == 1, result.stderr)
+
+
 def a_rigid_particle_is_drawn_and_what_it_does_not_have_is_named():
     deck(DECK.replace("sphere }", "spheroid, semi-axes: [1.0, 1.0, 0.5], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", ""))
     run("deck.yaml", "--output", "rigid", "--quiet")
     _script("shape.py", "rigid")
-    for name in "deformation.py", "animation.py", "refinement.py":
+    _script("animation.py", "rigid", "-o", "rigid.gif", "--width", "240")
+    check("[η] = 2." in _script("rheology.py", "rigid"), "a spheroid's intrinsic viscosity is not between 2 and 3")
+    for name in "deformation.py", "refinement.py":
         said = _script(name, "rigid", code=1)
         check("no series taylor_inertia" in said and said.count("\n") == 1, said)
 
