@@ -13,6 +13,7 @@
 #include "coupling/departure.hpp"
 #include "coupling/ranks.hpp"
 #include "deck/document.hpp"
+#include "deck/words.hpp"
 
 namespace {
 
@@ -60,7 +61,7 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   places.push_back(path);
   for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
   for (const auto& place : places)
-    if (std::filesystem::is_regular_file(place)) return place.string();
+    if (std::error_code error; std::filesystem::is_regular_file(place, error)) return place.string();
   return name;
 }
 
@@ -103,11 +104,11 @@ int run(const Arguments& arguments, bool speaks) {
   return simulate(scene, request);
 }
 
-/// One line, whatever the message holds.
+/// One line of bearable length, whatever the message holds.
 std::string one_line(std::string text) {
   for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';
-  return text;
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return deck::shortened(text, 1000);
 }
 
 /// The whole program on one rank; only the first one speaks. `message`: what an error is, for others.

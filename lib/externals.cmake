@@ -8,6 +8,8 @@ find_package(HDF5 REQUIRED COMPONENTS C)
 find_path(BOOST_MATH_INCLUDE_DIR boost/math/special_functions.hpp REQUIRED)
 find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
 find_library(METIS_LIBRARY metis REQUIRED)
+find_path(YAML_INCLUDE_DIR yaml-cpp/yaml.h REQUIRED)
+find_library(YAML_LIBRARY yaml-cpp REQUIRED)
 
 function(external name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
@@ -25,6 +27,7 @@ endforeach()
 
 external(BOOST HEADERS ${BOOST_MATH_INCLUDE_DIR})
 external(METIS HEADERS ${METIS_INCLUDE_DIR} LIBRARIES ${METIS_LIBRARY})
+external(YAML HEADERS ${YAML_INCLUDE_DIR} LIBRARIES ${YAML_LIBRARY})
 external(HDF5 HEADERS ${HDF5_INCLUDE_DIRS} LIBRARIES ${HDF5_LIBRARIES} MPI::MPI_CXX)
 external(TEUCHOS HEADERS ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS} LIBRARIES ${teuchos} MPI::MPI_CXX)
 external(TRILINOS

@@ -5,6 +5,7 @@
 #include "deck/record.hpp"
 #include "deck/source.hpp"
 #include "deck/value.hpp"
+#include "deck/yaml.hpp"
 
 namespace tanktread::deck {
 
@@ -51,11 +52,7 @@ std::string Document::reference() const { return markdown_text(held_->root); }
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored) {
   auto merged = std::make_shared<Teuchos::ParameterList>(root_name);
   if (!stored.empty()) overlay(*merged, *yaml_list(stored, "The stored deck"));
-  for (const std::string& file : files) {
-    const bool xml = file.size() > 4 && file.substr(file.size() - 4) == ".xml";
-    const std::string text = file_text(file);
-    overlay(*merged, xml ? *xml_list(text, file) : *yaml_list(text, file));
-  }
+  for (const std::string& file : files) overlay(*merged, *file_list(file));
   for (const std::string& setting : settings) overlay(*merged, *setting_list(setting));
   return Document(merged);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Text of a deck to parameter lists, every mistake one sentence with its line.
+// Text of a deck to parameter lists, every mistake one sentence.
 
 #include <memory>
 #include <string>
@@ -13,16 +13,13 @@ namespace tanktread::deck {
 /// The name of the root list of every deck.
 inline constexpr const char* root_name = "Tanktread";
 
-/// The text of a file. Throws UserError if it is missing, a directory, unreadable, or far too long for a deck.
-std::string file_text(const std::string& file);
+/// The root list of the deck in a file: YAML, or XML by extension. Throws UserError also where the file is none or longer than 1 MB.
+std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file);
 
-/// The root list of a deck in YAML; `origin` names it in messages.
-std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin);
-
-/// The same from XML, as Teuchos writes it.
+/// The root list of a deck in XML, as Teuchos writes it; `origin` names it in messages.
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin);
 
-/// The root list that `Section/key=value` means, the value read as YAML.
-std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting);
+/// The list named `Tanktread` of all that a deck holds. Throws UserError where it is missing or not alone.
+std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin);
 
 }  // namespace tanktread::deck

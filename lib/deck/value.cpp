@@ -75,11 +75,7 @@ std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry) {
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry) {
   const auto* value = held<std::string>(entry);
   if (!value) return std::nullopt;
-  std::string text = *value;
-  for (char& c : text)
-    if (c == '\n' || c == '\t' || c == '\r') c = ' ';
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
+  return *value;
 }
 
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry) {
@@ -92,8 +88,10 @@ std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& ent
 }
 
 std::string description(const Teuchos::ParameterEntry& entry) {
-  if (entry.isList()) return "a list of keys";
-  if (const auto text = as_text(entry)) return in_quotes(text->size() > 80 ? text->substr(0, 77) + "..." : *text) + " (text)";
+  if (entry.isList()) return Teuchos::getValue<Teuchos::ParameterList>(entry).numParams() > 0 ? "a list of keys" : "nothing";
+  if (const auto text = as_text(entry)) return in_quotes(shortened(*text, 80)) + " (text)";
+  if (const auto* texts = held<Teuchos::Array<std::string>>(entry); texts && texts->size() > 12)
+    return std::to_string(texts->size()) + " words";
   if (const auto numbers = as_numbers(entry); numbers && numbers->size() > 12) return std::to_string(numbers->size()) + " numbers";
   if (const auto* value = held<double>(entry)) return number_text(*value);
   return yaml_value(entry);

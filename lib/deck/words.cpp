@@ -21,8 +21,13 @@ std::string real_text(double value) {
 std::string in_quotes(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
+    constexpr const char* digits = "0123456789abcdef";
+    const auto byte = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') out += '\\';
-    out += c;
+    if (byte < 0x20 || byte == 0x7f)
+      out += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
+    else
+      out += c;
   }
   return out + "\"";
 }
@@ -36,6 +41,18 @@ bool is_plain(const std::string& text) {
   for (const char* word : {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf", "infinity"})
     if (lower == word) return false;
   return true;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
+std::string shortened(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t end = most - 3;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // no half of a character
+  return text.substr(0, end) + "...";
 }
 
 std::string alternatives(const std::vector<std::string>& words) {

@@ -12,11 +12,17 @@ std::string number_text(double value);
 /// The same with a point in it, which every YAML reader takes for a real number: `12.0`, `1.0e-05`.
 std::string real_text(double value);
 
-/// Text in double quotes, with `"` and `\` escaped.
+/// Text in double quotes, with `"`, `\` and characters that no line of text holds escaped.
 std::string in_quotes(const std::string& text);
 
 /// Whether YAML reads the bare word as this very text (no number, no truth value, no punctuation).
 bool is_plain(const std::string& text);
+
+/// Without the blanks around it.
+std::string trimmed(const std::string& text);
+
+/// The text itself, or its beginning and `...`, at most `most` bytes together.
+std::string shortened(const std::string& text, std::size_t most);
 
 /// `a, b or c`.
 std::string alternatives(const std::vector<std::string>& words);

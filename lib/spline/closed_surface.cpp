@@ -82,22 +82,19 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
   Places places(tolerance);
   // Each side by its ends and its middle; the partner runs the other way.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
-  std::array<int, 3> repeated{-1, -1, -1};
-  int twice = -1;
+  int once = -1, twice = -1;
   for (int k = 0; k < int(space.elements.size()); ++k)
     for (int e = 0; e < 4; ++e) {
       const int a = places(frame(space, net, on_edge(k, e, 0)).x), m = places(frame(space, net, on_edge(k, e, 0.5)).x),
                 b = places(frame(space, net, on_edge(k, e, 1)).x);
       if (a == m && m == b) continue;  // collapsed: a pole
       if (open.erase({b, m, a})) continue;
-      if (!open.try_emplace({a, m, b}, k, e).second && twice < 0) {
-        twice = k;
-        repeated = {a, m, b};
-      }
+      const auto [side, is_new] = open.try_emplace({a, m, b}, k, e);
+      if (!is_new && twice < 0) once = side->second.first, twice = k;
     }
   if (twice >= 0)
-    return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " +
-           std::to_string(open.at(repeated).first) + ", so one of them is inverted.";
+    return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " + std::to_string(once) +
+           ", so one of them is inverted.";
 
   // Sides without partner: integrals of cos(k_i . x) dx and sin(k_i . x) dx over all of them.
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/errors.hpp"
+#include "base/text_file.hpp"
 #include "spline/closed_surface.hpp"
 
 namespace tanktread::spline {
@@ -21,9 +22,8 @@ constexpr int least_degree = 2, largest_degree = 6, most_functions = 64;
 /// Words of the file, with the number of the line for messages.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
-    if (!std::filesystem::is_regular_file(file) || !stream_) throw UserError("Surface file " + name_ + " cannot be read.");
-  }
+  explicit Reader(const std::filesystem::path& file)
+      : name_(file.string()), stream_(text_of_file(file, "Surface file " + name_, 1'000'000'000)) {}
 
   [[noreturn]] void fail(const std::string& what) const {
     throw UserError("Surface file " + name_ + ", line " + std::to_string(line_) + ": " + what);
@@ -59,7 +59,7 @@ class Reader {
 
  private:
   std::string name_;
-  std::ifstream stream_;
+  std::istringstream stream_;
   std::istringstream words_;
   int line_ = 0;
 };
@@ -112,7 +112,7 @@ SplineSurface read_iga(const std::filesystem::path& file) {
       Vec3 x;
       for (int d = 0; d < 3; ++d) x[d] = in.word<double>("a coordinate");
       if (std::abs(in.word<double>("a weight") - 1) > 1e-12) in.fail("weights must be 1, rational surfaces are not supported.");
-      if (!x.allFinite()) in.fail("coordinates must be finite.");
+      if (!(x.cwiseAbs().maxCoeff() < 1e75)) in.fail("coordinates must be below 1e75 in size.");
       points.push_back(x);
     } else if (key == "belem") {
       if (nodes < 0 || int(points.size()) != nodes) in.fail("nodeN and as many nodes must come before the first element.");

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "base/text_file.hpp"
 #include "surface/outline.hpp"
 
 namespace tanktread::surface {
@@ -33,8 +33,7 @@ std::vector<std::string> fields(const std::string& line) {
 class File {
  public:
   explicit File(const std::string& path) : name_("Tube/outline \"" + path + "\"") {
-    std::ifstream in(path);
-    if (!in) throw UserError(name_ + " cannot be read.");
+    std::istringstream in(text_of_file(path, name_, 10'000'000));
     int number = 0;
     for (std::string line; std::getline(in, line);) {
       ++number;
@@ -59,7 +58,8 @@ class File {
       value = std::stod(text, &used);
     } catch (const std::logic_error&) {
     }
-    if (used != text.size() || !std::isfinite(value)) throw UserError(at(line) + "\"" + text + "\" is not a finite number.");
+    if (used != text.size() || !(std::abs(value) < 1e75))
+      throw UserError(at(line) + "\"" + text + "\" is not a number below 1e75 in size.");
     return value;
   }
 

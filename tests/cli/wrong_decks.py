@@ -106,13 +106,16 @@ TEXTS = [
     ("<html><body>404</body></html>\n", ["not YAML", "line 1"]),
     ("Tanktread:\n  Flow: {type: simple shear\n", ["not YAML", "line 2"]),
     ("Tanktread:\n  Flow:\n    type: uniform\n    type: linear\n", ["line 4", "Flow/type", "second time", "line 3"]),
+    ("Tanktread:\n  Flow: {type: uniform, type: linear}\n", ["line 2", "Flow/type", "second time"]),
+    ("Tanktread: {}\n---\nTanktread: {}\n", ["line 2", "second document"]),
+    ("Tanktread: &a {Flow: *a}\n", ["deep in each other"]),
     ("Tanktread:\n  Flow:\n    type: uniform\n   viscosity: 1\n", ["line 4", "indentation"]),
     ("Tanktread:\n\tFlow: {}\n", ["line 2", "tabs"]),
     ("Flow:\n  type: uniform\n", ["Tanktread", "Flow"]),
     ("Tanktread:\n  Flow: {}\nMembrane: {}\n", ["Tanktread", "Membrane"]),
     ("Tanktread: 7\n", ["Tanktread"]),
     ("Tanktread:\n  Flow: 7\n", ["Flow", "list of keys", "7"]),
-    ("Tanktread:\n  Membrane:\n    - law: Skalak\n    - law: Skalak\n", ["not YAML"]),
+    ("Tanktread:\n  Membrane:\n    - law: Skalak\n    - law: Skalak\n", ["line 3", "Membrane", "sequence"]),
     ("Tanktread:\n  Flow: {type: \x07}\n", ["line 2", "not text"]),
 ]
 
@@ -129,6 +132,16 @@ def _refused(words, *arguments):
     check(len(lines[0]) < 400, f"{len(lines[0])} characters: {lines[0]}")
     check(result.stdout == "", f"on standard output: {result.stdout}")
     check(not pathlib.Path("results").exists(), "results were written")
+
+
+def _tube(outline):
+    return deck("Tanktread:\n  Flow: {type: duct}\n  Particle: {radius: 0.5}\n  Membrane: {law: neo-Hookean, shear modulus: 1}\n"
+                f"  Tube: {{section: file, outline: {outline}, length: 6}}\n  Time: {{final time: 1}}\n", "tube.yaml")
+
+
+def _imported(file):
+    return deck("Tanktread:\n  Flow: {type: simple shear}\n  Membrane: {law: neo-Hookean, shear modulus: 1}\n"
+                f"  Particle: {{shape: file, file: {file}}}\n  Time: {{final time: 1}}\n", "imported.yaml")
 
 
 def wrong_settings_are_refused():
@@ -149,7 +162,16 @@ def wrong_files_are_refused():
     _refused(["folder.yaml", "directory"], "folder.yaml")
     pathlib.Path("binary.yaml").write_bytes(bytes(range(256)))
     _refused(["binary.yaml", "not text"], "binary.yaml")
-    _refused(["/dev/zero", "10 MB"], "/dev/zero")
+    _refused(["/dev/zero", "no regular file"], "/dev/zero")
+    os.mkfifo("pipe")
+    _refused(["pipe", "no regular file"], "pipe")
+    _refused(["Tube/outline", "no regular file"], _tube("pipe"))
+    _refused(["Surface file pipe", "no regular file"], _imported("pipe"))
+    _refused(["too long"], "x" * 300)
+    _refused(["Tube/outline", "too long"], _tube("x" * 300))
+    _refused(["Surface file", "too long"], _imported("x" * 300))
+    _refused(["deep.xml", "deep in each other"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
+    _refused(["deep.yaml", "deep in each other"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
     _refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
     _refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
     if os.geteuid() != 0:

@@ -6,6 +6,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <Teuchos_ParameterList.hpp>
 #include <Teuchos_XMLParameterListCoreHelpers.hpp>
@@ -109,17 +110,27 @@ TEST(Xml, IsReadByExtension) {
   EXPECT_EQ(s.kinds.center[1], 2.0);
   EXPECT_EQ(refused({folder.file("bad.xml", "<ParameterList")}),
             (folder.path / "bad.xml").string() + " is not XML of the kind that Teuchos reads.");
+  std::string deep;
+  for (int i = 0; i < 20000; ++i) deep += "<ParameterList name=\"Tanktread\">";
+  EXPECT_EQ(refused({folder.file("deep.xml", deep)}),
+            (folder.path / "deep.xml").string() + ": its elements lie more than 100 deep in each other.");
 }
 
 TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
   const Folder folder;
   const std::string missing = folder.path / "missing.yaml";
   EXPECT_EQ(refused({missing}), "The deck " + missing + " does not exist.");
-  EXPECT_EQ(refused({folder.path}), folder.path.string() + " is a directory, not a deck.");
+  EXPECT_EQ(refused({folder.path}), "The deck " + folder.path.string() + " is a directory, not a file.");
   const auto empty = folder.file("empty.yaml", "# nothing\n\n");
   EXPECT_EQ(refused({empty}), empty + " is empty; a deck holds one list named `Tanktread`.");
   const auto text = folder.file("text.yaml", "To whom it may concern\n");
-  EXPECT_EQ(refused({text}), text + ", line 1: this is not YAML that can be read: `To whom it may concern`.");
+  EXPECT_EQ(refused({text}), text + ", line 1: this is not YAML that can be read (no key followed by a colon): `To whom it may concern`.");
+  const auto pipe = (folder.path / "pipe.yaml").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(refused({pipe}), "The deck " + pipe + " is no regular file, but a pipe or a device.");
+  EXPECT_EQ(refused({std::string(300, 'x')}), "The deck " + std::string(77, 'x') + "... cannot be read: File name too long.");
+  EXPECT_EQ(refused({folder.file("long.yaml", std::string(1'000'001, '#'))}),
+            "The deck " + (folder.path / "long.yaml").string() + " is larger than 1 MB.");
   const auto binary = folder.file("binary.yaml", std::string("\x89HDF\r\n\x1a\n\0\0", 10));
   EXPECT_EQ(refused({binary}), binary + ", line 2: this is not text, so no deck.");
 }

@@ -130,6 +130,11 @@ TEST(Iga, EveryFaultGetsOneSentence) {
   EXPECT_TRUE(says(complaint([](std::string& t) { replace(t, " 1\nnode", " 0.5\nnode"); }), "weights must be 1"));
   EXPECT_TRUE(says(complaint([](std::string& t) { t.resize(t.size() / 2); }), "Surface file"));
   EXPECT_TRUE(says(complaint([](std::string& t) { t.clear(); }), "elemN says"));
+  for (const char* far : {"1e308", "2147483648", "1e10"})  // with the last two, all but one point are within the tolerance of each other
+    EXPECT_TRUE(says(
+        complaint([&](std::string& t) { t.replace(t.find("node ") + 5, t.find(' ', t.find("node ") + 5) - t.find("node ") - 5, far); }),
+        "Surface file"))
+        << far;
   EXPECT_THROW(read_iga("/nonexistent/surface.iga"), UserError);
   EXPECT_THROW(read_iga(std::filesystem::temp_directory_path()), UserError);
 }

@@ -201,9 +201,7 @@ class OutlineFile : public testing::Test {
     return out;
   }
 
-  std::string path_ = (std::filesystem::temp_directory_path() /
-                       ("tanktread_outline_" + std::to_string(getpid()) + ".csv"))
-                          .string();
+  std::string path_ = (std::filesystem::temp_directory_path() / ("tanktread_outline_" + std::to_string(getpid()) + ".csv")).string();
 };
 
 TEST_F(OutlineFile, OfPointsOnACircleIsACircle) {
@@ -234,8 +232,8 @@ TEST_F(OutlineFile, IsRefusedWithTheReason) {
   EXPECT_EQ(refusal("0,0\n1\n"),
             ", line 2: a point is two numbers x2,x3 and, where two sides meet, the word `corner`, but this line holds 1 entry.");
   EXPECT_EQ(refusal("0,0\n1,2,3\n"), ", line 2: the third entry must be `corner` or nothing, but is \"3\".");
-  EXPECT_EQ(refusal("0,0\n1,nan\n"), ", line 2: \"nan\" is not a finite number.");
-  EXPECT_EQ(refusal("0,0\n1,2 m\n"), ", line 2: \"2 m\" is not a finite number.");
+  EXPECT_EQ(refusal("0,0\n1,nan\n"), ", line 2: \"nan\" is not a number below 1e75 in size.");
+  EXPECT_EQ(refusal("0,0\n1,2 m\n"), ", line 2: \"2 m\" is not a number below 1e75 in size.");
   EXPECT_EQ(refusal("# one\n0,0,corner\n1,0\n1,0\n1,1\n0,1\n"), ", line 4: the point of line 3 stands here once more.");
   EXPECT_EQ(refusal(ring(40, 0.6)).substr(0, 53), " is open: its last point is 1.944740 from its first, ");
   EXPECT_EQ(refusal("0,0,corner\n1,1,corner\n1,0,corner\n0,1,corner\n"), " crosses itself near (x2, x3) = (0.5, 0.5).");

@@ -1,0 +1,213 @@
+#include "deck/yaml.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/yaml.h>
+#include <Teuchos_ParameterList.hpp>
+
+#include "base/errors.hpp"
+#include "deck/source.hpp"
+#include "deck/value.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+constexpr int most_levels = 20;              // of lists in lists
+constexpr std::size_t most_nodes = 100'000;  // keys and values, counted again wherever an alias repeats them
+constexpr std::size_t longest_key = 100;     // characters
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+template <class Number>
+bool reads(const std::string& text, Number& number) {
+  const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(begin, end, number);
+  return error == std::errc() && last == end;
+}
+
+/// A word as the first type that it can be read as, unless it stands in quotes.
+Teuchos::ParameterEntry typed(const YAML::Node& node) {
+  const std::string& text = node.Scalar();
+  const bool plain = node.Tag() == "?" || node.Tag().empty();
+  const bool number = plain && text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+  const std::string lower = lower_case(text);
+  int whole = 0;
+  long long long_whole = 0;
+  double real = 0;
+  if (plain && (lower == "true" || lower == "yes")) return Teuchos::ParameterEntry(true);
+  if (plain && (lower == "false" || lower == "no")) return Teuchos::ParameterEntry(false);
+  if (number && reads(text, whole)) return Teuchos::ParameterEntry(whole);
+  if (number && reads(text, long_whole)) return Teuchos::ParameterEntry(long_whole);
+  if (number && reads(text, real)) return Teuchos::ParameterEntry(real);
+  return Teuchos::ParameterEntry(text);
+}
+
+/// Numbers or words in a row, as the first type that all of them can be read as.
+Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
+  std::vector<Teuchos::ParameterEntry> entries;
+  for (const YAML::Node& node : nodes) entries.push_back(typed(node));
+  const auto all = [&](const auto& holds) { return std::ranges::all_of(entries, holds); };
+  if (all([](const auto& entry) { return entry.template isType<int>(); })) {
+    Teuchos::Array<int> row;
+    for (const auto& entry : entries) row.push_back(Teuchos::getValue<int>(entry));
+    return Teuchos::ParameterEntry(row);
+  }
+  if (all([](const auto& entry) { return as_number(entry).has_value(); })) {
+    Teuchos::Array<double> row;
+    for (const auto& entry : entries) row.push_back(*as_number(entry));
+    return Teuchos::ParameterEntry(row);
+  }
+  Teuchos::Array<std::string> row;
+  for (const YAML::Node& node : nodes) row.push_back(node.Scalar());
+  return Teuchos::ParameterEntry(row);
+}
+
+/// From a tree of YAML to lists of entries.
+class Walk {
+ public:
+  explicit Walk(const std::string& origin) : origin_(origin) {}
+
+  /// The keys of `map` into `list`, which stands at `path`.
+  void read(const YAML::Node& map, const std::string& path, int level, Teuchos::ParameterList& list) {
+    std::map<std::string, int> lines;
+    for (const auto& item : map) {
+      const YAML::Node key = item.first;
+      if (!key.IsScalar() || key.Scalar().empty() || key.Scalar().size() > longest_key)
+        refuse(key, "a key is a word of at most " + std::to_string(longest_key) + " characters, followed by a colon");
+      const std::string& name = key.Scalar();
+      const std::string here = path.empty() ? name : path + "/" + name;
+      const auto [first, is_new] = lines.emplace(name, key.Mark().line + 1);
+      if (!is_new) refuse(key, here + " is given a second time; it already stands in line " + std::to_string(first->second));
+      add(name, item.second, level == 0 ? "" : here, level, list);
+    }
+  }
+
+  /// One key and what stands after it.
+  void add(const std::string& name, const YAML::Node& value, const std::string& path, int level, Teuchos::ParameterList& list) {
+    if (++nodes_ > most_nodes || level > most_levels)
+      refuse(value, "lists lie more than " + std::to_string(most_levels) + " deep in each other, or hold more than 100,000 values");
+    if (value.IsScalar())
+      list.setEntry(name, typed(value));
+    else if (value.IsSequence())
+      list.setEntry(name, typed_row(words(value, path)));
+    else
+      read(value, path, level + 1, list.sublist(name));  // an empty list where nothing follows the colon
+  }
+
+ private:
+  [[noreturn]] void refuse(const YAML::Node& node, const std::string& what) const {
+    throw UserError(origin_ + ", line " + std::to_string(node.Mark().line + 1) + ": " + what + ".");
+  }
+
+  /// The words of a row, or of rows of equal length one after the other.
+  std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
+    std::vector<YAML::Node> out;
+    for (const YAML::Node& item : sequence) {
+      const bool row = item.IsSequence() && item.size() > 0 && item.size() == sequence[0].size();
+      for (std::size_t i = 0; i < (row ? item.size() : 1); ++i) {
+        out.push_back(row ? item[i] : item);
+        if (!out.back().IsScalar() || ++nodes_ > most_nodes)
+          refuse(sequence, path + " is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only");
+      }
+    }
+    return out;
+  }
+
+  std::string origin_;
+  std::size_t nodes_ = 0;
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+[[noreturn]] void refuse_line(const std::string& origin, std::size_t line, const std::string& what) {
+  throw UserError(origin + ", line " + std::to_string(line + 1) + ": " + what + ".");
+}
+
+/// What yaml-cpp lets pass: bytes that are no text, and a second document, which it would not read.
+void check_lines(const std::vector<std::string>& lines, const std::string& origin) {
+  bool content = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto no_text = [](unsigned char c) { return (c < 0x20 && c != '\t' && c != '\r') || c == 0x7f; };
+    if (std::ranges::any_of(lines[i], no_text)) refuse_line(origin, i, "this is not text, so no deck");
+    const std::size_t first = lines[i].find_first_not_of(" \t\r");
+    const bool marker = lines[i].starts_with("---") || lines[i].starts_with("...");
+    if (content && lines[i].starts_with("---")) refuse_line(origin, i, "a second document begins here; a deck is one");
+    content = content || (first != std::string::npos && lines[i][first] != '#' && lines[i][first] != '%' && !marker);
+  }
+}
+
+/// The line on which yaml-cpp stopped, or the last one before it with something on it.
+[[noreturn]] void refuse_yaml(const std::vector<std::string>& lines, const std::string& origin, const YAML::Mark& mark,
+                              const std::string& reason) {
+  std::size_t number = std::min(static_cast<std::size_t>(std::max(mark.line, 0)), lines.size() - 1);
+  const auto blank = [](const std::string& line) { return line.find_first_not_of(" \t\r") == std::string::npos; };
+  while (number > 0 && blank(lines[number])) --number;
+  std::string line = lines[number];
+  const std::size_t indentation = std::min(line.find_first_not_of(" \t"), line.size());
+  if (line.substr(0, indentation).find('\t') != std::string::npos) refuse_line(origin, number, "indent with spaces, not with tabs");
+  line = shortened(line.substr(indentation), 80);
+  const std::string what = reason == YAML::ErrorMsg::END_OF_MAP ? "the indentation fits none of the lines above" : reason;
+  refuse_line(origin, number, "this is not YAML that can be read (" + what + "): `" + line + "`");
+}
+
+/// yaml-cpp's tree of one document.
+YAML::Node document(const std::string& text, const std::string& origin) {
+  const std::vector<std::string> lines = lines_of(text);
+  check_lines(lines, origin);
+  try {
+    const YAML::Node root = YAML::Load(text);
+    if (root.IsScalar() || root.IsSequence()) refuse_yaml(lines, origin, root.Mark(), "no key followed by a colon");
+    return root;
+  } catch (const YAML::DeepRecursion&) {
+    throw UserError(origin + ": lists lie more than " + std::to_string(most_levels) + " deep in each other.");
+  } catch (const YAML::Exception& error) {
+    refuse_yaml(lines, origin, error.mark, error.msg);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin) {
+  Teuchos::ParameterList whole;
+  Walk(origin).read(document(text, origin), "", 0, whole);
+  return root_list(whole, origin);
+}
+
+std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {
+  const std::string origin = "--set '" + shortened(setting, 80) + "'";
+  const std::size_t equals = setting.find('=');
+  const auto refuse = [&] { throw UserError(origin + " must be of the form Section/key=value."); };
+  if (equals == std::string::npos || equals + 1 == setting.size() || setting.find('\n') != std::string::npos) refuse();
+  std::istringstream path(setting.substr(0, equals));
+  std::vector<std::string> keys;
+  for (std::string key; std::getline(path, key, '/');) keys.push_back(trimmed(key));
+  if (!keys.empty() && keys.front() == root_name) keys.erase(keys.begin());
+  if (keys.size() < 2 || keys.size() > most_levels || std::ranges::any_of(keys, &std::string::empty)) refuse();
+  auto root = std::make_shared<Teuchos::ParameterList>(root_name);
+  Teuchos::ParameterList* list = root.get();
+  for (std::size_t i = 0; i + 1 < keys.size(); ++i) list = &list->sublist(keys[i]);
+  try {
+    Walk(origin).add(keys.back(), YAML::Load(setting.substr(equals + 1)), setting.substr(0, equals), static_cast<int>(keys.size()), *list);
+  } catch (const YAML::Exception&) {
+    throw UserError(origin + ": the value is not YAML that can be read.");
+  }
+  return root;
+}
+
+}  // namespace tanktread::deck
