@@ -1,5 +1,9 @@
 #!/usr/bin/python3
-"""A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (the paper's Figures 17 and 18)."""
+"""A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (the paper's Figures 17 and 18).
+
+    postproc/fixed_against_refined.py                                 # runs inputs/hyperbolic_skalak_ca0.8.yaml, refined and not
+    postproc/fixed_against_refined.py results/refined results/fixed   # runs of yours
+"""
 
 import argparse
 
@@ -15,14 +19,14 @@ from style import plt
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("refined", help="directory of a run's results")
-    parser.add_argument("fixed", nargs="+", help="of others, to be compared with it")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("refined", nargs="?", help="directory of a run's results")
+    parser.add_argument("fixed", nargs="*", help="of others, to be compared with it")
     parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--field", default="traction", help="field along the section (default: %(default)s)")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in [arguments.refined, *arguments.fixed]]
+    runs = [read.run(directory) for directory in ([arguments.refined, *arguments.fixed] if arguments.refined else made())]
     shots = [run.snapshot_at(None) for run in runs]
     names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
     extent = shots[0].points.max(0) - shots[0].points.min(0)
@@ -69,6 +73,12 @@ def main():
         print(f"{run.name}: largest {arguments.field} {largest(values):.5g} against {largest(curves[0][1]):.5g}, "
               f"largest difference on the section {100 * difference(curves[0], (angle, values)):.2f} % of the largest")
     style.save(figure, arguments.output)
+
+
+def made():
+    deck = read.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml"
+    fixed = {"Adaptation/enabled": "false", "Surface/elements per side": 10}
+    return [read.results_of(deck), read.results_of(deck, "fixed_against_refined/fixed", fixed)]
 
 
 def profile(shot, field):

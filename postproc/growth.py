@@ -1,18 +1,22 @@
 #!/usr/bin/python3
 """How a velocity evaluation grows with the mesh: seconds by part, interactions and bytes, with fitted exponents.
 
-    build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json
-    postproc/growth.py growth.json
+    postproc/growth.py                # runs the program benchmark first: minutes
+    postproc/growth.py growth.json    # what build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json wrote
 
 Exponents are fitted by least squares to the meshes from --from control points on.
 """
 
 import argparse
 import json
+import pathlib
+import subprocess
+import sys
 
 import needs  # before what it looks for
 import numpy
 
+import read
 import style
 from style import plt
 
@@ -54,13 +58,24 @@ def draw(axis, chosen, key, label, color, least, line="o-"):
     axis.loglog([one["points"] for one in chosen], [one[key] for one in chosen], line, color=color, ms=4, label=text)
 
 
+def measured():
+    """The file that the benchmark writes, which is run when there is none."""
+    path, program = pathlib.Path("results") / "growth.json", read.SOURCE / "build" / "release" / "tests" / "benchmark" / "benchmark"
+    if not path.exists():
+        if not program.exists():
+            sys.exit(f"{program} does not exist: build it (tests/run does)")
+        path.parent.mkdir(exist_ok=True)
+        subprocess.run([program, "--benchmark_filter=growth", f"--benchmark_out={path}"], check=True)
+    return path
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", help="what the benchmark wrote")
+    parser.add_argument("file", nargs="?", help="what the benchmark wrote (default: results/growth.json, written now if it is not there)")
     parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS", help="fit from here on (default: %(default)g)")
     parser.add_argument("-o", "--output", default="growth.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
-    with open(arguments.file) as stream:
+    with open(arguments.file or measured()) as stream:
         benchmarks = json.load(stream)["benchmarks"]
     trees, dense = rows(benchmarks, False), rows(benchmarks, True)
     table(trees, dense, arguments.least)

@@ -22,7 +22,8 @@ import h5py
 import numpy
 import yaml
 
-PROGRAM = pathlib.Path(os.environ.get("TANKTREAD") or pathlib.Path(__file__).resolve().parents[1] / "build/release/app/tanktread")
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+PROGRAM = pathlib.Path(os.environ.get("TANKTREAD") or SOURCE / "build" / "release" / "app" / "tanktread")
 
 
 class Run:
@@ -46,8 +47,8 @@ class Run:
 
     @property
     def rate(self):
-        """What makes time a number: the rate of the flow, or in a duct its mean velocity over the duct's radius (of equal area); with its name.
-        (1, None) where the flow has no rate."""
+        """What makes time a number: the rate of the flow, of a parabolic one its maximum velocity over its half width, in a duct its mean velocity over the
+        duct's radius (of equal area); with its name. (1, None) where the flow has no rate."""
         kind = self.value("Flow/type")
         if kind == "duct":
             with h5py.File(self.directory / "duct.h5", "r") as file:
@@ -55,6 +56,8 @@ class Run:
         if kind == "linear":
             gradient = numpy.reshape(numpy.array(self.value("Flow/gradient"), float), (3, 3))
             return float(numpy.linalg.norm(gradient, 2)), "rate"
+        if kind == "parabolic":
+            return float(self.value("Flow/maximum velocity", 1)) / float(self.value("Flow/half width")), "maximum velocity / half width"
         rates = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
         return (float(self.value("Flow/shear rate", 1)), rates[kind]) if kind in rates else (1.0, None)
 
@@ -159,15 +162,17 @@ def run(where):
         sys.exit(f"{directory}/run.h5 cannot be read: {error}")
 
 
-def results_of(deck, program=None):
-    """Where a deck's results stand: results/<name of the deck>. The deck is run when there are none."""
-    directory, program = pathlib.Path("results") / pathlib.Path(deck).stem, program or PROGRAM
+def results_of(deck, name=None, settings=None, accepted=(0, 1)):
+    """Where the results of a deck stand, run with settings {"Section/key": value}: results/<name>, by default that of the deck. It is run when there
+    are none. `accepted`: exit codes; 1 is a missed expectation, which a picture shows."""
+    directory = pathlib.Path("results") / (name or pathlib.Path(deck).stem)
     if not (directory / "run.h5").exists():
-        if not program.exists():
-            sys.exit(f"{program} does not exist, so {deck} cannot be run: build it (app/quickstart does), or give the directory of a run's results")
-        print(f"{program} {deck} --output {directory}", file=sys.stderr)
-        code = subprocess.run([program, deck, "--output", directory, "--quiet"], check=False).returncode
-        if code not in (0, 1):  # 1: an expectation was missed, which a picture shows
+        if not PROGRAM.exists():
+            sys.exit(f"{PROGRAM} does not exist, so {deck} cannot be run: app/quickstart builds it; TANKTREAD=... names another one")
+        words = [str(deck)] + [word for key, value in (settings or {}).items() for word in ("--set", f"{key}={value}")] + ["--output", str(directory)]
+        print(PROGRAM.name, *words, file=sys.stderr)
+        code = subprocess.run([PROGRAM, *words, "--quiet"], check=False).returncode
+        if code not in accepted:
             sys.exit(f"{deck} did not run to its end (exit code {code}); nothing is drawn")
     return directory
 

@@ -4,6 +4,9 @@
 All at the final time of the runs. The values to compare with are extrapolated from the three finest uniform runs with the order that they
 show; the finest is not drawn, for it is too close to them. Prints what a refined mesh saves at equal accuracy, from the uniform runs by
 interpolation of logarithms. Kernel evaluations tell the work on a machine that does other things too.
+
+    postproc/refinement_gain.py                                      # runs inputs/hyperbolic_skalak_ca0.8.yaml on seven meshes, to time 2
+    postproc/refinement_gain.py --uniform a b c d --refined e f      # runs of yours
 """
 
 import argparse
@@ -22,11 +25,15 @@ COSTS = {"points": "control points", "kernel": "kernel evaluations", "seconds": 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--uniform", nargs="+", required=True, help="directories of runs on fixed meshes, coarse to fine, three at least")
-    parser.add_argument("--refined", nargs="+", required=True, help="of runs whose mesh refined itself")
+    parser.add_argument("--uniform", nargs="+", help="directories of runs on fixed meshes, coarse to fine, three at least")
+    parser.add_argument("--refined", nargs="+", help="of runs whose mesh refined itself")
     parser.add_argument("-o", "--output", default="refinement_gain.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
+    if not (arguments.uniform or arguments.refined):
+        arguments.uniform, arguments.refined = made()
+    if not (arguments.uniform and arguments.refined):
+        parser.error("--uniform and --refined: both, or none")
     if len(arguments.uniform) < 3:
         parser.error("--uniform: three runs at least, coarse to fine")
     uniform = [result(directory) for directory in arguments.uniform]
@@ -52,6 +59,16 @@ def main():
     axes[0][0].legend(loc="lower left")
     report(uniform, refined, truth)
     style.save(figure, arguments.output)
+
+
+def made():
+    """Uniform and refined runs."""
+    deck, short = read.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml", {"Time/final time": 2}
+    uniform = [read.results_of(deck, f"refinement_gain/n{n}", short | {"Adaptation/enabled": "false", "Surface/elements per side": n})
+               for n in (6, 8, 11, 15)]
+    refined = [read.results_of(deck, f"refinement_gain/tolerance_{tolerance:g}", short | {"Adaptation/surface tolerance": tolerance})
+               for tolerance in (8e-4, 4e-4, 2e-4)]
+    return uniform, refined
 
 
 def result(directory):

@@ -7,13 +7,14 @@ import math
 import os
 import pathlib
 import resource
+import shutil
 import subprocess
 import sys
 import time
 
 import read
+from read import SOURCE
 
-SOURCE = pathlib.Path(__file__).resolve().parents[1]
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
@@ -30,7 +31,7 @@ class Outcome:
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
     failed = property(lambda self: not (self.done or self.refused or self.slow))
     refused = property(lambda self: self.code == 2)
-    slow = property(lambda self: self.code is None)
+    slow = property(lambda self: self.code in (None, 4))
 
     @property
     def run(self):
@@ -83,7 +84,8 @@ class Study:
             if where in self._made or not never_began:
                 return outcome
         self._made.add(where)
-        where.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(where, ignore_errors=True)  # of an earlier program, or broken off
+        where.mkdir(parents=True)
         note.write_text(json.dumps(self._make(words + ["--quiet", "--output", str(where)])))
         return Outcome(where, json.loads(note.read_text()))
 
@@ -91,7 +93,7 @@ class Study:
         start, before = time.monotonic(), _processor()
         done = subprocess.run(["prlimit", f"--cpu={math.ceil(self.limit)}"] + words, capture_output=True, text=True, env=os.environ | ENVIRONMENT, check=False)
         code, said = done.returncode, done.stderr.strip().splitlines()
-        if code < 0 or code > 3:  # killed, by the limit
+        if code < 0 or code > 4:  # killed, by the limit
             code, said = None, [f"stopped after {self.limit:g} s of processor time"]
         return {"code": code, "message": said[-1] if said else "", "seconds": time.monotonic() - start,
                 "processor_seconds": _processor() - before, "command": " ".join(map(_quoted, words))}

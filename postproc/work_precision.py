@@ -6,8 +6,8 @@
     postproc/work_precision.py tests/benchmark/shear.yaml --only time mesh      # these choices
 
 A study is a small YAML file (tests/benchmark/README.md): a deck, what counts as its error, and the choices, each with options of a few keys; the first option is
-the default. Work is told in kernel evaluations, which no machine changes, and in processor seconds of this machine, all ranks together. Each point is a run, labelled by
-what differs from the default; the line is the Pareto front, the ring the default.
+the default. Work is told in kernel evaluations, which no machine changes, and in processor seconds of this machine, all ranks together. Each point is a run; the black line is the
+Pareto front, whose runs are numbered and told beside it by what differs from the default, the ring.
 """
 
 import argparse
@@ -58,6 +58,10 @@ class Scene:
             for options in itertools.product(*others):
                 yield default | dict(zip(group, options))
 
+    def against(self):
+        """What stands after the error's text: a curve of the literature is taken where its folder is given."""
+        return "" if "curve" not in self.error else f", against {self.error['curve']}" if self.curves else ", against a finer run"
+
     def errors(self, study):
         """The function outcome -> error."""
         if "final" in self.error:
@@ -98,33 +102,28 @@ def front(points, cost):
     return kept
 
 
-def draw(axis, points, cost, label, colors, shape):
+def draw(axis, points, cost, label, colors, shape, families, numbers):
+    """Every run, lines through those of a family, and the front: filled, with its numbers."""
     kept = front(points, cost)
-    axis.loglog([getattr(one, cost) for one in kept], [one.error for one in kept], color=style.FAINT, linewidth=1.2, zorder=1)
+    for family in families:
+        line = sorted(family, key=lambda one: getattr(one, cost))
+        axis.loglog([getattr(one, cost) for one in line], [one.error for one in line], color=colors[kind(line[0].picked[shape])], linewidth=0.7, alpha=0.55, zorder=1)
+    axis.loglog([getattr(one, cost) for one in kept], [one.error for one in kept], color=style.INK, linewidth=1.4, zorder=2)
     for point in points:
         color = colors[kind(point.picked[shape])]
-        axis.plot(getattr(point, cost), point.error, "o", color=color, ms=5 if point in kept else 3.5, mfc=color if point in kept else "none", mew=0.9)
-    label_points(axis, points, cost, kept)
+        axis.plot(getattr(point, cost), point.error, "o", color=color, ms=5.5 if point in kept else 3.5, mfc=color if point in kept else "white", mew=0.9, zorder=3)
+        if point in kept:
+            axis.annotate(numbers[point], (getattr(point, cost), point.error), (-4, -4), textcoords="offset points", fontsize=7.5, ha="right", va="top")
     axis.plot(getattr(points[0], cost), points[0].error, "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
     axis.set_xlabel(label)
     axis.set_ylabel("error")
-    return kept
 
 
-def label_points(axis, points, cost, kept):
-    """Labels beside the points, each on the first of a few heights at which it meets no other."""
-    span = math.log(max(getattr(one, cost) for one in points) / min(getattr(one, cost) for one in points)) or 1
-    rise = math.log(max(one.error for one in points) / min(one.error for one in points)) or 1
-    taken = []
-    for point in sorted(points, key=lambda one: (one not in kept, getattr(one, cost))):
-        x, y, width = math.log(getattr(point, cost)) / span, math.log(point.error) / rise, 0.009 * len(point.label)
-        for height in (2, -7, 10, -15, 18, -23, 26, -31, 34, -39):
-            place = y + height / 330
-            if all(abs(place - other) > 0.02 or x + width < left or x > right for left, right, other in taken):
-                break
-        taken.append((x, x + width, place))
-        axis.annotate(point.label, (getattr(point, cost), point.error), (4, height), textcoords="offset points", fontsize=6 if point in kept else 5,
-                      color=style.INK if point in kept else style.FAINT)
+def families_of(points, choices, shape):
+    """Where a study has two choices: the runs that share an option of the one that colours stand for, told apart by the other."""
+    if len(choices) != 2:
+        return []
+    return [[one for one in points if one.picked[shape] == option] for option in dict.fromkeys(one.picked[shape] for one in points)]
 
 
 def report(scene, points):
@@ -184,16 +183,26 @@ def main():
     kinds = list(dict.fromkeys(kind(option) for option in scene.choices[shape]))
     few = len(kinds) <= len(style.RUNS)
     colors = dict(zip(kinds, style.RUNS if few else plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(kinds)))))
-    figure, axes = plt.subplots(1, 2, figsize=(13.5, 6.5), sharey=True)
-    draw(axes[0], points, "seconds", "processor seconds", colors, shape)
-    draw(axes[1], points, "kernels", "kernel evaluations", colors, shape)
+    on_front = sorted({*front(points, "seconds"), *front(points, "kernels")}, key=lambda one: -one.error)
+    numbers = {point: number for number, point in enumerate(on_front, 1)}
+    families = families_of(points, scene.choices, shape)
+    figure, axes = plt.subplots(1, 3, figsize=(11.5, 5.2), width_ratios=[1, 1, 0.42])
+    axes[1].sharey(axes[0])
+    draw(axes[0], points, "seconds", "processor seconds", colors, shape, families, numbers)
+    draw(axes[1], points, "kernels", "kernel evaluations", colors, shape, families, numbers)
     for name, color in colors.items():
         if any(kind(point.picked[shape]) == name for point in points):
-            axes[1].plot([], [], "o", color=color, label=name)
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=12, fontsize=7.5)
+            axes[2].plot([], [], "o", color=color, ms=5, label=name)
+    axes[2].plot([], [], "o", ms=10, mfc="none", mec=style.INK, label="the default")
+    axes[2].plot([], [], color=style.INK, label="Pareto front:")
+    axes[2].axis("off")
+    axes[2].legend(loc="upper left", bbox_to_anchor=(-0.1, 1), fontsize=8)
+    rest = len(axes[2].get_legend_handles_labels()[0])
+    axes[2].text(0, 0.97 - 0.047 * rest, "\n".join(f"{number:2}  {point.label}" for point, number in numbers.items()), transform=axes[2].transAxes,
+                 va="top", fontsize=7.5, linespacing=1.5)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
     words = [parsed.study] + (["--differences", str(parsed.differences)] if parsed.differences != 2 else []) + (["--only", *parsed.only] if parsed.only else [])
-    figure.supxlabel(r"\$ " + studies.command_of(__file__, *words) + f"\nerror: {scene.error.get('text', '')}", x=0.01, ha="left", fontsize=7.5)
+    figure.supxlabel(r"\$ " + studies.command_of(__file__, *words) + f"\nerror: {scene.error.get('text', '')}" + scene.against(), x=0.01, ha="left", fontsize=7.5)
     studies.write_table(parsed.output / f"{scene.name}.csv", [*scene.choices, "error", "seconds", "kernel_evaluations", "evaluations", "message"], rows)
     style.save(figure, parsed.output / f"{scene.name}.png")
     report(scene, points)

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # The scripts of postproc/ draw what a run wrote, and say in one sentence when they cannot.
+import os
 import pathlib
+import re
 import subprocess
 import sys
 from unittest import mock
@@ -118,6 +120,15 @@ def a_rigid_particle_is_drawn_and_what_it_does_not_have_is_named():
     for name in "deformation.py", "refinement.py":
         said = _script(name, "rigid", code=1)
         check("no series taylor_inertia" in said and said.count("\n") == 1, said)
+
+
+def the_readme_names_every_script_and_its_commands_name_what_is_there():
+    text = (SOURCE / "README.md").read_text()
+    scripts = {path.name for path in (SOURCE / "postproc").glob("*.py") if os.access(path, os.X_OK)}
+    named = set(re.findall(r"postproc/(\w+\.py)", text))
+    check(scripts <= named, "scripts that README.md does not name:", scripts - named)
+    for path in re.findall(r"\b(?:postproc|inputs|tests|app)/[\w./]*\w\.\w+", text):
+        check((SOURCE / path).exists(), f"README.md names {path}, which is not there")
 
 
 def help_is_there_and_absent_results_are_named():
