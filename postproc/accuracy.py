@@ -17,7 +17,7 @@ import literature
 import study as studies
 
 DEMANDS = [1e-2, 1e-3, 1e-4]
-TOLERANCES = [(1e-3, 1e-3), (3e-4, 3e-4), (1e-4, 1e-4), (2e-5, 1e-5)]  # Time/tolerance and Quadrature/tolerance
+TOLERANCES = [(1e-3, 1e-3), (3e-4, 3e-4), (1e-4, 1e-4), (2e-5, 1e-5), (4e-6, 1e-5)]  # Time/tolerance and Quadrature/tolerance
 
 
 def _side(n):
@@ -37,7 +37,7 @@ SCENES = {
     "refined": ("Skalak capsule drawn out, Ca = 0.6, mesh refined", "inputs/hyperbolic_skalak.yaml", {}, "taylor_inertia", _refined(8, 8e-5),
                 [(f"n = {n}, surface tolerance {tolerance:g}", _refined(n, tolerance)) for n, tolerance in
                  ((4, 1.6e-3), (4, 8e-4), (6, 8e-4), (6, 4e-4), (6, 2e-4))]),
-    "drop": ("drop in uniaxial extension", "inputs/drop_uniaxial.yaml", {}, "taylor_inertia", _side(12), MESHES),
+    "drop": ("drop in uniaxial extension", "inputs/drop_uniaxial.yaml", {}, "taylor_inertia", _side(12) | {"Time/tolerance": 1e-6}, MESHES),
     "tube": ("capsule that nearly fills a tube", "inputs/capsule_in_tube.yaml", {}, "velocity_x1", None, MESHES[1:]),
 }
 
@@ -56,16 +56,15 @@ def main():
         rows += [(name, mesh, *tolerances, error, one.kernel_evaluations, one.processor_seconds) for mesh, tolerances, one, error in found]
         for demand in DEMANDS:
             good = [entry for entry in found if entry[3] <= demand]
-            if not good:
-                print(f"| {SCENES[name][0]} | {demand:g} | finer than these | | | | |", flush=True)
-                continue
-            mesh, (time, quadrature), one, _ = min(good, key=lambda entry: entry[2].kernel_evaluations)
-            print(f"| {SCENES[name][0]} | {demand:g} | {mesh} | {time:g} | {quadrature:g} | {one.kernel_evaluations:.2g} | {one.processor_seconds / unit:.2g} |", flush=True)
+            best = min(good or found, key=lambda entry: entry[2].kernel_evaluations if good else entry[3])
+            mesh, (time, quadrature), one, error = best
+            met = f"{demand:g}" if good else f"{demand:g}: not met, {error:.1e}"
+            print(f"| {SCENES[name][0]} | {met} | {mesh} | {time:g} | {quadrature:g} | {one.kernel_evaluations:.2g} | {one.processor_seconds / unit:.2g} |", flush=True)
     studies.write_table(parsed.output / "accuracy.csv", ["scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"], rows)
 
 
 def settings(base, mesh, tolerances):
-    return base | mesh | {"Time/tolerance": tolerances[0], "Quadrature/tolerance": tolerances[1]}
+    return base | {"Time/tolerance": tolerances[0], "Quadrature/tolerance": tolerances[1]} | mesh
 
 
 def runs(study, deck, base, series, reference, meshes):
