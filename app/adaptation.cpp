@@ -25,6 +25,8 @@ Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::St
   result.body->unstressed = move(body.unstressed);
   result.state.x = move(state.x);
   for (Net& slope : result.state.history) slope = move(slope);
+  for (motion::Place& place : result.state.places) place.x = move(place.x);
+  if (state.direction.size() > 0) result.state.direction = move(state.direction);
   std::vector<Net> pairs = state.secants.pairs();
   for (Net& net : pairs) net = move(net);
   result.state.secants = coupling::Secants(std::move(pairs));

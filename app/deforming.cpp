@@ -54,7 +54,15 @@ class Deforming : public Moving {
     return true;
   }
 
-  std::vector<std::string> remarks() override { return std::exchange(remarks_, {}); }
+  void undo_adapt(const Net& x) override {
+    if (!before_) return;
+    capsule_.reset();
+    body_ = std::move(before_);
+    body_->symmetry = symmetry(scene_, *body_, x);
+    capsule_ = capsule(scene_, *body_, ranks_, phases_, tube(scene_, *body_, phases_));
+  }
+
+  std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
 
   coupling::Work work() const override { return capsule_->work(); }
 
@@ -90,26 +98,25 @@ class Deforming : public Moving {
     std::unique_ptr<coupling::Tube> tube;
     if (capsule_->tube()) tube = std::make_unique<coupling::Tube>(*capsule_->tube(), body->space);
     capsule_.reset();
-    body_ = std::move(body);
+    before_ = std::exchange(body_, std::move(body));
     capsule_ = capsule(scene_, *body_, ranks_, phases_, std::move(tube));
     capsule_->work() = work;
   }
 
-  /// What a change of the mesh lacks, once of each kind.
+  /// What a change of the mesh lacks.
   void remark_on(const Adapted& change, double time) {
     const motion::AdaptationOptions& options = scene_.adaptation;
-    const auto once = [&](bool lacks, bool& said, const std::string& sentence) {
-      if (lacks && !said) remarks_.push_back(formatted("at time %.4g ", time) + sentence);
-      said = said || lacks;
+    const auto remark = [&](bool lacks, const char* kind, const std::string& sentence) {
+      if (lacks) remarks_.push_back({kind, formatted("at time %.4g ", time) + sentence});
     };
-    once(change.refused > 0, remarked_on_levels_,
+    remark(change.refused > 0, "levels",
          formatted("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows",
                    options.levels));
-    once(change.full, remarked_on_size_,
+    remark(change.full, "number of points",
          formatted("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all "
                    "their cuts",
                    options.largest_number_of_points));
-    once(change.body && change.finer && change.change > 1e-12, remarked_on_change_,
+    remark(change.body && change.finer && change.change > 1e-12, "moved surface",
          formatted(
              "refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
              change.change));
@@ -144,8 +151,8 @@ class Deforming : public Moving {
   std::unique_ptr<coupling::Capsule> capsule_;
   std::vector<Column> columns_;
   stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
-  bool remarked_on_size_ = false, remarked_on_levels_ = false, remarked_on_change_ = false;
-  std::vector<std::string> remarks_;
+  std::unique_ptr<Body> before_;  // the latest change of mesh; until the next one
+  std::vector<Warning> remarks_;
   bool holds_centre_ = holds_centre(scene_);
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include <Eigen/Geometry>
 
@@ -56,6 +57,12 @@ std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<
   std::vector<Column> found;
   for (const std::string_view name : names) found.push_back(*std::ranges::find(all, name, &Column::name));
   return found;
+}
+
+double entry(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name) {
+  const auto at = std::ranges::find(columns, name, &Column::name);
+  if (at == columns.end()) throw std::out_of_range("there is no series '" + std::string(name) + "'");
+  return row.at(static_cast<size_t>(at - columns.begin()));
 }
 
 namespace {

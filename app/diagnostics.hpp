@@ -22,6 +22,9 @@ const std::vector<Column>& columns();
 /// Those of these names, for a particle of another kind that records the same.
 std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<std::string_view> names);
 
+/// The value of one series in a row. Throws std::out_of_range where there is no such series.
+double entry(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name);
+
 /// One row, in the order of `columns`. Collective.
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
                         const motion::StepReport& report, double wall_seconds, const coupling::Ranks& ranks);

@@ -1,6 +1,7 @@
 #include "app/drift.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <unsupported/Eigen/MatrixFunctions>
 
 namespace tanktread {
 
@@ -14,9 +15,14 @@ bool holds_centre(const Scene& scene) {
 }
 
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
-  const Vec3 off = geometry.measures(state.x).centroid - place, carried = flow.gradient(place) * off;
+  const Mat3 gradient = flow.gradient(place);
+  const Vec3 off = geometry.measures(state.x).centroid - place, carried = gradient * off;
   state.x.rowwise() -= off.transpose();
   for (Net& slope : state.history) slope.rowwise() -= carried.transpose();
+  for (motion::Place& earlier : state.places) {
+    const Mat3 back = gradient * (earlier.time - state.time);
+    earlier.x.rowwise() -= (back.exp() * off).transpose();
+  }
 }
 
 }  // namespace tanktread

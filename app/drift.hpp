@@ -13,7 +13,8 @@ namespace tanktread {
 /// shape is steady.
 bool holds_centre(const Scene& scene);
 
-/// Moves the state so that its centroid is at `place`, and its slopes along: v(x + c) = v(x) + L c in an affine flow, whatever the shape.
+/// Moves the state so that its centroid is at `place`, and the slopes and earlier places of the scheme along: v(x + c) = v(x) + L c in an affine
+/// flow, whatever the shape, so that x(t) + c(t) with dc/dt = L c is a motion where x(t) is one, and was displaced by exp(-L s) c at a time s ago.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
 }  // namespace tanktread

@@ -68,18 +68,25 @@ class Free : public Moving {
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
   Net start() const override { return coupling::placed(free_->centre()); }
-  void resume(Resumed& resumed) override { before_ = resumed.standing.work.evaluations; }
+  /// Counts go on as if the set-up had been done once.
+  void resume(Resumed& resumed) override {
+    const coupling::Work again = work();
+    before_ = resumed.standing.work;
+    before_.assemblies -= again.assemblies;
+    before_.solves -= again.solves;
+    before_.solver_iterations -= again.solver_iterations;
+  }
   bool adapt(motion::State&, Standing&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
   const std::vector<Column>& columns() const override { return columns_; }
 
   coupling::Work work() const override {
-    coupling::Work work;
-    work.evaluations = before_ + free_->evaluations();
-    work.assemblies = 1;
-    work.solves = tube_ ? work.evaluations : 11;
-    work.solver_iterations = iterations();
+    coupling::Work work = before_;
+    work.evaluations += free_->evaluations();
+    work.assemblies += 1;
+    work.solves += tube_ ? free_->evaluations() : 11;
+    work.solver_iterations += iterations();
     return work;
   }
 
@@ -107,7 +114,7 @@ class Free : public Moving {
     if (!tube_) return row;
     const Eigen::Vector2d across(x(0, 1), x(0, 2)), moves = v.tail<2>();
     const double sense = across.dot(moves) > 0 ? -1 : 1;
-    row.insert(row.end(), {sense * moves.norm(), free_->pressure_drop(x), tube_->gap(), static_cast<double>(iterations())});
+    row.insert(row.end(), {sense * moves.norm(), free_->pressure_drop(x), tube_->gap(), static_cast<double>(work().solver_iterations)});
     return row;
   }
 
@@ -131,7 +138,7 @@ class Free : public Moving {
   coupling::Resistance resistance_;
   std::unique_ptr<coupling::RigidParticle> free_;
   std::vector<Column> columns_;
-  long before_ = 0;  // evaluations of earlier parts of a resumed run
+  coupling::Work before_;  // of earlier parts of a resumed run
 };
 
 }  // namespace

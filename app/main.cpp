@@ -8,18 +8,20 @@
 #include "app/provenance.hpp"
 #include "app/results.hpp"
 #include "app/scene.hpp"
+#include "app/signals.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
-#include "coupling/departure.hpp"
+#include "coupling/agreement.hpp"
 #include "coupling/ranks.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
+#include "motion/guarded.hpp"
 
 namespace {
 
 using namespace tanktread;
 
-enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };
+enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 4
 
 struct Arguments {
   std::vector<std::string> decks, settings;
@@ -28,7 +30,8 @@ struct Arguments {
 };
 
 void state(CLI::App& app, Arguments& arguments) {
-  app.footer("Exit codes: 0 done, and every Expect met; 1 an Expect was missed; 2 a mistake in the deck or here; 3 the run failed.");
+  app.footer("Exit codes: 0 done, and every Expect met; 1 an Expect was missed; 2 a mistake in the deck or here; 3 the run failed; "
+             "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
   app.add_option("--output", arguments.output, "where results go (default: results/<deck name>)");
@@ -113,7 +116,7 @@ std::string one_line(std::string text) {
 
 /// The whole program on one rank; only the first one speaks. `message`: what an error is, for others.
 int guarded(int argc, char** argv, bool speaks, std::string& message) {
-  const auto report = [speaks, &message](const char* text, Exit code) {
+  const auto report = [speaks, &message](const char* text, int code) {
     message = one_line(text);
     if (speaks) std::cerr << "tanktread: " << message << std::endl;
     return code;
@@ -130,6 +133,8 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
       return done;
     }
     return run(arguments, speaks);
+  } catch (const motion::Stopped&) {
+    return report("stopped by a signal before there was anything to keep", stopped);
   } catch (const UserError& error) {
     return report(error.what(), mistake);
   } catch (const std::exception& error) {
@@ -140,6 +145,7 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  heed_signals();
   const coupling::Session session(&argc, &argv);
   std::string message;
   const int code = guarded(argc, argv, session.rank() == 0, message);

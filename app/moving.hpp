@@ -8,20 +8,14 @@
 
 #include "app/body.hpp"
 #include "app/diagnostics.hpp"
+#include "app/standing.hpp"
+#include "app/warnings.hpp"
 #include "coupling/dynamics.hpp"
 #include "motion/integrator.hpp"
 #include "output/snapshot.hpp"
 #include "stokes/kernels.hpp"
 
 namespace tanktread {
-
-/// Where a run stands beside its State.
-struct Standing {
-  int step = 0;               ///< steps so far; `run.h5` holds step + 1 rows
-  double wall_seconds = 0;    ///< of earlier parts
-  coupling::Work work;
-  int refinements = 0, coarsenings = 0;
-};
 
 /// A run to go on with. The body is there when its mesh had been adapted.
 struct Resumed {
@@ -45,7 +39,8 @@ class Moving {
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual void resume(Resumed& resumed) = 0;                                     ///< takes what a checkpoint holds beside the state
   virtual bool adapt(motion::State& state, Standing& standing) = 0;              ///< after a step; whether body() has another mesh now
-  virtual std::vector<std::string> remarks() { return {}; }                      ///< sentences for the user, each once
+  virtual void undo_adapt(const Net&) {}                                         ///< goes back to the mesh before, in this shape, for a last picture
+  virtual std::vector<Warning> remarks() { return {}; }                          ///< for the user, who is to hear of each kind once
   virtual coupling::Work work() const = 0;
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual const std::vector<Column>& columns() const = 0;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/results.hpp"
+#include "app/signals.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -169,7 +170,9 @@ int resist(const Scene& scene, const RunRequest& request) {
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
   clock.reset();
+  stop_where_told();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
+  stop_where_told();
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
   const Row only = row(scene, body, resistance, solution, kernel, seconds);
@@ -181,14 +184,16 @@ int resist(const Scene& scene, const RunRequest& request) {
   state.x = body.rest;
   results.save(state, {}, portrait(scene, body, solution), state.time);
   clock.reset();
-  return results.close(chosen,
-                       {{"unknowns", 3L * body.space.n_points},
-                        {"solver_iterations", solution.iterations},
-                        {"solver_iterations_in_all", resistance.solver_iterations()},
-                        {"kernel_evaluations_far", static_cast<long>(kernel.far)},
-                        {"kernel_evaluations_near", static_cast<long>(kernel.near)},
-                        {"kernel_evaluations_self", static_cast<long>(kernel.self)}},
-                       phases, {}, {{"drag", solution.force}, {"torque", solution.torque}});
+  Account account;
+  account.plan = chosen;
+  account.counts = {{"unknowns", 3L * body.space.n_points},
+                    {"solver_iterations", solution.iterations},
+                    {"solver_iterations_in_all", resistance.solver_iterations()},
+                    {"kernel_evaluations_far", static_cast<long>(kernel.far)},
+                    {"kernel_evaluations_near", static_cast<long>(kernel.near)},
+                    {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
+  account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
+  return results.close(account, phases);
 }
 
 }  // namespace tanktread

@@ -21,31 +21,6 @@ namespace tanktread {
 
 namespace {
 
-void store(const Standing& standing, output::Checkpoint& checkpoint) {
-  checkpoint.numbers["step number"] = standing.step;
-  checkpoint.numbers["wall seconds"] = standing.wall_seconds;
-  checkpoint.numbers["refinements"] = standing.refinements;
-  checkpoint.numbers["coarsenings"] = standing.coarsenings;
-  checkpoint.numbers["evaluations"] = static_cast<double>(standing.work.evaluations);
-  checkpoint.numbers["assemblies"] = static_cast<double>(standing.work.assemblies);
-  checkpoint.numbers["tangents"] = static_cast<double>(standing.work.tangents);
-  checkpoint.numbers["solves"] = static_cast<double>(standing.work.solves);
-  checkpoint.numbers["solver iterations"] = static_cast<double>(standing.work.solver_iterations);
-  checkpoint.numbers["velocity iterations"] = static_cast<double>(standing.work.velocity_iterations);
-  checkpoint.numbers["velocity solves"] = static_cast<double>(standing.work.velocity_solves);
-  checkpoint.numbers["most velocity iterations"] = static_cast<double>(standing.work.most_velocity_iterations);
-}
-
-Standing stored_standing(const output::Checkpoint& checkpoint) {
-  const auto count = [&](const char* name) { return static_cast<long>(checkpoint.numbers.at(name)); };
-  return {static_cast<int>(count("step number")),
-          checkpoint.numbers.at("wall seconds"),
-          {count("evaluations"), count("assemblies"), count("tangents"), count("solves"), count("solver iterations"),
-           count("velocity iterations"), count("velocity solves"), count("most velocity iterations")},
-          static_cast<int>(count("refinements")),
-          static_cast<int>(count("coarsenings"))};
-}
-
 /// The edges of the T-mesh; the lattice follows from the deck.
 void store(const spline::TMesh& mesh, output::Checkpoint& checkpoint) {
   checkpoint.arrays["mesh edges"] = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
@@ -78,6 +53,19 @@ Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoi
 }
 
 }  // namespace
+
+output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier) {
+  output::Entries<double> seconds;
+  for (const Phases::Phase& phase : phases.all()) seconds.emplace_back(phase.name, phase.seconds);
+  for (const auto& [name, before] : earlier) {
+    const auto same = std::ranges::find(seconds, name, &std::pair<std::string, double>::first);
+    if (same == seconds.end())
+      seconds.emplace_back(name, before);
+    else
+      same->second += before;
+  }
+  return seconds;
+}
 
 std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
 
@@ -157,6 +145,7 @@ std::optional<Resumed> Results::resumed() {
     warn(file.path.filename().string() + " is damaged: the run goes on from " + saved->file.path.filename().string());
   Resumed resumed = stored_run(scene_, *body_, saved->checkpoint, directory_);
   last_saved_ = resumed.standing.step;
+  for (const Warning& warning : resumed.standing.warnings.said) warnings_.push_back(warning.sentence);
   write([&] {
     record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
     record_->truncate(static_cast<size_t>(resumed.standing.step) + 1);
@@ -181,13 +170,13 @@ void Results::write_surface(const Net& surface) {
 }
 
 void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
-  last_saved_ = standing.step;
   const std::filesystem::path path = directory_ / output::snapshot_name(standing.step);
   write_picture(path, portrait, state, standing, picture_time);
   write([&] {
     output::finish(path);
     series_->add(standing.step, picture_time);
   });
+  last_saved_ = standing.step;
 }
 
 output::Checkpoint Results::checkpoint(const motion::State& state, const Standing& standing, double picture_time) const {
@@ -235,22 +224,22 @@ void Results::write_picture(const std::filesystem::path& path, const Portrait& p
   });
 }
 
-int Results::close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,
-                   const output::Entries<Vec3>& vectors) {
+int Results::close(const Account& account, const Phases& phases) {
   std::string missed;
-  write([&] { missed = finish(plan, counts, phases, vectors); });
+  write([&] { missed = finish(account, phases); });
+  if (!account.whole) missed.clear();
   if (writes_) {
-    if (!request_.quiet) std::fputs(output::closing_table(phases, counts, directory_).c_str(), stdout);
-    const std::string line = remark + (remark.empty() || missed.empty() ? "" : "; ") + missed;
+    if (!request_.quiet) std::fputs(output::closing_table(phases, account.counts, directory_).c_str(), stdout);
+    const std::string line = account.remark + (account.remark.empty() || missed.empty() ? "" : "; ") + missed;
     if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
   }
   return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
 /// Writes the summary; returns what was expected and missed, in one line.
-std::string Results::finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
-                            const output::Entries<Vec3>& vectors) {
+std::string Results::finish(const Account& account, const Phases& phases) {
   output::Summary summary;
+  summary.status = account.status;
   deck::SeriesTable table;
   for (const output::Series& series : record_->series()) {
     table[series.name] = series.values;
@@ -261,10 +250,10 @@ std::string Results::finish(const output::Entries<std::string>& plan, const outp
     summary.expect.push_back({verdict.name, verdict.value, verdict.expected, verdict.error, verdict.passed});
     if (!verdict.passed) missed += (missed.empty() ? "missed Expect/" : "; Expect/") + verdict.name + ": " + verdict.reason;
   }
-  for (const auto& [name, value] : vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
-  summary.counts = counts;
-  for (const Phases::Phase& phase : phases.all()) summary.seconds.emplace_back(phase.name, phase.seconds);
-  summary.plan = plan;
+  for (const auto& [name, value] : account.vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
+  summary.counts = account.counts;
+  summary.seconds = with_earlier(phases, account.earlier);
+  summary.plan = account.plan;
   summary.warnings = warnings_;
   output::write_summary(directory_ / "summary.yaml", summary);
   return missed;

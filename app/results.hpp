@@ -22,6 +22,20 @@ namespace tanktread {
 constexpr const char* kept_surface = "particle.iga";
 std::string kept_outline(const Scene& scene);  ///< the name of Tube/outline, without its folder
 
+/// What a run says of itself when it ends.
+struct Account {
+  output::Entries<std::string> plan;
+  output::Entries<long> counts;
+  std::string status = "done";  ///< or `steady`, `stopped: ...`, `failed: ...`, as summary.yaml has it
+  std::string remark;           ///< why it ended before its time, if it did; shares the one line on standard error with the expectations missed
+  bool whole = true;            ///< it came to its end, so that expectations bind
+  output::Entries<double> earlier;  ///< seconds of earlier parts of a resumed run
+  output::Entries<Vec3> vectors;    ///< for `final`, made of the last row
+};
+
+/// Seconds by phase, those of earlier parts of the run included.
+output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
+
 /// The files of a run (README.md, Results). The first rank writes, and every one its own nodes of a picture; every call is made by all
 /// ranks, which see one directory, and all of them throw: RunFailure when the
 /// disk refuses, UserError where a run cannot begin in its directory.
@@ -48,11 +62,9 @@ class Results {
   /// The surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
 
-  /// Holds the record against `Expect`, writes the summary and the closing table. `vectors`: for `final`, made of the last row. Returns the exit
-  /// code: 0 every expectation was met, 1 one was missed.
-  /// `remark`: why the run ended before its time, if it did; it shares the one line on standard error with the expectations missed.
-  int close(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases, const std::string& remark,
-            const output::Entries<Vec3>& vectors = {});
+  /// Holds the record against `Expect`, writes the summary and the closing table. Returns the exit code: 0 every expectation was met, or the run did
+  /// not come to its end; 1 one was missed.
+  int close(const Account& account, const Phases& phases);
 
   /// Step of the last checkpoint; -1 before the first.
   int last_saved() const { return last_saved_; }
@@ -69,8 +81,7 @@ class Results {
   output::Checkpoint checkpoint(const motion::State& state, const Standing& standing, double picture_time) const;
   void write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
                      double picture_time);
-  std::string finish(const output::Entries<std::string>& plan, const output::Entries<long>& counts, const Phases& phases,
-                     const output::Entries<Vec3>& vectors);
+  std::string finish(const Account& account, const Phases& phases);
   std::map<std::string, std::string> origin() const;
 
   const Scene& scene_;

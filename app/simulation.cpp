@@ -3,44 +3,36 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
+#include <functional>
+#include <new>
 #include <optional>
 #include <sstream>
 
 #include "app/body.hpp"
-#include "app/heeding.hpp"
 #include "app/moving.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
+#include "app/signals.hpp"
 #include "app/tube.hpp"
 #include "app/warnings.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/agreement.hpp"
 #include "coupling/kernel_count.hpp"
 #include "motion/dense_output.hpp"
+#include "motion/guarded.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
 #include "output/progress.hpp"
+#include "output/state.hpp"
 
 namespace tanktread {
 
 namespace {
 
-volatile std::sig_atomic_t asked_to_stop = 0;
-constexpr const char* by_signal = "stopped by a signal";
-
-/// A signal to end asks for a checkpoint first; the second of a kind ends at once. What is ignored stays so (nohup).
-void heed_signals() {
-  asked_to_stop = 0;
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
-    const auto before = std::signal(signal, [](int number) {
-      asked_to_stop = 1;
-      std::signal(number, SIG_DFL);
-    });
-    if (before == SIG_IGN) std::signal(signal, SIG_IGN);
-  }
-}
+/// Why a run ends before its time, as its status says it.
+const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady";
 
 /// Wall clock of this run, earlier parts of a resumed one included.
 class Watch {
@@ -55,7 +47,8 @@ class Watch {
   double before_ = 0;
 };
 
-output::Entries<long> counts(const Standing& standing, const coupling::Work& work, const stokes::Evaluations& kernel) {
+output::Entries<long> counts(const Standing& standing) {
+  const coupling::Work& work = standing.work;
   return {{"steps", standing.step},
           {"refinements", standing.refinements},
           {"coarsenings", standing.coarsenings},
@@ -67,9 +60,9 @@ output::Entries<long> counts(const Standing& standing, const coupling::Work& wor
           {"velocity_iterations", work.velocity_iterations},
           {"velocity_solves", work.velocity_solves},
           {"most_velocity_iterations", work.most_velocity_iterations},
-          {"kernel_evaluations_far", static_cast<long>(kernel.far)},
-          {"kernel_evaluations_near", static_cast<long>(kernel.near)},
-          {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
+          {"kernel_evaluations_far", static_cast<long>(standing.kernel.far)},
+          {"kernel_evaluations_near", static_cast<long>(standing.kernel.near)},
+          {"kernel_evaluations_self", static_cast<long>(standing.kernel.self)}};
 }
 
 /// Next multiple of the snapshot interval after `time`, or the final time.
@@ -99,22 +92,20 @@ class Run {
   }
 
   int go() {
+    stop_where_told();
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particle_->body(), ranks_.size())).c_str(), stdout);
     begin();
     clock_.emplace(phases_, "time stepping");
-    heed_signals();
     output::Progress progress(state_.time, scene_.time.final_time, request_.quiet || ranks_.rank() != 0);
     std::string reason;
     while (reason.empty() && state_.time < scene_.time.final_time) {
-      step();
-      if (stopped_) break;
-      progress.show({state_.time, standing_.step, report_.iterations, entry("taylor_inertia")});
-      reason = reason_to_stop();
-      if (!reason.empty() || snapshot_due_) save();
+      reason = step();
+      if (interrupted_) break;
+      progress.show({state_.time, standing_.step, report_.iterations, scene_.particle.rigid() ? 0 : entry("taylor_inertia")});
+      if (!reason.empty() || snapshot_due_) save_or_fail();
     }
     progress.close();
-    if (stopped_) reason = by_signal;
-    if (results_.last_saved() != standing_.step) save();
+    if (results_.last_saved() != standing_.step) save_or_fail();
     clock_.reset();
     return end(reason);
   }
@@ -122,69 +113,137 @@ class Run {
  private:
   void begin() {
     if (auto resumed = results_.resumed()) {
-      const bool adapted = resumed->body != nullptr;
-      particle_->resume(*resumed);
-      if (adapted) results_.remesh(particle_->body(), particle_->bezier());
-      state_ = resumed->state;
-      if (request_.another_scheme) motion::forget(state_);
-      standing_ = resumed->standing;
-      watch_.add(standing_.wall_seconds);
+      resume(*resumed);
       return;
     }
+    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     state_.x = particle_->start();
-    motion::begin(particle_->dynamics(), state_);
-    state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(particle_->dynamics(), state_, scene_.time);
+    motion::begin(motion, state_);
+    if (!motion.failure().empty()) throw RunFailure("the velocity of the initial shape cannot be had: " + motion.failure());
+    state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
     record();
+    settle();
     save();
   }
 
-  void step() {
+  void resume(Resumed& resumed) {
+    const bool adapted = resumed.body != nullptr;
+    particle_->resume(resumed);
+    if (adapted) results_.remesh(particle_->body(), particle_->bezier());
+    state_ = resumed.state;
+    if (request_.another_scheme) motion::forget(state_);
+    standing_ = resumed.standing;
+    watch_.add(standing_.wall_seconds);
+    warnings_.remember(standing_.warnings);
+    earlier_seconds_ = standing_.seconds;
+    const stokes::Evaluations again = coupling::of_all(particle_->kernel_evaluations(), ranks_), before = standing_.kernel;
+    earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
+  }
+
+  /// One step and its row, or nothing of either: where the run is stopped within it, or where it fails, which ends the run. Says why the run is to end
+  /// before its time, if it is.
+  std::string step() {
+    const motion::State before = state_;
+    const Standing standing = standing_;
+    remeshed_ = false;
+    const std::string error = error_of([this] { advance(); });
+    if (error.empty() && !interrupted_) {
+      settle();
+      return reason_to_stop();
+    }
+    state_ = before;
+    standing_ = standing;
+    interrupted_ = true;
+    pictured_.reset();
+    const std::string undone = error_of([&] {
+      if (!remeshed_) return;
+      particle_->undo_adapt(state_.x);
+      results_.remesh(particle_->body(), particle_->bezier());
+    });
+    if (!error.empty()) fail(error);
+    if (!undone.empty()) fail(undone);
+    return by_signal;
+  }
+
+  /// What ends `act`, on any rank; empty where it comes to its end, or is told to stop.
+  std::string error_of(const std::function<void()>& act) {
+    std::string error;
+    try {
+      act();
+    } catch (const motion::Stopped&) {
+      interrupted_ = true;
+    } catch (const UserError&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      error = "there is not enough memory";
+    } catch (const std::exception& exception) {
+      error = exception.what();
+    }
+    return coupling::error_of_any(error);
+  }
+
+  void advance() {
     const double snapshot = next_snapshot(scene_, state_.time);
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
     pictured_.reset();
-    standing_.work = particle_->work();
-    Heeding motion(particle_->dynamics(), [this] { return ranks_.any(asked_to_stop != 0); });
-    try {
-      if (motion::cross_kink(motion, state_)) before = state_;
-      began_ = state_.time;
-      report_ = scheme_->advance(motion, state_, lands ? snapshot : scene_.time.final_time);
-      judge();
-    } catch (const Stopped&) {
-      state_ = before;
-      stopped_ = true;
-      return;
-    } catch (const RunFailure& failure) {
-      state_ = before;
-      fail(failure.what());
-    }
+    integrate(lands ? snapshot : scene_.time.final_time, before);
+    judge();
     ++standing_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
-    if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body(), particle_->bezier());
-    for (const std::string& sentence : particle_->remarks()) results_.warn(sentence);
+    remeshed_ = particle_->adapt(state_, standing_);
+    if (remeshed_) results_.remesh(particle_->body(), particle_->bezier());
+    for (const Warning& remark : particle_->remarks())
+      if (warnings_.fresh(remark)) results_.warn(remark.sentence);
     record();
-    if (!scene_.tube.present) return;
-    const std::string reason = contact(scene_, entry("gap"));
-    if (!reason.empty()) fail(reason);
-    warn_of_coarse_wall(entry("gap"));
+  }
+
+  /// A step of the scheme; `before`: where it began, on this side of a kink of the motion.
+  void integrate(double limit, motion::State& before) {
+    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
+    try {
+      if (motion::cross_kink(motion, state_)) before = state_;
+      if (!state_.history.front().allFinite()) throw RunFailure("there is no velocity to go on with");
+      began_ = state_.time;
+      report_ = scheme_->advance(motion, state_, limit);
+    } catch (const RunFailure& failure) {
+      const std::string what = failure.what();
+      const std::string& why = motion.failure();
+      throw RunFailure(what + (why.empty() || why == what ? "" : " after a velocity that cannot be had: " + why));
+    }
+  }
+
+  /// What a step that is done leaves for a checkpoint.
+  void settle() {
+    standing_.work = particle_->work();
+    const stokes::Evaluations now = coupling::of_all(particle_->kernel_evaluations(), ranks_);
+    standing_.kernel = {earlier_kernel_.far + now.far, earlier_kernel_.near + now.near, earlier_kernel_.self + now.self};
+    standing_.warnings = warnings_.memory();
+#ifndef NDEBUG
+    if (!output::equal_on_all_ranks(state_)) fail("the ranks hold states that are not the same to the bit");
+#endif
   }
 
   /// Across a gap that is narrower than 0.6 of the wall's elements its traction is off by more than 1e-4.
   void warn_of_coarse_wall(double gap) {
     const double widest = particle_->body().wall->widest;
-    if (warned_of_wall_ || gap > 0.6 * widest) return;
-    warned_of_wall_ = true;
-    results_.warn(
-        formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
-                  "Tube/azimuthal elements and Tube/axial elements",
-                  state_.time, gap, widest));
+    if (gap > 0.6 * widest) return;
+    const Warning warning{"coarse wall",
+                          formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
+                                    "Tube/azimuthal elements and Tube/axial elements",
+                                    state_.time, gap, widest)};
+    if (warnings_.fresh(warning)) results_.warn(warning.sentence);
   }
 
   [[noreturn]] void fail(const std::string& reason) {
-    if (results_.last_saved() != standing_.step) save();
-    throw RunFailure(reason + formatted(" at time %.6g, step %d; the checkpoint of the last good step is in %s", state_.time,
-                                        standing_.step, results_.directory().c_str()));
+    const std::string at = reason + formatted(" at time %.6g, step %d", state_.time, standing_.step), where = results_.directory().string();
+    std::string unsaved;
+    if (results_.last_saved() != standing_.step) unsaved = error_of([this] { save(); });
+    error_of([&] { results_.close(account("failed: " + at), phases_); });
+    if (unsaved.empty()) throw RunFailure(at + "; the checkpoint of the last good step is in " + where);
+    throw RunFailure(at + formatted("; the newest checkpoint, of step %d, is in ", results_.last_saved()) + where +
+                     ", for a newer one cannot be had: " + unsaved);
   }
 
   /// The last snapshot's time within the step just made, and the state there.
@@ -192,13 +251,17 @@ class Run {
     double time = next_snapshot(scene_, before.time);
     for (double next = next_snapshot(scene_, time); next <= state_.time && next > time; next = next_snapshot(scene_, time)) time = next;
     const motion::DenseOutput dense(before, state_);
-    pictured_ = motion::State{time, 0, dense.place(time), {dense.slope(time)}, {}, {}, {}};
+    pictured_.emplace();
+    pictured_->time = time;
+    pictured_->x = dense.place(time);
+    pictured_->history = {dense.slope(time)};
   }
 
   void record() {
     const auto clock = phases_.time("diagnostics");
     particle_->dynamics().at(state_.time, began_);
-    row_ = particle_->row(state_, report_, ranks_.first(watch_.seconds()));
+    row_ = particle_->row(state_, report_, watch_.seconds());
+    coupling::take_first(row_);  // what is decided by it is decided alike
     look();
     const auto output = phases_.time("output");
     results_.record(row_);
@@ -230,36 +293,55 @@ class Run {
 
   void save() {
     const auto clock = phases_.time("output");
-    if (!stopped_) standing_.work = particle_->work();
     standing_.wall_seconds = watch_.seconds();
+    standing_.seconds = with_earlier(phases_, earlier_seconds_);
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     particle_->dynamics().at(pictured.time, began_);
     results_.save(state_, standing_, particle_->portrait(pictured), pictured.time);
   }
 
+  void save_or_fail() {
+    const std::string error = error_of([this] { save(); });
+    if (!error.empty()) fail(error);
+  }
+
+  /// After a step that is done.
   std::string reason_to_stop() {
-    if (ranks_.any(asked_to_stop != 0)) return by_signal;
+    if (scene_.tube.present) {
+      const std::string touching = contact(scene_, entry("gap"));
+      if (!touching.empty()) fail(touching);
+      warn_of_coarse_wall(entry("gap"));
+    }
+    if (coupling::largest(told_to_stop()) > 0) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;
-    if (limit && ranks_.first(watch_.here()) > *limit) return "stopped at the wall-clock limit";
-    const auto steady = scene_.time.steady_tolerance;
-    if (steady && entry("normal_velocity") < *steady) return "steady";
+    if (limit && ranks_.first(watch_.here()) > *limit) return by_clock;
+    const auto tolerance = scene_.time.steady_tolerance;
+    if (tolerance && entry("normal_velocity") < *tolerance) return steady;
     return {};
   }
 
-  int end(const std::string& reason) {
-    if (scene_.output.surface_text) results_.write_surface(particle_->portrait(state_).surface);
-    const output::Entries<long> work = counts(standing_, particle_->work(), coupling::of_all(particle_->kernel_evaluations(), ranks_));
-    std::ostringstream remark;
-    if (!reason.empty()) remark << reason << " at time " << state_.time;
-    return results_.close(plan(scene_, particle_->body(), ranks_.size()), work, phases_, remark.str());
+  Account account(const std::string& status) const {
+    return {plan(scene_, particle_->body(), ranks_.size()), counts(standing_), status, {}, false, earlier_seconds_, {}};
   }
 
-  /// The value of one series in this step; zero for a series that this particle has not.
-  double entry(const std::string& name) const {
-    const std::vector<Column>& columns = particle_->columns();
-    const auto at = std::ranges::find(columns, name, &Column::name);
-    return at == columns.end() ? 0.0 : row_[static_cast<size_t>(at - columns.begin())];
+  /// `reason`: to have ended before its time, if it did.
+  int end(const std::string& reason) {
+    if (scene_.output.surface_text) results_.write_surface(particle_->portrait(state_).surface);
+    Account last = account(reason.empty() ? "done" : reason);
+    last.whole = reason.empty() || reason == steady;
+    if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
+    if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " goes on";
+    const int code = results_.close(last, phases_);
+    return last.whole ? code : stopped;
   }
+
+  /// A status without its colon.
+  static std::string spoken(std::string status) {
+    std::erase(status, ':');
+    return status;
+  }
+
+  double entry(std::string_view name) const { return tanktread::entry(particle_->columns(), row_, name); }
 
   const Scene& scene_;
   const RunRequest& request_;
@@ -275,9 +357,11 @@ class Run {
   double began_ = 0;  // the last step
   Standing standing_;
   std::vector<double> row_;
-  bool warned_of_wall_ = false;
   bool snapshot_due_ = false;
-  bool stopped_ = false;  // within a step, of which nothing is kept
+  bool remeshed_ = false;     // in this step
+  bool interrupted_ = false;  // within a step, of which nothing is kept
+  stokes::Evaluations earlier_kernel_;        // in earlier parts of the run
+  output::Entries<double> earlier_seconds_;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
   surface::Quality quality_;
   Warnings warnings_{scene_};
@@ -297,7 +381,6 @@ std::vector<std::string> check_expectations(const Scene& scene) {
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is then an error like any other of writing
   if (scene.particle.motion == "prescribed") return resist(scene, request);
   return Run(scene, request).go();
 }

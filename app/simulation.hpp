@@ -23,7 +23,11 @@ struct RunRequest {
 /// that the scene does not record.
 std::vector<std::string> check_expectations(const Scene& scene);
 
-/// Runs the scene to its end. Exit code: 0 every expectation met, 1 one was missed. Throws UserError and RunFailure. Collective.
+/// Exit code of a run that was stopped and can be resumed.
+constexpr int stopped = 4;
+
+/// Runs the scene to its end. Exit code: 0 every expectation met, 1 one was missed, or `stopped`. Throws UserError, RunFailure, and motion::Stopped
+/// where the run is told to stop before its first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
 /// The plan of `--check` as text: blocks, unknowns, memory, kernel evaluations. Collective.

@@ -37,12 +37,17 @@ double stiffness(const Scene& scene, double h) {
   return std::max(in_plane, scene.membrane.bending_modulus * k * k * k / (4 * mu));
 }
 
+bool Warnings::fresh(const Warning& warning) {
+  if (std::ranges::find(memory_.said, warning.kind, &Warning::kind) != memory_.said.end()) return false;
+  memory_.said.push_back(warning);
+  return true;
+}
+
 std::vector<std::string> Warnings::look(const Signs& signs) {
-  std::vector<std::string> fresh;
+  std::vector<std::string> sentences;
   const auto add = [&](const char* kind, const std::string& sentence) {
-    if (sentence.empty() || !kinds_.insert(kind).second) return;
-    fresh.push_back(formatted("at time %.4g ", signs.time) + sentence);
-    said_.push_back(fresh.back());
+    const Warning warning{kind, formatted("at time %.4g ", signs.time) + sentence};
+    if (!sentence.empty() && fresh(warning)) sentences.push_back(warning.sentence);
   };
   add("choice", choice());
   add("compression", compression(signs));
@@ -51,7 +56,7 @@ std::vector<std::string> Warnings::look(const Signs& signs) {
   add("stretch", stretch(signs));
   add("gap", gap(signs));
   add("volume", volume(signs));
-  return fresh;
+  return sentences;
 }
 
 std::string Warnings::choice() const {
@@ -72,8 +77,8 @@ std::string Warnings::compression(const Signs& signs) {
   const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
   const bool resolved = fastest < mesh / 2;  // a wave that the mesh carries is no failure of the method
   const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));
-  waves_ = std::max(0.0, waves_ + (growth - scene_.rate()) * signs.step);
-  if (waves_ < grown) return {};
+  memory_.waves = std::max(0.0, memory_.waves + (growth - scene_.rate()) * signs.step);
+  if (memory_.waves < grown) return {};
   const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
   return formatted(
       "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; "
@@ -86,8 +91,8 @@ std::string Warnings::stiffness(const Signs& signs) {
   const bool iterated = scene_.time.scheme == "crank-nicolson" && scene_.time.nonlinear_solver == "plain";
   if (!elastic(scene_) || !(explicit_scheme || iterated)) return {};
   const double limit = explicit_scheme ? 2.51 : 2, reached = signs.step * tanktread::stiffness(scene_, signs.element);
-  limited_ = reached > 0.8 * limit ? limited_ + 1 : 0;
-  if (!(fixed && reached > limit) && limited_ < limited_steps) return {};
+  memory_.limited = reached > 0.8 * limit ? memory_.limited + 1 : 0;
+  if (!(fixed && reached > limit) && memory_.limited < limited_steps) return {};
   const char* what = explicit_scheme ? "explicit step" : "sub-iterated step";
   return formatted("the %s times the membrane's stiffness is %.2g, where about %.2g is the limit: %s; set Time/scheme to auto", what,
                    reached, limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");

@@ -3,8 +3,8 @@
 // tests/stability/README.md.
 
 #include <optional>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/body.hpp"
@@ -24,15 +24,30 @@ struct Signs {
   std::optional<double> gap;                    ///< to the wall of a tube
 };
 
+/// A sentence for the user, and what it is about: one of a kind is enough.
+struct Warning {
+  std::string kind, sentence;
+};
+
 class Warnings {
  public:
+  /// What a resumed run goes on with.
+  struct Memory {
+    double waves = 0;            ///< e-folds by which the shortest waves can have grown
+    int limited = 0;             ///< of the latest steps, how many were as long as stability allows
+    std::vector<Warning> said;  ///< so far
+  };
+
   explicit Warnings(const Scene& scene) : scene_(scene) {}
+
+  /// Whether there was none of this kind before; it counts as said from now on.
+  bool fresh(const Warning& warning);
 
   /// Sentences that this step adds.
   std::vector<std::string> look(const Signs& signs);
 
-  /// All so far.
-  const std::vector<std::string>& said() const { return said_; }
+  const Memory& memory() const { return memory_; }
+  void remember(Memory memory) { memory_ = std::move(memory); }
 
  private:
   std::string choice() const;
@@ -44,10 +59,7 @@ class Warnings {
   std::string volume(const Signs& signs) const;
 
   const Scene& scene_;
-  double waves_ = 0;  // e-folds by which the shortest waves can have grown
-  int limited_ = 0;   // of the latest steps, how many were as long as stability allows
-  std::set<std::string> kinds_;
-  std::vector<std::string> said_;
+  Memory memory_;
 };
 
 /// Stiffness rho of an elastic membrane on elements of size h, 1/time: (4.5) with the mean of the viscosities, or that of waves that are bent.

@@ -1,10 +1,11 @@
 // The main() of tests of rooms that communicate.
 
-#include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
+#include "coupling/ranks.hpp"
+
 int main(int argc, char** argv) {
-  Tpetra::ScopeGuard mpi(&argc, &argv);
+  const tanktread::coupling::Session session(&argc, &argv);
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include <Teuchos_ParameterList.hpp>
 
 #include "base/errors.hpp"
+#include "coupling/agreement.hpp"
 #include "coupling/belos_vectors.hpp"
 #include "deck/foreign.hpp"
 
@@ -31,21 +33,26 @@ class KnownProducts {
     outputs_.emplace_back(av);
   }
 
-  /// Whether x is a sum of the inputs to round-off; then y = A x.
+  /// Whether x is a sum of the inputs to round-off, as the first rank finds; then y = A x.
   bool give(const Vectors::Column& x, Vectors::Column y) const {
-    const double size = x.norm();
     Eigen::VectorXd shares(inputs_.size());
     for (std::size_t k = 0; k < inputs_.size(); ++k) shares[static_cast<Eigen::Index>(k)] = inputs_[k].dot(x);
-    if (shares.norm() < (1 - 1e-8) * size) return false;
-    Eigen::VectorXd rest = x;
-    for (std::size_t k = 0; k < inputs_.size(); ++k) rest -= shares[static_cast<Eigen::Index>(k)] * inputs_[k];
-    if (!(rest.norm() <= 1e-12 * size)) return false;
+    if (!of_first(holds(x, shares))) return false;
     y.setZero();
     for (std::size_t k = 0; k < inputs_.size(); ++k) y += shares[static_cast<Eigen::Index>(k)] * outputs_[k];
     return true;
   }
 
  private:
+  /// Whether x is the sum of so much of each input.
+  bool holds(const Vectors::Column& x, const Eigen::VectorXd& shares) const {
+    const double size = x.norm();
+    if (shares.norm() < (1 - 1e-8) * size) return false;
+    Eigen::VectorXd rest = x;
+    for (std::size_t k = 0; k < inputs_.size(); ++k) rest -= shares[static_cast<Eigen::Index>(k)] * inputs_[k];
+    return rest.norm() <= 1e-12 * size;
+  }
+
   static constexpr std::size_t most = 32;
   std::vector<Eigen::VectorXd> inputs_, outputs_;
 };
@@ -128,7 +135,7 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
 Krylov::~Krylov() = default;
 
 SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance, const Apply& precondition) const {
-  if (b.squaredNorm() == 0) {
+  if (of_first(b.squaredNorm() == 0)) {
     x.setZero();
     return {0, true, {}};
   }
@@ -141,9 +148,14 @@ SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::V
   impl_->log.str({});
   impl_->ask(tolerance);
   impl_->solver->setProblem(problem);
-  const bool converged = impl_->solver->solve() == Belos::Converged;
-  x = left->column(0);
-  return {impl_->solver->getNumIters(), converged, residuals(impl_->log.str())};
+  try {
+    const bool converged = impl_->solver->solve() == Belos::Converged;
+    x = left->column(0);
+    return {impl_->solver->getNumIters(), converged, residuals(impl_->log.str())};
+  } catch (const Belos::BelosError&) {  // what Belos makes of numbers that are not finite, or of a basis that breaks down
+    x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return {impl_->solver->getNumIters(), false, residuals(impl_->log.str())};
+  }
 }
 
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance) {

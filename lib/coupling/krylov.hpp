@@ -25,8 +25,8 @@ struct SolveReport {
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
 /// Belos, called through its factory, on short vectors that every rank holds whole (Vectors): every rank does the same arithmetic on the whole short
-/// vector, so dot products need no message and an iteration count cannot differ between ranks or rank counts. The operator may be
-/// distributed inside; it must return the same vector on every rank.
+/// vector, with the first rank's dot products and norms, so that an iteration count cannot differ between ranks. The operator may be
+/// distributed inside; it must return the same vector on every rank, but for round-off.
 class Krylov {
  public:
   using Apply = std::function<void(const double* in, double* out)>;
@@ -37,7 +37,8 @@ class Krylov {
   ~Krylov();
 
   /// Solves apply(x) = b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw when it
-  /// stops short; see the report. `precondition`: an approximate inverse of apply, from the right, so that residuals are those of the system.
+  /// stops short, or breaks down, the solution then not a number; see the report. `precondition`: an approximate inverse of apply, from the right,
+  /// so that residuals are those of the system.
   SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance, const Apply& precondition = {}) const;
 
  private:

@@ -15,6 +15,8 @@
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
 
+#include "coupling/agreement.hpp"
+
 namespace tanktread::coupling {
 
 using Map = Tpetra::Map<>;
@@ -57,6 +59,7 @@ struct Session::Impl {
       Tpetra::initialize(&kokkos.count, &kokkos.begin);  // MPI, then Kokkos
     else
       Kokkos::initialize(kokkos.count, kokkos.begin);
+    begin_agreements();
   }
   ~Impl() { Tpetra::isInitialized() ? Tpetra::finalize() : Kokkos::finalize(); }
 };

@@ -18,7 +18,7 @@ constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // numbers, as State::memory k
 
 }  // namespace
 
-/// State::memory begins with it; what follows is the chosen scheme's own. State::history ends with the direction of (4.7), except under RKC2.
+/// State::memory begins with it; what follows is the chosen scheme's own.
 struct Automatic::Choice {
   double scheme = bs3;
   double stiffness = 0;
@@ -40,14 +40,13 @@ Integrator& Automatic::chosen(const Choice& choice) {
   return choice.scheme == tr_bdf2 ? static_cast<Integrator&>(implicit_) : explicit_;
 }
 
-/// The direction is the last net of the history.
 void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const {
   const auto points = static_cast<double>(state.x.rows());
   if (choice.points == points && choice.age < measured_every) return;
-  if (choice.points == 0) state.history.emplace_back();
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
   dynamics.at(state.time, state.time);
-  choice.stiffness = stiffness(dynamics, state.x, state.history.front(), state.history.back(), choice.points == points ? 3 : 8);
+  const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, choice.points == points ? 3 : 8);
+  if (std::isfinite(found)) choice.stiffness = found;
   choice.points = points;
   choice.age = 0;
 }
@@ -88,14 +87,9 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
     }
   }
 
-  // The scheme sees its own part of history and memory only.
+  // The scheme sees its own part of the memory only.
   State inner = state;
   inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(std::min(Choice::size, inner.memory.size())));
-  Net direction;
-  if (choice.scheme != rkc2) {
-    direction = inner.history.back();
-    inner.history.pop_back();
-  }
   const double before = choice.scheme;
   if (before == bs3 && choice.stiffness > 0 && !options_.fixed_step) inner.step = std::min(inner.step, stable / choice.stiffness);
   const StepReport report = chosen(choice).advance(dynamics, inner, limit);
@@ -105,7 +99,6 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
       inner.history.resize(1);
       inner.memory.clear();
     }
-    inner.history.push_back(direction);
   }
   const std::vector<double> values = choice.values();
   inner.memory.insert(inner.memory.begin(), values.begin(), values.end());

@@ -11,7 +11,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr int places = 3;         // earlier ones that a step needs, x_n not counted
+constexpr std::size_t places = 3;         // earlier ones that a step needs, x_n not counted
 constexpr double growth = 1.5;    // of a step, at most
 constexpr int patience = 3;       // attempts before the places are given up
 constexpr double sharper = 1.86;  // shift over step, against TR-BDF2's
@@ -34,10 +34,10 @@ struct Differentiation {
   std::array<double, places> a;
   Differentiation(const std::array<double, places + 1>& times, double dt) : shift(0), a{} {
     double sum = 0;
-    for (int i = 0; i < places; ++i) {
+    for (size_t i = 0; i < places; ++i) {
       sum += 1 / (dt - times[i]);
       a[i] = 1 / (times[i] - dt);
-      for (int j = 0; j < places; ++j)
+      for (size_t j = 0; j < places; ++j)
         if (j != i) a[i] *= (dt - times[j]) / (times[i] - times[j]);
     }
     shift = 1 / sum;
@@ -46,37 +46,27 @@ struct Differentiation {
 
 }  // namespace
 
-/// State::history holds TR-BDF2's slopes and then the earlier places; State::memory its three numbers and then the steps between the places.
+/// A step of TR-BDF2, after which there is one place more.
 StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit) {
-  const size_t known = state.memory.size() > 3 ? state.memory.size() - 3 : 0;
-  std::vector<Net> earlier(state.history.end() - static_cast<std::ptrdiff_t>(known), state.history.end());
-  std::vector<double> steps(state.memory.end() - static_cast<std::ptrdiff_t>(known), state.memory.end());
-  State inner = state;
-  inner.history.resize(state.history.size() - known);
-  inner.memory.resize(state.memory.size() - known);
-  const StepReport report = starter_.advance(dynamics, inner, limit);
-
-  earlier.insert(earlier.begin(), state.x);
-  steps.insert(steps.begin(), report.step);
-  state = std::move(inner);
-  if (earlier.size() == places) {
+  Place before{state.time, state.x};
+  const StepReport report = starter_.advance(dynamics, state, limit);
+  state.places.insert(state.places.begin(), std::move(before));
+  if (state.places.size() == places) {
     state.history.resize(1);
     state.memory[0] = std::min(0.9, sharper * state.memory[0]);
     state.step = std::min(state.step, options_.fixed_step.value_or(growth * report.step));
   }
-  state.history.insert(state.history.end(), earlier.begin(), earlier.end());
-  state.memory.insert(state.memory.end(), steps.begin(), steps.end());
   return report;
 }
 
 StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
-  if (state.memory.size() < 3 + places) return start(dynamics, state, limit);
+  if (state.places.size() < places) return start(dynamics, state, limit);
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
   Memory memory = Memory::from(state.memory);
   coupling::Secants secants = state.secants;
-  const std::array<const Net*, places + 1> nets{&state.x, &state.history[1], &state.history[2], &state.history[3]};
+  const std::array<const Net*, places + 1> nets{&state.x, &state.places[0].x, &state.places[1].x, &state.places[2].x};
   std::array<double, places + 1> times{};
-  for (int i = 0; i < places; ++i) times[i + 1] = times[i] - state.memory[3 + i];
+  for (size_t i = 0; i < places; ++i) times[i + 1] = state.places[i].time - state.time;
   StepReport report;
   double h = options_.fixed_step ? *options_.fixed_step : state.step;
 
@@ -85,6 +75,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     if (report.rejected >= patience) {
       State fresh = state;
       fresh.history.resize(1);
+      fresh.places.clear();
       fresh.memory.clear();
       fresh.step = h;
       StepReport restarted = start(dynamics, fresh, limit);
@@ -108,17 +99,17 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
         stage.solved ? scheme.shift / (dt - times[places]) * dynamics.norm(stage.y - predicted) / options_.tolerance : 0;
     const Verdict verdict = judge(dynamics, options_, state, stage, error, 4, memory);
     const double factor = std::min(growth, verdict.factor);
-    if (!verdict.accepted) {
+    Place before{state.time, state.x};
+    if (!verdict.accepted || !accept(dynamics, options_, state, stage, dt, h, limit, error, factor, report)) {
       h = dt * std::min(factor, 0.8);
       continue;
     }
 
-    const Net before = state.x;
-    accept(dynamics, options_, state, stage, dt, h, limit, error, factor, report);
     state.step = std::min(state.step, growth * dt);
     state.memory = Memory{stage.contraction, error, dt}.values();
-    state.memory.insert(state.memory.end(), {dt, -times[1], times[1] - times[2]});
-    state.history = {stage.slope, before, state.history[1], state.history[2]};
+    state.history = {stage.slope};
+    state.places.pop_back();
+    state.places.insert(state.places.begin(), std::move(before));
     state.secants = std::move(secants);
     return report;
   }

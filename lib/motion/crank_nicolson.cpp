@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.hpp"
 
@@ -60,13 +61,17 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     report.iterations += attempt.iterations;
     if (!attempt.converged && options_.fixed_step) throw RunFailure("Crank-Nicolson with a fixed step did not converge");
     const double error = known ? dynamics.norm(attempt.y - explicitly) / (3 * (1 + 1 / r)) / options_.tolerance : 0;
-    const bool accepted = attempt.converged && (error <= 1 || options_.fixed_step);
-    if (!accepted) {
+    Net y = attempt.y, slope;
+    if (attempt.converged && (error <= 1 || options_.fixed_step)) {
+      dynamics.restore_volume(y);
+      slope = dynamics.velocity(y);
+      attempt.converged = slope.allFinite();
+      if (!attempt.converged && options_.fixed_step) throw RunFailure("Crank-Nicolson with a fixed step ended in numbers that are not finite");
+    }
+    if (slope.size() == 0 || !attempt.converged) {
       h = dt * (by_error_ ? (attempt.converged ? std::min(0.8, step_factor(error, 0, 3)) : 0.5) : shrink);
       continue;
     }
-    Net y = attempt.y;
-    dynamics.restore_volume(y);
     report.step = dt;
     report.error = error * options_.tolerance;
     report.displacement = dynamics.norm(y - state.x);
@@ -76,8 +81,8 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
       next = dt < h ? std::max(h, dt * factor) : dt * factor;
       state.memory = {dt, error};
     }
-    state.x = y;
-    state.history.insert(state.history.begin(), dynamics.velocity(y));
+    state.x = std::move(y);
+    state.history.insert(state.history.begin(), std::move(slope));
     state.history.resize(by_error_ ? 2 : 1);
     state.time = dt == limit - state.time ? limit : state.time + dt;
     state.step = std::min(next, options_.maximum_step.value_or(1e300));

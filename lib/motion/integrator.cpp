@@ -69,6 +69,8 @@ void begin(coupling::Dynamics& dynamics, State& state) {
 
 void forget(State& state) {
   state.history.resize(std::min<std::size_t>(state.history.size(), 1));
+  state.places.clear();
+  state.direction = {};
   state.memory.clear();
   state.secants = {};
 }

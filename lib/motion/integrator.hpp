@@ -14,12 +14,20 @@ class ParameterList;
 
 namespace tanktread::motion {
 
+/// Where x was at an earlier time.
+struct Place {
+  double time = 0;
+  Net x;
+};
+
 /// Everything that a run needs to go on from here to the last bit: it belongs to a checkpoint.
 struct State {
   double time = 0;
   double step = 0;              ///< the step that the controller proposes next
   Net x;                        ///< control net
-  std::vector<Net> history;     ///< slopes that the scheme keeps; the first one is dx/dt at x
+  std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, the latest first: the first one is that at x
+  std::vector<Place> places;    ///< earlier places that a multistep scheme keeps, the latest first
+  Net direction;                ///< in which the stiffness (4.7) was found; empty where it was not sought
   std::vector<double> memory;   ///< the controller's memory, its meaning is the scheme's own
   coupling::Secants secants;    ///< what the quasi-Newton iterations have learnt of the Jacobian
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if none were
@@ -49,8 +57,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// One accepted step, not beyond `limit` nor the next kink of the motion. Throws RunFailure when the step falls below the minimum; the state is then
-  /// unchanged, but for what cross_kink does.
+  /// One accepted step, not beyond `limit` nor the next kink of the motion. Throws RunFailure when the step falls below the minimum; the state is
+  /// then unchanged, but for what cross_kink does.
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 

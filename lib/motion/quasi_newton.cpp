@@ -21,7 +21,11 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     const Net v = dynamics.velocity(stage.y), residual = rhs + shift * v - stage.y;
     ++stage.iterations;
     if (!residual.allFinite()) return;
-    if (k > 0 && options.secants > 0) secants.add(delta, dynamics.missed(v - before, delta), options.secants);
+    if (k > 0 && options.secants > 0) {
+      const Net missed = dynamics.missed(v - before, delta);
+      if (!missed.allFinite()) return;
+      secants.add(delta, missed, options.secants);
+    }
     dynamics.linearise(stage.y);
     delta = dynamics.solve(shift, residual, options.linear_tolerance, secants);
     const double size = dynamics.norm(delta);
@@ -45,7 +49,7 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
   // A fresh operator helps only where the shape has moved on; the rest of the contraction rate is the part left out of (4.3).
   const double moved = dynamics.norm(state.x - state.frozen);
   if (last.solved ? last.contraction > options.contraction_limit && moved > worth_assembling : moved > 0) dynamics.freeze(state.frozen = state.x);
-  if (!last.solved) {
+  if (!last.solved || !std::isfinite(error)) {
     memory.contraction = std::min(0.5, last.contraction);
     if (options.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
     return {};
@@ -54,10 +58,11 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
   return {accepted, step_factor(error, accepted ? memory.error : 0, power)};
 }
 
-void accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
+bool accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
             double error, double factor, StepReport& report) {
   Net y = last.y;
   dynamics.restore_volume(y);
+  if (!y.allFinite()) return false;
   report.step = dt;
   report.error = error * options.tolerance;
   report.displacement = dynamics.norm(y - state.x);
@@ -65,6 +70,7 @@ void accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& sta
   state.time = dt == limit - state.time ? limit : state.time + dt;
   // A step shortened to meet `limit` says nothing against the longer one.
   state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options.maximum_step.value_or(1e300));
+  return true;
 }
 
 }  // namespace tanktread::motion

@@ -46,8 +46,8 @@ struct Verdict {
 Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double error, int power, Memory& memory);
 
 /// Ends the step dt towards `limit`, where h was proposed, at the stage `last`, its volume restored: place, time and next step of the state, and
-/// the report. The scheme's history and memory are its own.
-void accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
+/// the report. The scheme's history and memory are its own. False where the volume cannot be restored: the state is then unchanged.
+bool accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
             double error, double factor, StepReport& report);
 
 }  // namespace tanktread::motion

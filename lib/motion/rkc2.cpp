@@ -15,7 +15,7 @@ constexpr double margin = 1.1;    // power iteration stays below rho
 constexpr int lasting_steps = 25;  // for which a measured stiffness is used
 constexpr int most_stages = 200;
 
-/// State::memory; State::history is the slope and the direction of (4.7).
+/// State::memory.
 struct Memory {
   double stiffness = 0;  ///< measured
   double age = 0;        ///< steps since
@@ -29,9 +29,9 @@ struct Memory {
 void measure(coupling::Dynamics& dynamics, State& state, Memory& memory, StepReport& report) {
   const auto points = static_cast<double>(state.x.rows());
   const int iterations = memory.points == points ? 3 : 8;
-  state.history.resize(2);
   dynamics.at(state.time, state.time);
-  memory.stiffness = stiffness(dynamics, state.x, state.history[0], state.history[1], iterations);
+  const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
+  if (std::isfinite(found)) memory.stiffness = found;
   memory.age = 0;
   memory.points = points;
   report.iterations += iterations;
@@ -110,7 +110,7 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
     report.error = error * options_.tolerance;
     report.displacement = dynamics.norm(y - state.x);
     state.x = y;
-    state.history[0] = slope;
+    state.history = {slope};
     state.time = dt == limit - state.time ? limit : state.time + dt;
     state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options_.maximum_step.value_or(1e300));
     memory.age += 1;

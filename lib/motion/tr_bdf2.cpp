@@ -50,12 +50,11 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       error = dynamics.norm(dynamics.solve(shift, raw, options_.linear_tolerance, secants)) / options_.tolerance;
     }
     const auto [accepted, factor] = judge(dynamics, options_, state, third, error, 3, memory);
-    if (!accepted) {
+    if (!accepted || !accept(dynamics, options_, state, third, dt, h, limit, error, factor, report)) {
       h = dt * std::min(factor, 0.8);
       continue;
     }
 
-    accept(dynamics, options_, state, third, dt, h, limit, error, factor, report);
     state.history = {third.slope, k2, k1};
     state.secants = std::move(secants);
     state.memory = Memory{third.contraction, error, dt}.values();

@@ -44,7 +44,8 @@ std::string map(std::string_view key, const Entries<Value>& entries) {
 }  // namespace
 
 std::string yaml(const Summary& summary) {
-  std::string text = map("final", summary.final) + lines(summary.final_vectors);
+  std::string text = "status: " + scalar(summary.status) + "\n";
+  text += map("final", summary.final) + lines(summary.final_vectors);
   text += summary.expect.empty() ? "expect: []\n" : "expect:\n";
   for (const Expected& one : summary.expect) {
     text += "  - name: " + scalar(one.name) + "\n";

@@ -21,6 +21,7 @@ template <class Value>
 using Entries = std::vector<std::pair<std::string, Value>>;  ///< in the order in which they are written
 
 struct Summary {
+  std::string status = "done";  ///< or `steady`, `stopped: <by what>`, `failed: <reason>`
   Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
   Entries<std::vector<double>> final_vectors;  ///< what is a vector, as a list: drag, torque
   std::vector<Expected> expect;

@@ -34,7 +34,8 @@ def _fails(*settings):
     said = run(deck(DECK), *words, "--output", "out", "--quiet", code=3).stderr
     check(len(said.splitlines()) == 1 and "at time" in said and "checkpoint" in said and "out" in said, said)
     check(list(pathlib.Path("out").glob("snapshot_*.hdf")), "no checkpoint")
-    check(not pathlib.Path("out/summary.yaml").exists(), "a run that failed must not look like one that is done")
+    status = summary("out")["status"]
+    check(status.startswith("failed: ") and status[8:] in said, status)
     return said
 
 
@@ -57,7 +58,8 @@ def a_stopped_run_has_a_checkpoint_and_goes_on():
         time.sleep(0.02)
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=60)
-    check(process.returncode == 0 and "signal" in said, process.returncode, said)
+    check(process.returncode == 4 and "signal" in said and "--resume out" in said, process.returncode, said)
+    check(summary("out")["status"] == "stopped: by a signal", summary("out")["status"])
     check(summary("out")["final"]["time"] == series("out", "time")[-1], "the summary is not of the last step")
 
 
@@ -69,8 +71,9 @@ def a_run_in_a_long_step_stops_before_its_end_and_goes_on_to_the_same_bits():
         time.sleep(0.001)
     process.send_signal(signal.SIGHUP)
     _, said = process.communicate(timeout=60)
-    check(process.returncode == 0 and "signal" in said, process.returncode, said)
+    check(process.returncode == 4 and "signal" in said, process.returncode, said)
     run("--resume", "out", "--quiet")
+    check(summary("out")["status"] == "done", summary("out")["status"])
     for name in "time", "energy", "evaluations":
         check((series("out", name) == series("whole", name)).all(), f"{name} is not that of the run that was left alone")
 
@@ -95,10 +98,11 @@ def a_file_beyond_the_limit_is_an_error_of_writing():
 
 def a_run_stops_at_its_wall_clock_limit():
     said = run(deck(DECK), "--set", "Time/tolerance=1e-9", "--set", "Time/final time=50", "--set", "Output/wall-clock limit=0.5", "--output", "out",
-               "--quiet").stderr
+               "--quiet", code=4).stderr
     check("wall-clock" in said, said)
+    check(summary("out")["status"] == "stopped: at the wall-clock limit", summary("out")["status"])
     steps = len(series("out", "time"))
-    run("--resume", "out", "--quiet")  # the limit is for each part
+    run("--resume", "out", "--quiet", code=4)  # the limit is for each part
     check(len(series("out", "time")) > steps, "no step more")
 
 

@@ -1,6 +1,7 @@
 #include "app/drift.hpp"
 
 #include <gtest/gtest.h>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
@@ -52,6 +53,29 @@ TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
   hold_centre(flow, geometry, Vec3::Zero(), state);
   EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
   EXPECT_LT((state.history[0] - state.x * l.transpose()).norm(), 1e-13);
+}
+
+// Points that move with the flow alone were at exp(-L s) x a time s ago, wherever they are now.
+TEST(Drift, PuttingTheCentroidBackTakesEarlierPlacesAlong) {
+  const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
+  const spline::TMesh mesh = spline::cube(4);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::catmull_clark);
+  const surface::Geometry geometry(space);
+  const Vec3 center(0.3, -0.2, 0.1);
+  const Mat3 l = flow.gradient(center);
+  motion::State state;
+  state.time = 2;
+  state.x = surface::initial_shape(space, mesh, {}).rowwise() + center.transpose();
+  const auto at = [&](double time) {
+    const Mat3 moved = l * (time - state.time);
+    return Net(state.x * moved.exp().transpose());
+  };
+  for (const double time : {1.9, 1.7, 1.6}) state.places.push_back({time, at(time)});
+  const Net direction = state.direction = Net::Random(state.x.rows(), 3);
+  hold_centre(flow, geometry, Vec3::Zero(), state);
+  EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
+  for (const motion::Place& place : state.places) EXPECT_LT((place.x - at(place.time)).norm(), 1e-13) << place.time;
+  EXPECT_EQ(state.direction, direction);
 }
 
 }  // namespace

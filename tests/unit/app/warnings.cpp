@@ -45,11 +45,11 @@ TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
   for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // they take their time
   for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
-  ASSERT_EQ(run.warnings.said().size(), 1u);
-  const std::string sentence = run.warnings.said().front();
+  ASSERT_EQ(run.warnings.memory().said.size(), 1u);
+  const std::string sentence = run.warnings.memory().said.front().sentence;
   EXPECT_TRUE(names(sentence, "Membrane/bending modulus") && names(sentence, "at time 1 ")) << sentence;
   for (int k = 0; k < 50; ++k) EXPECT_EQ(run.first(at(0.1, -0.14)), "");
-  EXPECT_EQ(run.warnings.said().size(), 1u);
+  EXPECT_EQ(run.warnings.memory().said.size(), 1u);
 }
 
 TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
@@ -57,7 +57,7 @@ TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
   for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // k = 4.7, of 24 on the mesh
   Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
   for (int k = 0; k < 50; ++k) soft.first(at(0.1, -0.13));
-  EXPECT_TRUE(names(soft.warnings.said().at(0), "too little resistance"));
+  EXPECT_TRUE(names(soft.warnings.memory().said.at(0).sentence, "too little resistance"));
 }
 
 TEST(Warnings, TellOfAFixedStepBeyondTheLimit) {

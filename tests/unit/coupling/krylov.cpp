@@ -1,6 +1,8 @@
 // Belos behind one function, and replicated rows, on any number of ranks.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -96,6 +98,32 @@ TEST(Krylov, KeepsTheResidualHistory) {
   EXPECT_NEAR(report.history.front(), 1, 1e-12);
   for (size_t i = 1; i < report.history.size(); ++i) EXPECT_LE(report.history[i], report.history[i - 1]);  // GMRES never rises
   EXPECT_LE(report.history.back(), 1e-8);
+}
+
+TEST(Krylov, NumbersThatAreNotFiniteAreASolveThatStoppedShort) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Krylov::Apply broken = [&](const double* in, double* out) { std::fill(out, out + 5, nan * in[0]); };
+  for (const char* name : {"GMRES", "BICGSTAB", "TFQMR"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(5);
+    EXPECT_FALSE(Krylov(name, nullptr).solve(broken, Eigen::VectorXd::Ones(5), x, 1e-8).converged) << name;
+    x.setZero();
+    EXPECT_FALSE(Krylov(name, nullptr).solve([](const double*, double*) {}, Eigen::VectorXd::Constant(5, nan), x, 1e-8).converged) << name;
+  }
+}
+
+// Ranks whose products differ by more than round-off still end in the same iteration.
+TEST(Krylov, EndsInTheSameIterationOnAllRanks) {
+  const int n = 60;
+  const Ranks ranks;
+  const Eigen::MatrixXd a = nonsymmetric(n) * (1 + 0.3 * ranks.rank()) + ranks.rank() * Eigen::MatrixXd::Identity(n, n);
+  const Krylov::Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  for (const char* name : {"GMRES", "BICGSTAB"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    const int iterations = Krylov(name, nullptr).solve(apply, Eigen::VectorXd::LinSpaced(n, -1, 2), x, 1e-6).iterations;
+    EXPECT_EQ(iterations, ranks.first(iterations)) << name;
+  }
 }
 
 TEST(Krylov, ZeroRightHandSideCostsNothing) {

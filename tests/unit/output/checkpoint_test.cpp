@@ -77,6 +77,8 @@ TEST(Checkpoint, HoldsTheStateOfAnIntegrator) {
   state.step = 1. / 7;
   state.x = Net::Random(20, 3);
   state.history = {Net::Random(20, 3), Net::Random(20, 3)};
+  state.places = {{0.05, Net::Random(20, 3)}, {-1. / 3, Net::Random(20, 3)}};
+  state.direction = Net::Random(20, 3);
   state.memory = {1e-300, 2. / 3, -0.};
   Checkpoint checkpoint;
   store(state, checkpoint);
@@ -86,6 +88,12 @@ TEST(Checkpoint, HoldsTheStateOfAnIntegrator) {
   EXPECT_EQ(back.step, state.step);
   EXPECT_EQ(back.x, state.x);
   EXPECT_EQ(back.history, state.history);
+  ASSERT_EQ(back.places.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(back.places[k].time, state.places[k].time);
+    EXPECT_EQ(back.places[k].x, state.places[k].x);
+  }
+  EXPECT_EQ(back.direction, state.direction);
   EXPECT_EQ(back.memory, state.memory);
   EXPECT_EQ(back.frozen.rows(), 0);
 }

@@ -1,0 +1,63 @@
+#include "app/standing.hpp"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/formatted.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr std::string_view phase_prefix = "wall seconds of ";
+
+/// Every count of a standing with its name in the checkpoint.
+template <class Some, class Act>
+void each_count(Some& standing, const Act& act) {
+  act("step number", standing.step);
+  act("refinements", standing.refinements);
+  act("coarsenings", standing.coarsenings);
+  act("evaluations", standing.work.evaluations);
+  act("assemblies", standing.work.assemblies);
+  act("tangents", standing.work.tangents);
+  act("solves", standing.work.solves);
+  act("solver iterations", standing.work.solver_iterations);
+  act("velocity iterations", standing.work.velocity_iterations);
+  act("velocity solves", standing.work.velocity_solves);
+  act("most velocity iterations", standing.work.most_velocity_iterations);
+  act("kernel evaluations far", standing.kernel.far);
+  act("kernel evaluations near", standing.kernel.near);
+  act("kernel evaluations self", standing.kernel.self);
+  act("steps at the limit of stability", standing.warnings.limited);
+}
+
+std::string warning_name(std::size_t k) { return formatted("warning %04zu", k); }
+
+}  // namespace
+
+void store(const Standing& standing, output::Checkpoint& checkpoint) {
+  each_count(standing, [&](const char* name, const auto& count) { checkpoint.numbers[name] = static_cast<double>(count); });
+  checkpoint.numbers["wall seconds"] = standing.wall_seconds;
+  checkpoint.numbers["growth of waves"] = standing.warnings.waves;
+  for (const auto& [phase, seconds] : standing.seconds) checkpoint.numbers[std::string(phase_prefix) + phase] = seconds;
+  for (std::size_t k = 0; k < standing.warnings.said.size(); ++k)
+    checkpoint.texts[warning_name(k)] = standing.warnings.said[k].kind + "\n" + standing.warnings.said[k].sentence;
+}
+
+Standing stored_standing(const output::Checkpoint& checkpoint) {
+  Standing standing;
+  each_count(standing, [&]<class Count>(const char* name, Count& count) { count = static_cast<Count>(checkpoint.numbers.at(name)); });
+  standing.wall_seconds = checkpoint.numbers.at("wall seconds");
+  standing.warnings.waves = checkpoint.numbers.at("growth of waves");
+  for (const auto& [name, seconds] : checkpoint.numbers)
+    if (name.starts_with(phase_prefix)) standing.seconds.emplace_back(name.substr(phase_prefix.size()), seconds);
+  for (std::size_t k = 0; checkpoint.texts.contains(warning_name(k)); ++k) {
+    const std::string& text = checkpoint.texts.at(warning_name(k));
+    const std::size_t end = text.find('\n');
+    standing.warnings.said.push_back({text.substr(0, end), text.substr(end + 1)});
+  }
+  return standing;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,87 @@
+#include "motion/guarded.hpp"
+
+#include <limits>
+#include <new>
+
+#include "base/errors.hpp"
+#include "coupling/agreement.hpp"
+
+namespace tanktread::motion {
+
+namespace {
+
+enum Outcome { fine, told_to_stop, failed, exhausted };  // the worst of all ranks' counts
+
+Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
+
+}  // namespace
+
+/// Whether `act`, which says whether its result is finite, succeeded on all ranks. `told`: to stop.
+bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
+  int mine = told ? told_to_stop : fine;
+  std::string reason;
+  try {
+    if (!act()) mine = failed, reason = "it is not a number";
+  } catch (const std::bad_alloc&) {
+    mine = exhausted, reason = "there is not enough memory";
+  } catch (const std::exception& error) {
+    mine = failed, reason = error.what();
+  }
+  const int worst = coupling::largest(mine, reason);
+  if (worst == told_to_stop) throw Stopped();
+  if (worst >= failed) failure_ = coupling::error_of_any(reason);
+  if (worst == exhausted) throw RunFailure(failure_);
+  return worst == fine;
+}
+
+Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate) {
+  Net result;
+  const bool had = coupling::of_first(like.allFinite()) && done(false, [&] { return (result = evaluate()).allFinite(); });
+  return had ? result : not_a_number(like);
+}
+
+Net GuardedDynamics::velocity(const Net& x) {
+  if (!coupling::of_first(x.allFinite())) return not_a_number(x);
+  Net v;
+  return done(told_(), [&] { return (v = motion_.velocity(x)).allFinite(); }) ? v : not_a_number(x);
+}
+
+void GuardedDynamics::freeze(const Net& x) {
+  const auto freeze = [&] {
+    motion_.freeze(x);
+    return true;
+  };
+  if (!done(false, freeze)) throw RunFailure("the Jacobian's operators cannot be assembled: " + failure_);
+}
+
+void GuardedDynamics::linearise(const Net& x) {
+  linearised_ = done(false, [&] {
+    motion_.linearise(x);
+    return true;
+  });
+}
+
+Net GuardedDynamics::solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) {
+  if (!linearised_) return not_a_number(r);
+  return tried(r, [&] { return motion_.solve(shift, r, tolerance, secants); });
+}
+
+Net GuardedDynamics::missed(const Net& dv, const Net& delta) {
+  return tried(dv, [&] { return motion_.missed(dv, delta); });
+}
+
+Net GuardedDynamics::derivative(const Net& x, const Net& v, const Net& delta) {
+  return tried(delta, [&] { return motion_.derivative(x, v, delta); });
+}
+
+void GuardedDynamics::restore_volume(Net& x) {
+  x = tried(x, [&] {
+    Net restored = x;
+    motion_.restore_volume(restored);
+    return restored;
+  });
+}
+
+double GuardedDynamics::norm(const Net& displacement) const { return coupling::of_first(motion_.norm(displacement)); }
+
+}  // namespace tanktread::motion

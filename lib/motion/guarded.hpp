@@ -1,0 +1,48 @@
+#pragma once
+// A motion whose evaluations have one outcome on all ranks.
+
+#include <functional>
+#include <string>
+
+#include "coupling/dynamics.hpp"
+
+namespace tanktread::motion {
+
+/// What a velocity evaluation ends with that was told to stop. Not an error: no scheme takes it for one.
+struct Stopped {};
+
+/// Another motion as integrators see it. What cannot be had at a trial shape (a solver that does not converge, a folded or open surface, numbers that
+/// are not finite), on one rank or more, is not a number on all of them, which every scheme answers with a shorter step. Memory that runs out is no
+/// such outcome: all ranks throw RunFailure. Norms, on which the decisions of a scheme rest, are the first rank's. Collective, as the motion is.
+class GuardedDynamics : public coupling::Dynamics {
+ public:
+  /// `told`: whether this rank was told to stop; a velocity evaluation then ends with Stopped, on every rank.
+  GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> told) : motion_(motion), told_(std::move(told)) {}
+
+  void at(double time, double start) override { motion_.at(time, start); }
+  double next_kink(double time) const override { return motion_.next_kink(time); }
+  Net velocity(const Net& x) override;
+  void freeze(const Net& x) override;
+  double frozen_bytes() const override { return motion_.frozen_bytes(); }
+  void linearise(const Net& x) override;
+  Net solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) override;
+  Net missed(const Net& dv, const Net& delta) override;
+  Net derivative(const Net& x, const Net& v, const Net& delta) override;
+  void restore_volume(Net& x) override;
+  Net symmetric(Net rate) const override { return motion_.symmetric(std::move(rate)); }
+  double norm(const Net& displacement) const override;
+
+  /// Why the latest evaluation that failed did; empty where none has.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  bool done(bool told, const std::function<bool()>& act);
+  Net tried(const Net& like, const std::function<Net()>& evaluate);
+
+  coupling::Dynamics& motion_;
+  std::function<bool()> told_;
+  std::string failure_;
+  bool linearised_ = false;
+};
+
+}  // namespace tanktread::motion

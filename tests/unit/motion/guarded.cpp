@@ -1,0 +1,111 @@
+// Evaluations that fail: one outcome for schemes, the same on all ranks.
+
+#include "motion/guarded.hpp"
+
+#include <functional>
+#include <new>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "coupling/ranks.hpp"
+#include "motion/integrator.hpp"
+
+namespace tanktread::motion {
+namespace {
+
+/// x' = -x, whose velocity `fails` may refuse.
+class Decay : public coupling::Dynamics {
+ public:
+  std::function<void(const Net& x)> fails = [](const Net&) {};
+  double size = 1;  // of the norm
+  Net velocity(const Net& x) override {
+    fails(x);
+    return -x;
+  }
+  void freeze(const Net&) override {}
+  void linearise(const Net&) override {}
+  Net solve(double shift, const Net& r, double, const coupling::Secants&) override { return r / (1 + shift); }
+  Net missed(const Net& dv, const Net&) override { return 0 * dv; }
+  void restore_volume(Net&) override {}
+  double norm(const Net& d) const override { return size * d.norm(); }
+};
+
+State start(double step) {
+  State state;
+  state.step = step;
+  state.x = Net::Constant(1, 3, 1.);
+  state.history = {-state.x};
+  return state;
+}
+
+bool never() { return false; }
+
+TEST(GuardedDynamics, WhatCannotBeEvaluatedMakesAStepShorterUnderEveryScheme) {
+  for (const char* scheme : {"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"}) {
+    TimeOptions options;
+    options.scheme = scheme;
+    options.tolerance = 0.1;
+    Decay decay;
+    decay.fails = [](const Net& x) {
+      if (x(0, 0) < 0.7) throw std::logic_error("no basis");
+    };
+    GuardedDynamics motion(decay, never);
+    State state = start(2);  // would end far below 0.7
+    const StepReport report = integrator(options)->advance(motion, state, 4);
+    EXPECT_GT(report.rejected, 0) << scheme;
+    EXPECT_GT(state.x(0, 0), 0.7) << scheme;
+    EXPECT_TRUE(state.history.front().allFinite()) << scheme;
+    EXPECT_EQ(motion.failure(), "no basis");
+  }
+}
+
+TEST(GuardedDynamics, AFailureOfOneRankIsOneOfAll) {
+  const coupling::Ranks ranks;
+  Decay decay;
+  decay.fails = [&](const Net&) {
+    if (ranks.rank() == ranks.size() - 1) throw RunFailure("not converged");
+  };
+  GuardedDynamics motion(decay, never);
+  EXPECT_TRUE(motion.velocity(Net::Ones(2, 3)).array().isNaN().all());
+  EXPECT_EQ(motion.failure(), "not converged");
+}
+
+TEST(GuardedDynamics, MemoryThatRunsOutIsNoReasonForAShorterStep) {
+  const coupling::Ranks ranks;
+  Decay decay;
+  decay.fails = [&](const Net&) {
+    if (ranks.rank() == ranks.size() - 1) throw std::bad_alloc();
+  };
+  GuardedDynamics motion(decay, never);
+  EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), RunFailure);
+  EXPECT_EQ(motion.failure(), "there is not enough memory");
+}
+
+TEST(GuardedDynamics, EveryRankStopsWhereOneWasTold) {
+  const coupling::Ranks ranks;
+  Decay decay;
+  GuardedDynamics motion(decay, [&] { return ranks.rank() == ranks.size() - 1; });
+  EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), Stopped);
+}
+
+// Two ranks that would find errors on either side of the tolerance come to the same steps.
+TEST(GuardedDynamics, DecisionsOfAStepAreTheFirstRanks) {
+  const coupling::Ranks ranks;
+  for (const char* scheme : {"tr-bdf2", "bs3", "rkc2"}) {
+    TimeOptions options;
+    options.scheme = scheme;
+    Decay decay;
+    decay.size = 1 + ranks.rank();
+    GuardedDynamics motion(decay, never);
+    State state = start(0.5);
+    const auto integrate = integrator(options);
+    for (int k = 0; k < 4; ++k) integrate->advance(motion, state, 4);
+    EXPECT_EQ(state.time, ranks.first(state.time)) << scheme;
+    EXPECT_EQ(state.step, ranks.first(state.step)) << scheme;
+  }
+}
+
+}  // namespace
+}  // namespace tanktread::motion
