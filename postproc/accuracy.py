@@ -34,9 +34,9 @@ FIRST = "inputs/shear_neo_hookean.yaml"
 SCENES = {
     "shear": ("capsule in shear, Ca = 0.3, to 7.5", FIRST, {}, "taylor_inertia", _side(14), MESHES),
     "ratio": ("the same, viscosity ratio 5", FIRST, {"Particle/viscosity ratio": 5.0}, "taylor_inertia", _side(12), MESHES),
-    "refined": ("Skalak capsule drawn out, Ca = 0.6, mesh refined", "inputs/hyperbolic_skalak.yaml", {}, "taylor_inertia", _refined(8, 8e-5),
+    "refined": ("Skalak capsule drawn out, Ca = 0.6, mesh refined", "inputs/hyperbolic_skalak.yaml", {}, "taylor_inertia", _refined(10, 4e-5),
                 [(f"n = {n}, surface tolerance {tolerance:g}", _refined(n, tolerance)) for n, tolerance in
-                 ((4, 1.6e-3), (4, 8e-4), (6, 8e-4), (6, 4e-4), (6, 2e-4))]),
+                 ((4, 1.6e-3), (4, 8e-4), (6, 8e-4), (6, 4e-4), (6, 2e-4), (8, 1e-4))]),
     "drop": ("drop in uniaxial extension", "inputs/drop_uniaxial.yaml", {}, "taylor_inertia", _side(12) | {"Time/tolerance": 1e-6}, MESHES),
     "tube": ("capsule that nearly fills a tube", "inputs/capsule_in_tube.yaml", {}, "velocity_x1", None, MESHES[1:]),
 }

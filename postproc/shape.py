@@ -67,13 +67,14 @@ def view_axes(azimuth, elevation):
     return numpy.array([right, numpy.cross(eye, right), eye])
 
 
-def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640):
-    """What the eye sees of it, with the elements that it is made of."""
+def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640, triad=True):
+    """What the eye sees of it, with the elements that it is made of, and beside it the axes."""
     view = view_axes(azimuth, elevation)
     values = shot.fields[field]
     image, extent = render.picture(shot, magnitude(values), view, lambda seen: plt.get_cmap(colours)(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
-    draw_triad(axis, view, numpy.array(extent))
+    if triad:
+        draw_triad(axis, view, numpy.array(extent))
     axis.set_anchor("N")
     axis.autoscale_view()
     axis.axis("off")

@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 
 import duct
+import meshes
 import read
 import shape
 import style
@@ -22,7 +23,7 @@ from style import plt
 FLOOR = 1e-4  # of the distance from the largest velocity: what the tolerances of a run let through is none
 TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 20.0]
 PANELS = [("migration_velocity", "migration velocity / vₘ"), ("velocity_x1", "velocity along the tube / vₘ"),
-          ("tank_treading_velocity", "tank-treading velocity / vₘ"), ("disturbed_pressure_drop", "disturbed pressure drop / (μ vₘ/R_T)")]
+          ("tank_treading_velocity", "tank-treading velocity / vₘ"), ("disturbed_pressure_drop", "disturbed pressure drop / (μ vₘ/R$_T$)")]
 
 
 def main():
@@ -52,22 +53,23 @@ def centroid(run, shot):
 
 
 def shapes(runs, ducts, times):
-    figure = plt.figure(figsize=(11.5, 4.0 * len(runs)))
+    figure = plt.figure(figsize=(11.5, 4.4 * len(runs)))
     for row, (part, run, d) in enumerate(zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts)):
         shots = shots_of(run, times)
         colours = plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))
-        upper, lower = part.subfigures(2, 1, height_ratios=[0.42, 0.58])
+        upper, lower = part.subfigures(2, 1, height_ratios=[0.45, 0.55])
         norm = Normalize(0, max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots))
         unit = run.value("Flow/viscosity", 1) * run.rate[0]
         axes = upper.subplots(1, len(shots))
         for axis, shot, colour in zip(numpy.atleast_1d(axes), shots, colours):
-            shape.draw_surface(axis, shot, "traction", norm, style.FIELD, *shape.VIEW, pixels=360)
-            axis.set_title(f"t = {shot.time:g}", color=colour, loc="center")
+            shape.draw_surface(axis, shot, "traction", norm, style.FIELD, *shape.VIEW, pixels=360, triad=shot is shots[0])
+            axis.set_title(f"t = {shot.time:.3g}", color=colour, loc="center")
+        meshes.share_window(numpy.atleast_1d(axes))
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
         left, middle = lower.subplots(1, 2, width_ratios=[2.1, 1])
         along(left, run, d, shots, colours)
         across(middle, run, d, shots, colours)
-        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=axes, label="traction / (μ vₘ/R_T)", shrink=0.8)
+        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=axes, label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
 
 
@@ -137,12 +139,12 @@ def motion(runs, ducts):
             axis.set_title(label)
     axes[0].set_aspect("equal")
     axes[0].set_title("paths of the centroid; + largest velocity")
-    axes[0].set_xlabel("x₂ / R_T")
-    axes[0].set_ylabel("x₃ / R_T")
+    axes[0].set_xlabel("x₂ / R$_T$")
+    axes[0].set_ylabel("x₃ / R$_T$")
     axes[1].set_ylim(bottom=FLOOR)
-    axes[1].set_title("distance from the largest velocity / R_T")
+    axes[1].set_title("distance from the largest velocity / R$_T$")
     for axis in axes[1:]:
-        axis.set_xlabel("t vₘ / R_T")
+        axis.set_xlabel("t vₘ / R$_T$")
     for axis in axes[2:]:
         axis.set_xlim(left=0)
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
