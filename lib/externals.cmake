@@ -18,7 +18,7 @@ function(external name)
   target_link_libraries(external_${name} INTERFACE ${arg_LIBRARIES})
 endfunction()
 
-set(teuchos teuchosparameterlist teuchosparser teuchoscomm teuchoscore)
+set(teuchos teuchosparameterlist teuchosparser teuchoscomm teuchosnumerics teuchoscore)
 list(TRANSFORM teuchos PREPEND trilinos_)
 foreach(name noxlapack nox amesos2 belos tpetra kokkoscore) # as files: their targets list all of Trilinos, and the shared HDF5
   find_library(TRILINOS_${name} trilinos_${name} HINTS ${Trilinos_LIBRARY_DIRS} REQUIRED)

@@ -190,7 +190,7 @@ void near_rows(LayerSurface& surface, std::span<const int> targets, const std::v
   entries.resize(6 * near.point.size());
   for (std::size_t first = 0; first < targets.size(); first += block) {
     const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
-    const std::span<const int> points(&near.point[near.first[first]], near.first[first + some.size()] - near.first[first]);
+    const std::span<const int> points(near.point.data() + near.first[first], near.first[first + some.size()] - near.first[first]);
     std::vector<int> wanted(points.begin(), points.end());
     sort_and_drop_repeated(wanted);
     const int spare = static_cast<int>(wanted.size());

@@ -86,7 +86,7 @@ TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove)
     const double drop = material.capsule->response(material.x).pressure_drop;
     for (const char* motion : {"normal", "relaxed"}) {
       Confined sliding(ratio, "schur", motion);
-      EXPECT_NEAR(sliding.capsule->response(sliding.x).pressure_drop, drop, 1e-9 * std::abs(drop)) << ratio << " " << motion;
+      EXPECT_NEAR(sliding.capsule->response(sliding.x).pressure_drop, drop, 1e-8 * std::abs(drop)) << ratio << " " << motion;  // residuals as above
       EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
     }
   }
@@ -116,7 +116,7 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
 TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
   Confined plain(4, "schur"), helped(4, "schur");
   const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
-  EXPECT_LT((helped.capsule->velocity(helped.x, start) - v).norm(), 1e-9 * v.norm());  // residuals of 1e-11
+  EXPECT_LT((helped.capsule->velocity(helped.x, start) - v).norm(), 1e-8 * v.norm());  // residuals as above
   EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
 }
 
@@ -137,7 +137,7 @@ TEST(CapsuleInTube, NothingDependsOnThePlaceAlongTheTube) {
   for (const double ratio : {1.0, 4.0}) {
     Confined scene(ratio, "schur");
     const Net v = scene.capsule->velocity(scene.x), there = scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(17, 0, 0));
-    EXPECT_LT((there - v).norm(), 1e-8 * v.norm());  // rules are chosen anew; round-off of the longer distance
+    EXPECT_LT((there - v).norm(), 1e-6 * v.norm());  // rules of 1e-7 are chosen anew
     Net along = Net::Zero(v.rows(), 3);
     along.col(0).setConstant(3);
     EXPECT_NEAR(scene.capsule->norm(along), 0, 1e-12);

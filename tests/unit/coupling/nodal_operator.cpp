@@ -52,7 +52,7 @@ struct Fixture {
 };
 
 TEST(NodalOperator, IsTheSingleLayerToSinglePrecisionWhereEveryPointIsNear) {
-  EXPECT_LT(Fixture().error(1e3), 3e-5);  // of a sum of 218 terms, and the tolerance of the rules, 1e-6
+  EXPECT_LT(Fixture().error(1e3), 3e-5);  // of a sum of 218 terms
 }
 
 TEST(NodalOperator, IsCloseToTheSingleLayerWhereAFewElementsAreNear) {
