@@ -140,7 +140,7 @@ class Run {
     earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
   }
 
-  /// One step and its row, or nothing of either: where the run is stopped within it, or where it fails, which ends the run. Says why the run is to end
+  /// One step and its row, or nothing of either where the run is stopped within it, or where it fails, which ends the run. Says why the run is to end
   /// before its time, if it is.
   std::string step() {
     const motion::State before = state_;

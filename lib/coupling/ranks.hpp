@@ -26,8 +26,8 @@ class Session {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The ranks of the run. Control nets are replicated; work is split by their rows. A rank fills the rows of its own control points, and
-/// `replicate` gives every rank all rows by a Tpetra import, so no sum ever crosses ranks and answers do not depend on their number.
+/// The ranks of the run. Control nets are replicated; work is split by their rows. A rank fills the rows of its own control points, which
+/// `replicate` gives to all by a Tpetra import. Far sums by clusters alone are added up (SingleLayer::share), and depend on the ranks by rounding.
 class Ranks {
  public:
   Ranks();

@@ -144,7 +144,7 @@ TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
   for (const double ratio : {0.01, 100.0}) {
     f.parameters.viscosity_ratio = ratio;
     const Net v = f.capsule().velocity(f.sphere);
-    EXPECT_LT((v - f.sphere * spin.transpose()).norm(), 1e-6 * v.norm()) << ratio;  // the residual of 1e-10 over the ratio 0.01, and a hundred times that
+    EXPECT_LT((v - f.sphere * spin.transpose()).norm(), 1e-6 * v.norm()) << ratio;  // a hundred times 1e-10 over 0.01
   }
 }
 

@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+# ranks: 3
+# The answer does not depend on the number of ranks: every series and picture of one, two and three is the same.
+import pathlib
+
+import numpy
+import yaml
+
+from harness import check, deck, main, run, series
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 1.0}
+"""
+LONG = ["Particle/shape=ellipsoid", "Particle/semi-axes=[4.0, 0.6, 0.5]", "Surface/elements per side=6", "Quadrature/tolerance=1e-2"]  # ends are far apart
+CLOCK = ["wall_seconds"]  # the only series that may differ
+
+
+def _names(results):
+    import h5py
+
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        return list(file["series"])
+
+
+def _pictures(results):
+    """Every array of every picture of a run."""
+    import h5py
+
+    arrays = {}
+    for path in sorted(pathlib.Path(results).glob("snapshot_*.hdf")):
+        with h5py.File(path, "r") as file:
+            file["VTKHDF"].visititems(lambda name, item: arrays.update({f"{path.name} {name}": item[()]} if isinstance(item, h5py.Dataset) else {}))
+    return arrays
+
+
+def _kernel_evaluations(results):
+    counts = yaml.safe_load((pathlib.Path(results) / "summary.yaml").read_text())["counts"]
+    return sum(number for name, number in counts.items() if name.startswith("kernel_evaluations"))
+
+
+def _compare_pictures(one, many):
+    """Each rank has filled in its own nodes."""
+    check(one.keys() == many.keys() and any(name.endswith("Normals") for name in one), one.keys() ^ many.keys())
+    for name in one:
+        check(one[name].shape == many[name].shape, f"{name}: another shape")
+        off = numpy.max(abs(one[name] - many[name]))
+        check(off <= 1e-9 * max(1, numpy.max(abs(one[name]))), f"{name} differs by {off:.2e}")
+
+
+def _compare(*settings, most=1.3):
+    """One, two and three ranks agree to 1e-10; to the last bit is what is measured."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    for ranks in 1, 2, 3:
+        run(deck(DECK), *words, "--output", f"on_{ranks}", "--quiet", ranks=ranks)
+    for ranks in 2, 3:
+        alone, together = _kernel_evaluations("on_1"), _kernel_evaluations(f"on_{ranks}")  # parts that every rank needs are made by each
+        check(0.99 * alone <= together <= most * alone, f"{alone} kernel evaluations on one rank, {together} on {ranks}")
+        _compare_pictures(_pictures("on_1"), _pictures(f"on_{ranks}"))
+        check(_names("on_1") == _names(f"on_{ranks}"), "other series")
+        for name in _names("on_1"):
+            if name in CLOCK:
+                continue
+            one, many = series("on_1", name), series(f"on_{ranks}", name)
+            check(one.shape == many.shape, f"{name}: {len(one)} rows on one rank, {len(many)} on {ranks}")
+            off = numpy.max(abs(one - many))
+            check(off <= 1e-10 * max(1, numpy.max(abs(one))), f"{name} differs by {off:.2e} on {ranks} ranks")
+
+
+def implicit_steps():
+    _compare()
+
+
+def explicit_steps():
+    _compare("Time/scheme=bs3")
+
+
+def the_paper_s_scheme_quadrature_and_load():
+    _compare("Time/scheme=crank-nicolson", "Quadrature/rule=fixed", "Membrane/load measure=current", "Volume/constraint=flux",
+             "Time/final time=0.2", "Time/initial step=0.01")
+
+
+def far_sums_by_clusters():
+    """Clusters save work, and ranks that share what is left of it add up to the sum of one, with and without symmetry, for a drop too."""
+    evaluations = {}
+    for far_sum in "dense", "tree":
+        run(deck(DECK), *[word for setting in [*LONG, f"Quadrature/far sum={far_sum}", "Time/final time=0.02"] for word in ("--set", setting)],
+            "--output", far_sum, "--quiet")
+        evaluations[far_sum] = _kernel_evaluations(far_sum)
+    check(evaluations["tree"] < 0.8 * evaluations["dense"], f"{evaluations}: no clusters met")
+    for symmetry in "auto", "none":
+        _compare(*LONG, "Quadrature/far sum=tree", f"Symmetry/use={symmetry}", "Time/final time=0.05")
+    _compare(*LONG, "Quadrature/far sum=tree", "Membrane/law=surface tension", "Membrane/load measure=current", "Particle/viscosity ratio=3",
+             "Time/scheme=bs3", "Time/final time=0.01", most=2)  # the double layer is summed by each rank for its own rows
+
+
+def a_red_cell():
+    _compare("Particle/shape=red cell", "Membrane/law=Skalak", "Membrane/area dilatation=10", "Membrane/bending modulus=0.01", "Particle/viscosity ratio=5",
+             "Surface/elements per side=4", "Time/final time=0.02")
+
+
+def a_membrane_of_another_law_in_another_flow():
+    _compare("Membrane/law=Skalak", "Flow/type=planar hyperbolic", "Membrane/capillary number=0.6")
+
+
+
+keep = "far_sums_by_clusters a_red_cell".split()
+for _n in [n for n, f in list(vars().items()) if callable(f) and getattr(f, "__module__", None) == "__main__" and not n.startswith("_") and n not in keep]:
+    del globals()[_n]
+main()
