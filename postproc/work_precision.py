@@ -28,10 +28,11 @@ from style import plt
 class Scene:
     """A study file. `options(choice)`: {option: settings}; the first is the default."""
 
-    def __init__(self, path, curves):
+    def __init__(self, path, curves, without=()):
         text = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
         self.name, self.title = pathlib.Path(path).stem, text["title"]
         self.decks, self.base, self.choices = text["deck"], text.get("base", {}), text["choices"]
+        self.choices = {choice: {name: keys for name, keys in options.items() if name not in without} for choice, options in self.choices.items()}
         self.error, self.levels = text["error"], text.get("levels", [1e-3, 1e-4, 1e-5])
         self.pairs = text.get("pairs")
         self.curves = curves
@@ -158,10 +159,11 @@ def main():
     parser.add_argument("study", help="the study: a file of tests/benchmark")
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2), help="choices that may differ from the default at a time (default: 2)")
     parser.add_argument("--only", nargs="+", metavar="CHOICE", help="vary these choices only")
+    parser.add_argument("--without", nargs="+", default=[], metavar="OPTION", help="leave these options of the choices out")
     parser.add_argument("--curves", type=pathlib.Path, metavar="DIR", help="folder of reference curves (default: none, a run of the study's `reference` instead)")
     studies.arguments(parser, "results/work_precision")
     parsed = parser.parse_args()
-    study, scene = studies.study(parsed), Scene(parsed.study, parsed.curves)
+    study, scene = studies.study(parsed), Scene(parsed.study, parsed.curves, parsed.without)
 
     error_of, points, rows, default = scene.errors(study), [], [], scene.default()
     for picked in scene.combinations(parsed.differences, parsed.only):
@@ -201,7 +203,7 @@ def main():
     axes[2].text(0, 0.97 - 0.047 * rest, "\n".join(f"{number:2}  {point.label}" for point, number in numbers.items()), transform=axes[2].transAxes,
                  va="top", fontsize=7.5, linespacing=1.5)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
-    words = [parsed.study] + (["--differences", str(parsed.differences)] if parsed.differences != 2 else []) + (["--only", *parsed.only] if parsed.only else [])
+    words = [parsed.study] + (["--differences", str(parsed.differences)] if parsed.differences != 2 else []) + (["--only", *parsed.only] if parsed.only else []) + (["--without", *parsed.without] if parsed.without else [])
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words) + f"\nerror: {scene.error.get('text', '')}" + scene.against(), x=0.01, ha="left", fontsize=7.5)
     studies.write_table(parsed.output / f"{scene.name}.csv", [*scene.choices, "error", "seconds", "kernel_evaluations", "evaluations", "message"], rows)
     style.save(figure, parsed.output / f"{scene.name}.png")
