@@ -34,6 +34,12 @@ Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::St
   return result;
 }
 
+/// `moved`: by how much the surfaces have been.
+void settle(Adapted& result, double moved, double radius) {
+  result.change = moved / radius;
+  result.body->refit_error += result.change;
+}
+
 std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMesh mesh) {
   auto target = std::make_unique<Body>(body);
   lay_out(scene, std::move(mesh), *target);
@@ -57,7 +63,7 @@ Adapted on_finer_mesh(const Scene& scene, const Body& body, const motion::State&
     if (&field == &body.unstressed || &field == &state.x) residual = std::max(residual, moved.residual);
     return moved.net;
   });
-  result.change = residual / body.radius;
+  settle(result, residual, body.radius);
   return result;
 }
 
@@ -142,7 +148,7 @@ Adapted coarsened(const Scene& scene, const Body& body, const motion::State& sta
     if (change <= scene.adaptation.coarsening_tolerance) {
       Adapted result = carried(body, std::move(target), state, [&](const Net& field) { return projection(field).net; });
       result.finer = false;
-      result.change = change / body.radius;
+      settle(result, change, body.radius);
       return result;
     }
     const std::vector<bool> spoilt = elements_over(body, defect, scene.adaptation.coarsening_tolerance);

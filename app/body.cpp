@@ -6,6 +6,7 @@
 #include "coupling/frozen_operator.hpp"
 #include "spline/extraction.hpp"
 #include "stokes/layer_surface.hpp"
+#include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 
 namespace tanktread {
@@ -55,6 +56,7 @@ Body body(const Scene& scene) {
   b.law = law(scene.membrane, b.modulus);
   b.wall = wall(scene, b);
   b.symmetry = symmetry(scene, b, b.rest);
+  b.volume = surface::measures(b.space, b.rest).volume;
   return b;
 }
 
@@ -65,7 +67,8 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
 }
 
 stokes::Measure load_measure(const Scene& scene) {
-  const bool reference = scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
+  const bool reference =
+      scene.membrane.load == "weak" && scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
   return reference ? stokes::Measure::reference : stokes::Measure::current;
 }
 
@@ -83,6 +86,7 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
   const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : body.modulus / (scene.flow.viscosity * body.radius);
   parameters.interface_speed = scene.interface.relaxation * (scene.flow.type == "duct" ? scene.speed() : rate * body.radius);
   parameters.volume = scene.volume;
+  parameters.kept_volume = body.volume;
   parameters.solvers = scene.solvers;
   parameters.quadrature = scene.quadrature;
   parameters.symmetry = body.symmetry;
@@ -96,7 +100,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
   const bool implicit = scene.time.assembles() || scene.time.scheme == "auto";
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
-  if (body.wall) fluid = tube_plan(scene, body);
+  if (body.wall) fluid = tube_plan(scene, body, ranks);
   output::Entries<std::string> lines = {
       {"surface", formatted("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
                             body.space.description.c_str())},
@@ -126,8 +130,9 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                        ? std::string("none") + (scene.symmetry.use == "none" ? " used"
                                                 : body.wall                  ? " looked for in a tube"
                                                                              : " found")
-                       : body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less", n_evaluated,
-                                                                 body.space.n_points, points / n_evaluated)},
+                       : body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less; whatever would break "
+                                                                 "it is left out (Symmetry/use)",
+                                                                 n_evaluated, body.space.n_points, points / n_evaluated)},
   };
   lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
   return lines;

@@ -27,6 +27,8 @@ struct Body {
   stokes::AmbientFlow flow;
   membrane::Law law;
   double radius = 1;   ///< R_C
+  double volume = 0;   ///< V0, of the resting shape on the first mesh, whatever mesh the run goes on with
+  double refit_error = 0;  ///< sum of what changes of the mesh have moved the present and the unstressed surface by, over R_C
   double modulus = 1;  ///< G_s, or sigma of an interface
   surface::Symmetry symmetry;                       ///< of all this, and of the shapes that it takes
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< of the tube, if there is one
@@ -43,7 +45,7 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 /// The symmetry of the scene, as far as the deck wants it to be used, and of the shape x that the particle has by now.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
-/// What the load is measured on: a drop has no unstressed state, so its load is always per current area.
+/// What the load is measured on: that of a drop, which has no unstressed state, and the strong one are always per current area.
 stokes::Measure load_measure(const Scene& scene);
 
 /// The coupled system that the scene needs, and no more, in a tube if there is one.

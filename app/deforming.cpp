@@ -6,6 +6,7 @@
 #include "app/drift.hpp"
 #include "app/moving.hpp"
 #include "app/tube.hpp"
+#include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
@@ -15,6 +16,8 @@ namespace tanktread {
 std::vector<Column> deforming_columns(const Scene& scene) {
   std::vector<Column> all = columns();
   if (scene.tube.present) all.insert(all.end(), tube_columns().begin(), tube_columns().end());
+  if (scene.adaptation.enabled)
+    all.push_back({"refit_error", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over R_C"});
   return all;
 }
 
@@ -49,6 +52,7 @@ class Deforming : public Moving {
     state = std::move(change.state);
     settle(std::move(change.body), state.x);
     capsule_->restore_volume(state.x);
+    if (!state.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
     if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
     (change.finer ? standing.refinements : standing.coarsenings) += 1;
     return true;
@@ -75,9 +79,11 @@ class Deforming : public Moving {
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
     std::vector<double> row = tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds, ranks_);
-    if (!body_->wall) return row;
-    const std::vector<double> more = tube_row(*body_, *capsule_, state);
-    row.insert(row.end(), more.begin(), more.end());
+    if (body_->wall) {
+      const std::vector<double> more = tube_row(*body_, *capsule_, state);
+      row.insert(row.end(), more.begin(), more.end());
+    }
+    if (scene_.adaptation.enabled) row.push_back(body_->refit_error);
     return row;
   }
 

@@ -140,7 +140,7 @@ Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) 
 output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
   const bool free = scene.particle.motion == "free";
   output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
-  if (body.wall) fluid = tube_plan(scene, body);
+  if (body.wall) fluid = tube_plan(scene, body, ranks);
   output::Entries<std::string> lines =
          {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
           {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * body.space.n_points)},

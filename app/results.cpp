@@ -43,6 +43,8 @@ std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const o
   lay_out(scene, std::move(mesh), *body);
   body->unstressed = checkpoint.arrays.at("unstressed");
   body->rest = checkpoint.arrays.at("initial");
+  body->volume = checkpoint.numbers.at("initial volume");
+  body->refit_error = checkpoint.numbers.at("refit error");
   return body;
 }
 
@@ -187,6 +189,8 @@ output::Checkpoint Results::checkpoint(const motion::State& state, const Standin
   checkpoint.arrays["unstressed"] = body_->unstressed;
   checkpoint.arrays["initial"] = body_->rest;
   checkpoint.texts["deck"] = request_.deck_text;
+  checkpoint.numbers["initial volume"] = body_->volume;
+  checkpoint.numbers["refit error"] = body_->refit_error;
   if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
   return checkpoint;
 }

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "coupling/frozen_operator.hpp"
+#include "coupling/ranks.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread {
@@ -55,7 +56,7 @@ void Scene::declare(deck::Section& root) {
 
 namespace {
 
-constexpr double most_bytes = 64e9;  // of one assembled operator, on all ranks together
+constexpr double most_bytes = 64e9;  // of the assembled operators of one surface, on all ranks together
 constexpr double doubles = 72;       // bytes of three rows and columns of one
 
 /// Bytes a pair of control points of what the particle's layers are assembled in: rows of doubles, and frozen operators of six entries of 16 bits.
@@ -64,8 +65,8 @@ double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
-  return (viscous && scene.solvers.double_layer == "assembled" ? doubles : 0) +
-         coupling::FrozenOperator::bytes_a_pair * (frozen + (scene.interface_motion() == "relaxed"));
+  return doubles * ((viscous && scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +
+         coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 
 /// The system for the velocity loses a digit to rounding with each power of ten: in a tube, where that shows first, it stagnates at 1e15 times the
@@ -97,10 +98,11 @@ void check_size(const Scene& scene) {
     check_bytes("Surface/elements per side",
                 formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
                 scene.surface.n_points(), bytes);
-  if (scene.tube.present)
-    check_bytes("Tube/azimuthal elements and Tube/axial elements",
-                formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / doubles))),
-                scene.tube.azimuthal_elements * (scene.tube.axial_elements + 3.0), doubles);
+  if (!scene.tube.present) return;
+  const double of_wall = doubles * (1 + coupling::Ranks().size());  // rows on all ranks together, and the factors on each
+  check_bytes("Tube/azimuthal elements and Tube/axial elements",
+              formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / of_wall))),
+              scene.tube.azimuthal_elements * (scene.tube.axial_elements + 3.0), of_wall);
 }
 
 void check_motion(const Scene& scene) {

@@ -5,32 +5,13 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
+#include "surface/clearance.hpp"
 #include "surface/geometry.hpp"
-#include "surface/patch.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {
 
 namespace {
-
-/// The place of the particle's surface that is nearest to the wall, or farthest beyond it, among 5 x 5 points an element.
-struct Closest {
-  Vec3 x;
-  double gap = 1e300;
-};
-
-Closest closest(const Body& body, const surface::Outline& outline) {
-  Closest result;
-  for (int e = 0; e < static_cast<int>(body.space.elements.size()); ++e) {
-    const surface::ElementPoints element(body.space, body.rest, e);
-    for (int k = 0; k < 25; ++k) {
-      const Vec3 x = surface::place(element.patch(), k % 5 / 4.0, k / 5 / 4.0);
-      const double gap = outline.distance({x[1], x[2]});
-      if (gap < result.gap) result = {x, gap};
-    }
-  }
-  return result;
-}
 
 void check_fit(const Scene& scene, const Body& body, const surface::Outline& outline) {
   const Vec3& centre = scene.particle.shape.center;
@@ -38,7 +19,7 @@ void check_fit(const Scene& scene, const Body& body, const surface::Outline& out
   if (from_axis <= 0)
     throw UserError(
         formatted("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
-  const Closest nearest = closest(body, outline);
+  const surface::Clearance nearest = surface::clearance(surface::Patches(surface::BezierMap(body.space), body.rest), outline);
   const std::string where = formatted("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
   if (nearest.gap <= 0)
     throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
@@ -128,7 +109,7 @@ std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const
           checks.pressure_by_force};
 }
 
-output::Entries<std::string> tube_plan(const Scene& scene, const Body& body) {
+output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks) {
   const surface::TubeWall& wall = *body.wall;
   const double unknowns = 3.0 * wall.space.n_points;
   std::string own_flow = "quiescent fluid";
@@ -143,8 +124,9 @@ output::Entries<std::string> tube_plan(const Scene& scene, const Body& body) {
   return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements))},
           {"tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
                              wall.space.description.c_str())},
-          {"wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once, %.1f MB", unknowns, solved.c_str(),
-                             8e-6 * unknowns * unknowns)}};
+          {"wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, and as much of rows "
+                             "on all together",
+                             unknowns, solved.c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : "")}};
 }
 
 std::string contact(const Scene& scene, double gap) {

@@ -24,7 +24,7 @@ const std::vector<Column>& tube_columns();
 std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state);
 
 /// Lines of the plan.
-output::Entries<std::string> tube_plan(const Scene& scene, const Body& body);
+output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks);
 
 /// Why a run must end whose particle is at this distance from the wall: closer than `Tube/contact gap`. Empty if it need not.
 std::string contact(const Scene& scene, double gap);

@@ -54,7 +54,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
   }
-  volume0_ = geometry_.volume(initial);
+  volume0_ = parameters.kept_volume.value_or(geometry_.volume(initial));
   if (parameters.interface_motion != "material")
     interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, share.elements,
                        collocation_, parameters.solvers.direct, symmetry, ranks_);
@@ -187,7 +187,7 @@ void Capsule::place(const Net& x) {
 }
 
 Net Capsule::present_velocity(const Net& x, const Net& near) {
-  if (tube_ && !enter_tube(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  if (!x.allFinite() || (tube_ && !enter_tube(x))) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
@@ -198,12 +198,7 @@ Net Capsule::present_velocity(const Net& x, const Net& near) {
   if (!interface_) return v;
   latest_.fluid = symmetric(v);
   const auto clock = phases_.time("interface motion");
-  if (tube_) {
-    const Eigen::RowVector3d carried = drift(x, constrained ? b : flux_vector(x), v);
-    v = interface_->velocity(x, v.rowwise() - carried).rowwise() + carried;
-  } else {
-    v = interface_->velocity(x, v);
-  }
+  v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
   if (constrained) v -= dot(b, v) / dot(b, c) * c;  // interpolation of the normal motion lets a little flux in
   return v;
 }
@@ -234,7 +229,6 @@ Net Capsule::load_velocity(const Net& x, const Net& f) {
 
 /// Takes the shape into the tube; whether that can be: no point of it is outside.
 bool Capsule::enter_tube(const Net& x) {
-  if (!x.allFinite()) return false;
   place(x);
   const Net at_sites = sites_ * x;
   const surface::Outline& outline = tube_->wall().outline;
@@ -243,14 +237,6 @@ bool Capsule::enter_tube(const Net& x) {
     return (place - outline.centroid()).norm() >= inner_radius_ && !outline.inside(place);
   });
   return !ranks_.any(outside);
-}
-
-/// What the mesh of an interface is carried by in a tube, while its points slide along it: int x v.n dG / V, nearly the centroid's velocity,
-/// with b = dV/dx.
-Eigen::RowVector3d Capsule::drift(const Net& x, const Net& b, const Net& v) const {
-  const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
-  const Net from_mean = x.rowwise() - x.colwise().mean();
-  return outward.transpose() * from_mean / volume0_;
 }
 
 /// B v = v - (1 - lambda) R^-1 (H v), from what the double layer gives at the sites.
@@ -314,7 +300,7 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const
   return x.velocity;
 }
 
-/// V = b.x/3, for V is a cubic of x without lower terms.
+/// V = b.x/3, for V is a cubic of x without lower terms. Where that leads nowhere, x is not finite any more.
 void Capsule::restore_volume(Net& x) {
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
@@ -326,6 +312,7 @@ void Capsule::restore_volume(Net& x) {
     const Net c = symmetric(solved(mass_.reference(), b));
     x += missing / dot(b, c) * c;
   }
+  if (!(std::abs(volume_error(x)) < 1e-12)) x.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 double Capsule::norm(const Net& displacement) const {

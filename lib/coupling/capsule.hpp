@@ -57,6 +57,7 @@ struct CapsuleParameters {
   std::string interface_motion = "material";                    ///< of the control points of a drop
   double interface_speed = 0;                                    ///< of its relaxing motion, length/time
   VolumeOptions volume;
+  std::optional<double> kept_volume;  ///< V0 to be kept, where it is not that of the initial net: on another mesh
   SolverOptions solvers;
   quadrature::Options quadrature;
   surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
@@ -75,7 +76,7 @@ struct CapsuleParameters {
 /// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`; the volume of `initial` is the one to be kept.
+  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`; the volume of `initial` is kept where parameters give no other.
   Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
@@ -144,8 +145,6 @@ class Capsule : public Dynamics {
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
   bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
-  Eigen::RowVector3d drift(const Net& x, const Net& b, const Net& v) const;
-  Net interface_change(const Net& dv, const Net& delta);
 
   const spline::Space& space_;
   Net unstressed_;
@@ -173,7 +172,6 @@ class Capsule : public Dynamics {
   Eigen::SparseMatrix<double> sites_;   // R, in a tube
   double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
   std::vector<Mat3> gradients_;         // of the flow in a tube at the sites, as linearised
-  Net linearised_, linearised_flux_;    // x and b of the interface in a tube, as linearised
   double volume0_ = 0;
   Work work_;
   struct Latest {

@@ -41,13 +41,8 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++work_.tangents;
   tangent_.update(x, own_elements_);
-  if (interface_) interface_->linearise(x);
-  if (!tube_) return;
-  gradients_ = flow_.gradients(sites_ * x);
-  if (interface_) {
-    linearised_ = x;
-    linearised_flux_ = flux_vector(x);
-  }
+  if (interface_) interface_->linearise(x, flux_vector(x));
+  if (tube_) gradients_ = flow_.gradients(sites_ * x);
 }
 
 /// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
@@ -100,7 +95,7 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
     const Net delta = Eigen::Map<const Net>(in, n, 3);
     Eigen::Map<Net> result(out, n, 3);
     if (interface_)
-      result = delta - shift * (interface_change(fluid_velocity_change(delta), delta) + secants(delta));
+      result = delta - shift * (interface_->derivative(fluid_velocity_change(delta), delta) + secants(delta));
     else
       result = frozen_viscous(delta) - shift * (energy_part(delta) + secants(delta));
   };
@@ -114,7 +109,7 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
 
 Net Capsule::missed(const Net& dv, const Net& delta) {
   const auto clock = phases_.time("implicit solve");
-  if (interface_) return dv - interface_change(fluid_velocity_change(delta), delta);
+  if (interface_) return dv - interface_->derivative(fluid_velocity_change(delta), delta);
   return frozen_viscous(dv) - energy_part(delta);
 }
 
@@ -123,14 +118,7 @@ Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
   const auto clock = phases_.time("stiffness");
   linearise(x);
   const Net dv = fluid_velocity_change(delta);
-  return symmetric(interface_ ? interface_change(dv, delta) : dv);
-}
-
-/// Change of the velocity of an interface's control points.
-Net Capsule::interface_change(const Net& dv, const Net& delta) {
-  if (!tube_) return interface_->derivative(dv, delta);
-  const Eigen::RowVector3d carried = drift(linearised_, linearised_flux_, dv);
-  return interface_->derivative(dv.rowwise() - carried, delta).rowwise() + carried;
+  return symmetric(interface_ ? interface_->derivative(dv, delta) : dv);
 }
 
 }  // namespace tanktread::coupling

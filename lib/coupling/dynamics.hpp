@@ -43,7 +43,7 @@ class Dynamics {
   /// difference of velocities, which costs an evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
-  /// Moves x onto the initial volume, if the constraint is `exact`; otherwise does nothing.
+  /// Moves x onto the volume to be kept, if the constraint is `exact`; otherwise does nothing. Not finite where that cannot be done.
   virtual void restore_volume(Net& x) = 0;
 
   /// Rids a rate of change of what round-off adds where the scene is symmetric. A velocity is rid of it already; a difference of shapes is not,

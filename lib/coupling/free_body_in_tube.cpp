@@ -1,3 +1,4 @@
+#include <limits>
 #include <numbers>
 
 #include "coupling/rigid_body.hpp"
@@ -19,6 +20,11 @@ const FreeBodyInTube::Solution& FreeBodyInTube::at(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Mat3 turn = rotation_of(place);
   body_.place(surface(place), turn);
+  if (!body_.inside()) {
+    place_ = place;
+    solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
+    return solution_;
+  }
   const Eigen::Index n = surface_.rows();
   const double unit = viscosity_ / radius_, force_unit = 6 * std::numbers::pi * viscosity_ * radius_;
   const auto motion_of = [&](const double* m) { return RigidMotion{Eigen::Map<const Vec3>(m), Eigen::Map<const Vec3>(m + 3) / radius_}; };

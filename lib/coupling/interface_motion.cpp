@@ -24,9 +24,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
       mass_(solver, symmetry) {
   if (!relaxed_) return;
   mass_.factor(membrane::MassMatrix(space).update(initial));
-  layer_.assemble(own_points_, space.n_points, [&](std::span<const int> targets, stokes::Rows<float>& rows) {
-    layer.assemble(initial, stokes::Measure::reference, targets, rows);
-  });
+  layer.assemble(initial, stokes::Measure::reference, own_points_, layer_);
 }
 
 namespace {
@@ -39,6 +37,13 @@ Vec3 normal(const spline::Space& space, const Net& x, std::span<const spline::Si
   for (const spline::Site& s : sites) sum += surface::point(space, x, {s.element, s.s + aside * (0.5 - s.s), s.t + aside * (0.5 - s.t)}).n;
   return sum.normalized();
 }
+
+/// U (6.4) from b = dV/dx, for 3 V = b.x; of a velocity that is the same everywhere exactly that one.
+Eigen::RowVector3d mean_motion(const Net& x, const Net& b, const Net& v) {
+  const Net from_mean = x.rowwise() - x.colwise().mean();
+  const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
+  return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
+}
 }  // namespace
 
 std::vector<Vec3> InterfaceMotion::normals_at(const Net& x) const {
@@ -47,39 +52,44 @@ std::vector<Vec3> InterfaceMotion::normals_at(const Net& x) const {
   return normals;
 }
 
-/// R^-1 of n n.across + (1 - n n).w at the sites, w from the density f (empty: none).
-Net InterfaceMotion::combined(const std::vector<Vec3>& normals, const Net& across, const Net& f) const {
-  const Net v = sites_ * across;
-  Net w = Net::Zero(v.rows(), 3), u(v.rows(), 3);
-  if (relaxed_) layer_.apply(f, w);
+/// R^-1 of U + n n.(v - U) + (1 - n n).w at the sites, w from the density f (empty: none).
+Net InterfaceMotion::combined(const std::vector<Vec3>& normals, const Eigen::RowVector3d& mean, const Net& v, const Net& f) const {
+  const Net across = sites_ * Net(v.rowwise() - mean);
+  const Eigen::Map<const Eigen::VectorXd> density(f.data(), f.size());
+  Net u(v.rows(), 3);
   for (size_t k = 0; k < own_points_.size(); ++k) {
     const int i = own_points_[k];
-    const Vec3 &n = normals[k], along = -speed_ * w.row(i).transpose();
-    u.row(i) = (along + n * n.dot(v.row(i).transpose() - along)).transpose();
+    const Vec3& n = normals[k];
+    Vec3 along = Vec3::Zero();
+    if (relaxed_) along = -speed_ * layer_.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * density;
+    u.row(i) = (along + n * n.dot(across.row(i).transpose() - along)).transpose() + mean;
   }
   ranks_.replicate(u);
   return collocation_.solve(u);
 }
 
-Net InterfaceMotion::velocity(const Net& x, const Net& v) {
-  if (!relaxed_) return combined(normals_at(x), v, {});
+Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {
+  const Eigen::RowVector3d mean = mean_motion(x, b, v);
+  if (!relaxed_) return combined(normals_at(x), mean, v, {});
   Net d(x.rows(), 3);
   mesh_.load(x, own_elements_, d);
   ranks_.replicate(d);
-  return combined(normals_at(x), v, mass_.solve(d));
+  return combined(normals_at(x), mean, v, mass_.solve(d));
 }
 
-void InterfaceMotion::linearise(const Net& x) {
+void InterfaceMotion::linearise(const Net& x, const Net& b) {
+  x_ = x, flux_ = b;
   normals_ = normals_at(x);
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
 Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
-  if (!relaxed_) return combined(normals_, dv, {});
+  const Eigen::RowVector3d mean = mean_motion(x_, flux_, dv);
+  if (!relaxed_) return combined(normals_, mean, dv, {});
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
   ranks_.replicate(h);
-  return combined(normals_, dv, mass_.solve(h));
+  return combined(normals_, mean, dv, mass_.solve(h));
 }
 
 }  // namespace tanktread::coupling

@@ -6,7 +6,6 @@
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
-#include "coupling/frozen_operator.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
 #include "membrane/mass.hpp"
@@ -19,11 +18,12 @@ namespace tanktread::coupling {
 
 /// Velocity of the control points from the fluid's velocity v: at the collocation sites
 ///
-///   u = n n.v + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed A0 M0^{-1} dE1/dx (`relaxed`)                    (4.6)
+///   u = U + n n.(v - U) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed A0 M0^{-1} dE1/dx (`relaxed`)          (4.6)
 ///
-/// E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed shape is the initial one, and A0, M0 belong to that shape: the mesh
-/// slides along the interface as an elastic bag would be dragged through the fluid, so elements keep their shape and the system is no stiffer
-/// than that of a capsule with Ca = mu rate R_C / (mu speed). A0 never changes.
+/// U is the mean motion (6.4), which the mesh shares: a drop that is carried along keeps its mesh as one at rest does. E1 is the energy of a
+/// neo-Hookean membrane of modulus 1 whose unstressed shape is the initial one, and A0, M0 belong to that shape: the mesh slides along the
+/// interface as an elastic bag would be dragged through the fluid, so elements keep their shape and the system is no stiffer than that of a
+/// capsule with Ca = mu rate R_C / (mu speed). A0 never changes.
 class InterfaceMotion {
  public:
   /// `initial`: the net that the mesh relaxes towards; `speed`: length/time; `layer` has `initial` as its reference.
@@ -31,17 +31,17 @@ class InterfaceMotion {
                   const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::SymmetricSolver& collocation,
                   const membrane::DirectSolverOptions& solver, const surface::Symmetry& symmetry, const Ranks& ranks);
 
-  /// Control-point velocity u at x for the fluid's velocity v (control values). Collective.
-  Net velocity(const Net& x, const Net& v);
+  /// Control-point velocity u at x for the fluid's velocity v (control values), with b = dV/dx. Collective.
+  Net velocity(const Net& x, const Net& b, const Net& v);
 
-  /// Keeps normals and the tangent of E1 at x for `derivative`.
-  void linearise(const Net& x);
+  /// Keeps x, b = dV/dx, normals and the tangent of E1 at x for `derivative`.
+  void linearise(const Net& x, const Net& b);
 
-  /// du for a change delta of x that changes the fluid's velocity by dv; the normals stay. Collective.
+  /// du for a change delta of x that changes the fluid's velocity by dv; b and the normals stay. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
  private:
-  Net combined(const std::vector<Vec3>& normals, const Net& across, const Net& f) const;
+  Net combined(const std::vector<Vec3>& normals, const Eigen::RowVector3d& mean, const Net& v, const Net& f) const;
   std::vector<Vec3> normals_at(const Net& x) const;
 
   const spline::Space& space_;
@@ -54,7 +54,8 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   membrane::SymmetricSolver mass_;
-  FrozenOperator layer_;
+  stokes::Rows<double> layer_;  // A0, in full: what the mesh does must not depend on units or axes
+  Net x_, flux_;                // as linearised
   std::vector<Vec3> normals_;
 };
 

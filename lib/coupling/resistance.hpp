@@ -45,6 +45,9 @@ class Resistance {
   /// The other way round, up to the multiple of n of (2.10): (1/mu) A f.
   Net velocity(const Net& f) { return apply(f) / viscosity_; }
 
+  /// Whether the surface, where it is placed, is inside of the tube, if there is one.
+  bool inside() const { return !tube_ || tube_->gap() > 0; }
+
   /// The pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
 

@@ -90,7 +90,7 @@ class FreeBody : public RigidParticle {
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = 0,   int r x f dG = 0,
 ///
 /// with u the answer of wall and pressure drop. Belos starts from the solution before. Calls are collective, and those at one place
-/// after another cost one solve.
+/// after another cost one solve. The motion is not finite where the body reaches into the wall.
 class FreeBodyInTube : public RigidParticle {
  public:
   /// `body`: with its tube. `solvers`: of the system above.

@@ -9,20 +9,23 @@ namespace tanktread::coupling {
 void SymmetryOptions::declare(deck::Section& section) {
   section.key("use", use, deck::Choice{"auto", "none"},
               "`auto`: mirror planes, half turns and the point symmetry that flow, particle and mesh have in common are found, and only the control "
-              "points that are not images of others are evaluated and solved for");
+              "points that are not images of others are evaluated and solved for. The particle keeps these symmetries for the whole run: an "
+              "instability that breaks them, as wrinkles or a drift may, is left out. `none`: everything is evaluated, and rounding may grow");
 }
 
 bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net) {
   const auto turn = image.signs.asDiagonal();
-  double defect = 0, size = 0;
+  double defect = 0, size = 0, gradient_defect = 0, gradient_size = 0;
   for (Eigen::Index a = 0; a < net.rows(); ++a) {
     const Vec3 x = net.row(a).transpose(), y = net.row(image.point[static_cast<size_t>(a)]).transpose();
     const Vec3 v = flow.velocity(x);
     const Mat3 gradient = flow.gradient(x);
-    defect = std::max({defect, (flow.velocity(y) - turn * v).norm(), (flow.gradient(y) - turn * gradient * turn).norm()});
-    size = std::max({size, v.norm(), gradient.norm()});
+    defect = std::max(defect, (flow.velocity(y) - turn * v).norm());
+    gradient_defect = std::max(gradient_defect, (flow.gradient(y) - turn * gradient * turn).norm());
+    size = std::max(size, v.norm());
+    gradient_size = std::max(gradient_size, gradient.norm());
   }
-  return defect <= 1e-10 * size;
+  return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
 }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,

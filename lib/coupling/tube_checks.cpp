@@ -1,12 +1,9 @@
 // Independent routes to the pressure drop, and the distance to the wall.
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <set>
 
 #include "coupling/tube_particle.hpp"
-#include "surface/patch.hpp"
+#include "surface/clearance.hpp"
 
 namespace tanktread::coupling {
 
@@ -23,23 +20,6 @@ std::vector<Vec3> points_of_cap(const surface::Outline& outline, double place) {
         if (outline.inside(p)) points.emplace_back(place, p[0], p[1]);
       }
   return points;
-}
-
-/// The `count` sites that are nearest to the wall, each behind its distance. The distance of a place at most differs from that of the outline's
-/// centroid by how far it is from there, so that only sites far out are looked at.
-std::vector<std::pair<double, int>> nearest_sites(const Net& sites, const surface::Outline& outline, std::size_t count) {
-  const surface::Vec2 middle = outline.centroid();
-  const double inner = outline.distance(middle);
-  std::vector<std::pair<double, int>> least, nearest;
-  for (int i = 0; i < sites.rows(); ++i) least.emplace_back(inner - (sites.row(i).tail<2>().transpose() - middle).norm(), i);
-  std::ranges::sort(least);
-  for (const auto& [bound, i] : least) {
-    if (nearest.size() == count && bound > nearest.back().first) break;
-    nearest.emplace_back(outline.distance({sites(i, 1), sites(i, 2)}), i);
-    std::ranges::sort(nearest);
-    if (nearest.size() > count) nearest.pop_back();
-  }
-  return nearest;
 }
 
 std::vector<int> everybody(Eigen::Index n) {
@@ -117,38 +97,8 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   return u.rowwise().norm().maxCoeff();
 }
 
-/// From the collocation points nearest to the wall, downhill on each element that holds them, once an element.
 double Tube::gap() const {
-  const Particle& particle = *particle_;
-  const surface::Outline& outline = wall_->surface().outline;
-  const auto distance = [&](const Vec3& x) { return outline.distance({x[1], x[2]}); };
-  constexpr std::size_t starts = 4;
-  const auto order = nearest_sites(particle.sites, outline, starts);
-  double smallest = order.front().first;
-  std::set<int> searched;
-  for (std::size_t k = 0; k < order.size(); ++k)
-    for (spline::Site site : particle.space.collocation[static_cast<std::size_t>(order[k].second)]) {
-      if (!searched.insert(site.element).second) continue;
-      const surface::ElementPoints element(particle.space, particle.shape, site.element);
-      double best = order[k].first;
-      for (double step = 0.25; step > 1e-5;) {
-        spline::Site next = site;
-        double lowest = best;
-        for (const int a : {-1, 0, 1})
-          for (const int b : {-1, 0, 1}) {
-            if (a == 0 && b == 0) continue;
-            const spline::Site trial{site.element, std::clamp(site.s + a * step, 0., 1.), std::clamp(site.t + b * step, 0., 1.)};
-            const double there = distance(surface::place(element.patch(), trial.s, trial.t));
-            if (there < lowest) lowest = there, next = trial;
-          }
-        if (lowest < best)
-          best = lowest, site = next;
-        else
-          step /= 2;
-      }
-      smallest = std::min(smallest, best);
-    }
-  return smallest;
+  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall_->surface().outline).gap;
 }
 
 }  // namespace tanktread::coupling

@@ -65,8 +65,8 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   stokes::SingleLayer own_layer(surface_.space, sharper(quadrature));
   own_layer.assemble(wall.net, stokes::Measure::current, own_, rows_);
   assembly_ = own_layer.evaluations();
-  const Eigen::MatrixXd all = everybodys(rows_, own_, n, phases);
-  factors_.compute(all);
+  matrix_ = everybodys(rows_, own_, n, phases);
+  factors_.emplace(matrix_);
 
   inlet_column_ = inlet_.integral(sites_);
   pumped_ = solve(inlet_column_);
@@ -81,7 +81,7 @@ Net Wall::apply(const Net& f) const {
 }
 
 Net Wall::solve(const Net& rhs) const {
-  const Eigen::VectorXd f = factors_.solve(flat(rhs));
+  const Eigen::VectorXd f = factors_->solve(flat(rhs));
   return Eigen::Map<const Net>(f.data(), rhs.rows(), 3);
 }
 

@@ -2,6 +2,7 @@
 // What depends on a tube's wall alone, made once a run.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <Eigen/LU>
@@ -17,6 +18,7 @@
 namespace tanktread::coupling {
 
 /// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
+/// The rows are shared out, the factors are on every rank: 72 bytes a pair of control points each.
 class Wall {
  public:
   /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
@@ -51,7 +53,8 @@ class Wall {
   stokes::Cap inlet_;
   Net sites_, inlet_column_, pumped_;
   stokes::Rows<double> rows_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  Eigen::MatrixXd matrix_;  // A; its factors, once there
+  std::optional<Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>>> factors_;
   stokes::Evaluations assembly_;
 };
 

@@ -127,6 +127,15 @@ double Outline::corner_angle(int k) const {
   return std::numbers::pi - std::atan2(cross(in, out), in.dot(out));
 }
 
+bool Outline::convex() const {
+  for (std::size_t i = 0; i < chords_.size(); ++i) {
+    const Chord &here = chords_[i], &next = chords_[(i + 1) % chords_.size()];
+    const Vec2 before = here.b - here.a, after = next.b - next.a;
+    if (cross(before, after) < -1e-12 * before.norm() * after.norm()) return false;
+  }
+  return true;
+}
+
 double Outline::radius() const { return std::sqrt(area_ / std::numbers::pi); }
 
 /// Newton's method for the foot of the perpendicular, kept on the chord's piece of the curve; the ends count as well.

@@ -36,6 +36,8 @@ class Outline {
   /// Angle inside the outline where side k begins, 0 .. 2 pi; pi where nothing turns.
   double corner_angle(int k) const;
 
+  bool convex() const;  ///< as far as short chords tell
+
   double length() const { return length_; }
   double side_length(int k) const { return lengths_[static_cast<std::size_t>(k)]; }
   double area() const { return area_; }

@@ -71,8 +71,14 @@ def the_largest_number_of_points_is_kept_and_what_stays_coarse_is_said():
 
 
 def the_volume_is_kept_through_every_change_of_the_mesh():
-    run(deck(DECK), "--output", "run", "--quiet")
-    check(numpy.max(abs(series("run", "volume_error"))) < 1e-12, series("run", "volume_error"))
+    for points in "catmull-clark", "g1":
+        run(deck(DECK.replace("catmull-clark", points)), "--output", points, "--quiet")
+        volume, lost = series(points, "volume"), series(points, "refit_error")
+        check(len(set(_points(points))) > 2, f"the mesh changed less than twice: {_points(points)}")
+        check(numpy.max(abs(volume / volume[0] - 1)) < 1e-12, volume / volume[0] - 1)
+        check(numpy.max(abs(series(points, "volume_error") - (volume / volume[0] - 1))) < 1e-14, series(points, "volume_error"))
+        check((numpy.diff(lost) >= 0).all() and 0 < lost[-1] < 1e-2, lost)
+    check(lost[-1] > 1e-6, "spaces of `g1` are not nested: a refit moves the surface")
 
 
 main()

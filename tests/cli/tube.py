@@ -120,6 +120,11 @@ def a_run_goes_on_in_the_tube_to_the_same_last_bit():
         check(a.tobytes() == b.tobytes(), f"{name} differs")
 
 
+def a_strong_load_acts_in_a_tube_as_well():
+    run(deck(DECK), "--set", "Membrane/load=strong", "--set", "Time/final time=0.01", "--output", "out", "--quiet")
+    check(abs(series("out", "disturbance_flux")).max() < 1e-2, series("out", "disturbance_flux"))  # of so coarse a mesh
+
+
 def contact_stops_the_run_with_a_checkpoint_to_go_on_from():
     capillary = ["Tube/section=file", f"Tube/outline={SOURCE}/inputs/capillary_outline.csv", "Tube/flow elements=48", "Particle/center=[0.0, 0.2, 0.0]"]
     said = run(deck(DECK), *_words(capillary + ["Tube/contact gap=0.195"]), "--output", "out", "--quiet", code=3).stderr

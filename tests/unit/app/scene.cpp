@@ -63,6 +63,12 @@ TEST(Scenes, HaveViscosityRatiosThatRoundingLeavesSolvable) {
   EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e9}\n  Solvers: {tolerance: 1e-5}\n"), "");
 }
 
+TEST(Scenes, CountTheFactorsOfTheWallBesideItsRows) {
+  const std::string tube = "  Flow: {type: duct}\n  Tube: {azimuthal elements: 100, axial elements: ";
+  EXPECT_EQ(refusal(tube + "200}\n"), "");                                            // 59 GB
+  EXPECT_NE(refusal(tube + "240}\n").find("more than 64"), std::string::npos);       // 85 GB, half of it rows
+}
+
 TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
   const Scene one = scene("  Adaptation: {enabled: true}\n"), other = scene("  Particle: {radius: 1.0e-6}\n  Adaptation: {enabled: true}\n");
   EXPECT_DOUBLE_EQ(other.adaptation.surface_tolerance, 1e-6 * one.adaptation.surface_tolerance);
@@ -156,7 +162,7 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
       "Surface/elements per side must be at most 70, but is 80: the layers of 38402 control points take 106 GB assembled, more than 64.");
   EXPECT_EQ(
       refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
-      "Tube/azimuthal elements and Tube/axial elements must give at most 29814 control points: the layers of 40600 control points take 119 "
+      "Tube/azimuthal elements and Tube/axial elements must give at most 21081 control points: the layers of 40600 control points take 237 "
       "GB assembled, more than 64.");
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
 }

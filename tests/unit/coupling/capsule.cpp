@@ -72,6 +72,14 @@ TEST(Capsule, ExactConstraintRestoresTheVolumeToRoundOff) {
   EXPECT_NEAR(capsule.volume_error(x), 0, std::pow(0.003, 4));  // two Newton iterations square the error twice
 }
 
+TEST(Capsule, AVolumeThatCannotBeRestoredIsNotTakenForRestored) {
+  Fixture f;
+  Capsule capsule = f.capsule();
+  Net x = f.sphere * 0.05;  // from where Newton's first iteration blows it up by a hundred
+  capsule.restore_volume(x);
+  EXPECT_FALSE(x.allFinite());
+}
+
 TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
   Fixture f;
   const Net x = f.deformed();

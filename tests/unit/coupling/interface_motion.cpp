@@ -93,6 +93,34 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
   }
 }
 
+// Where the particle is in an affine flow, and how fast the observer is, changes its velocity by that of the frame and nothing else.
+TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
+  Net x = drop.sphere;
+  x.col(0) *= 1.2, x.col(2) *= 0.9;
+  const Eigen::RowVector3d away(2, -3, 10), carried = away * drop.flow.gradient->transpose();
+  for (const char* motion : {"material", "normal", "relaxed"}) {
+    const Net here = drop.velocity(motion, x), there = drop.velocity(motion, x.rowwise() + away);
+    EXPECT_LT(((there.rowwise() - carried) - here).norm(), 1e-12 * there.norm()) << motion;  // round-off
+  }
+}
+
+TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
+  const Net moved = Eigen::RowVector3d(0.3, -0.1, 0.2).replicate(drop.sphere.rows(), 1);
+  for (const char* motion : {"normal", "relaxed"}) {
+    drop.parameters.interface_motion = motion;
+    Capsule capsule = drop.capsule();
+    capsule.freeze(drop.sphere);
+    const Net change = capsule.derivative(drop.sphere, Net::Zero(moved.rows(), 3), moved);
+    EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-12 * change.norm()) << motion;  // round-off
+  }
+}
+
 TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
   Drop drop;
   drop.flow.type = "quiescent";

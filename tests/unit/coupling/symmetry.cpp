@@ -52,6 +52,18 @@ TEST(Symmetry, OfFlows) {
   EXPECT_EQ(rotation(1, 2, 3), "point symmetry");
 }
 
+TEST(Symmetry, IsThatOfTheSameSceneInOtherUnits) {
+  Fixture f;
+  f.flow.type = "planar hyperbolic";
+  for (const double unit : {1.0, 1e-9}) {
+    surface::ParticleShape shape;
+    shape.radius = unit;
+    shape.center = {0.01 * unit, 0, 0};  // off the point of rest
+    f.sphere = surface::initial_shape(f.space, f.mesh, shape);
+    EXPECT_EQ(f.symmetry().description(), "mirror x2 and mirror x3") << unit;
+  }
+}
+
 TEST(Symmetry, OfAParticleOffTheMiddleOfAShearFlowIsTheMirrorPlaneAlone) {
   Fixture f;
   surface::ParticleShape shape;

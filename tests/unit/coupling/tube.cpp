@@ -167,6 +167,9 @@ TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
   EXPECT_LT((body.motion(there).velocity - motion.velocity).norm(), rules);
   EXPECT_LT((body.motion(there).angular_velocity - motion.angular_velocity).norm(), rules);
   EXPECT_NEAR(body.pressure_drop(there) / drop, 1, rules);
+  there(0, 1) = 0.6;  // a trial of a step that would take it into the wall
+  EXPECT_FALSE(body.motion(there).velocity.allFinite());
+  EXPECT_TRUE(body.motion(here).velocity.allFinite());
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#!/usr/bin/python3
+# label: long
+# ranks: 2
+# metamorphic.py for every kind of particle, mesh motion, viscosity ratio, flow and tube, with fixed steps and with controlled ones.
+from harness import main
+from metamorphic import FIXED, Scene, by_clusters, compare
+
+DROPS = ["material", "normal", "relaxed"]
+SCENES = [*(Scene(kind, ratio, flow) for flow in ("linear", "quiescent", "duct") for kind in ("capsule", *DROPS) for ratio in (1.0, 3.0)),
+          Scene("free"), Scene("free", 1.0, "duct")]
+
+
+def fixed_steps_of_an_explicit_scheme():
+    compare(SCENES, 1e-10)
+
+
+def fixed_steps_of_an_implicit_scheme():
+    compare([scene.but(steps=FIXED.replace("bs3", "tr-bdf2, newton tolerance: 1.0e-9, newton iterations: 40")) for scene in SCENES], 1e-10)
+
+
+def controlled_steps():
+    compare([scene.but(steps="tolerance: 1.0e-4") for scene in SCENES], 1e-4)
+
+
+def far_sums():
+    compare([Scene(kind, ratio, flow).but(elements=10) for flow in ("linear", "duct") for kind in ("capsule", "relaxed") for ratio in (1.0, 3.0)], 1e-4,
+            by_clusters)
+
+
+main()
