@@ -124,8 +124,8 @@ output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int
   return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements))},
           {"tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
                              wall.space.description.c_str())},
-          {"wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, and as much of rows "
-                             "on all together",
+          {"wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
+                             "and as much of rows on all together",
                              unknowns, solved.c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : "")}};
 }
 
