@@ -20,7 +20,7 @@ from deformation import unbroken
 from style import plt
 
 DEFORMABLE = {"taylor_inertia": "D", "n_control_points": "control points"}  # series, and what stands beside them
-RIGID = {"inclination": "inclination, °", "angular_velocity_x2": "angular velocity ω₂"}
+RIGID = {"inclination": "incl., °", "angular_velocity_x2": "ω₂"}
 
 
 def main():
@@ -88,10 +88,11 @@ class Film:
 
     def show(self, shot):
         self.surface.clear()
-        shape.draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view, pixels=self.pixels)
+        shape.draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view, pixels=self.pixels, triad=False)
         middle_seen = shape.view_axes(*self.view)[:2] @ middle(shot)
-        room = 0.09 * (self.window[1] - self.window[0])[0]
+        room = 0.11 * (self.window[1] - self.window[0])[0]
         (left, low), (right, high) = self.window + middle_seen
+        shape.draw_triad(self.surface, shape.view_axes(*self.view), numpy.array([left, right, low, high]))
         self.surface.set_xlim(left - room, right + room)
         self.surface.set_ylim(low - room, high + room)
         row = numpy.searchsorted(self.run.series["time"], shot.time * (1 - 1e-12))  # of this saved step, the last one if none came after
