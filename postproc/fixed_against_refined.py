@@ -27,7 +27,8 @@ def main():
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in ([arguments.refined, *arguments.fixed] if arguments.refined else made())]
-    shots = [run.snapshot_at(None) for run in runs]
+    end = min(run.series["time"][-1] for run in runs)
+    shots = [run.snapshot_at(end) for run in runs]
     names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
     extent = shots[0].points.max(0) - shots[0].points.min(0)
     columns = max(3, len(runs))
