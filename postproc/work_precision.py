@@ -117,7 +117,6 @@ def draw(axis, points, cost, label, colors, shape, families, numbers):
             axis.annotate(numbers[point], (getattr(point, cost), point.error), (-4, -4), textcoords="offset points", fontsize=7.5, ha="right", va="top")
     axis.plot(getattr(points[0], cost), points[0].error, "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
     axis.set_xlabel(label)
-    axis.set_ylabel("error")
 
 
 def families_of(points, choices, shape):
@@ -190,6 +189,7 @@ def main():
     families = families_of(points, scene.choices, shape)
     figure, axes = plt.subplots(1, 3, figsize=(11.5, 5.2), width_ratios=[1, 1, 0.42])
     axes[1].sharey(axes[0])
+    axes[0].set_ylabel("error")
     draw(axes[0], points, "seconds", "processor seconds", colors, shape, families, numbers)
     draw(axes[1], points, "kernels", "kernel evaluations", colors, shape, families, numbers)
     for name, color in colors.items():
