@@ -1,10 +1,14 @@
 // tanktread [options] deck.yaml [overlay.yaml ...]: reads the command line and the decks, and runs the scene they describe.
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
 
+#include "app/default_name.hpp"
 #include "app/provenance.hpp"
 #include "app/results.hpp"
 #include "app/scene.hpp"
@@ -26,7 +30,7 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 
 struct Arguments {
   std::vector<std::string> decks, settings;
   std::string output, resume;
-  bool check = false, reference = false, quiet = false;
+  bool overwrite = false, check = false, reference = false, quiet = false;
 };
 
 void state(CLI::App& app, Arguments& arguments) {
@@ -34,7 +38,9 @@ void state(CLI::App& app, Arguments& arguments) {
              "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
-  app.add_option("--output", arguments.output, "where results go (default: results/<deck name>)");
+  app.add_option("--output", arguments.output,
+                 "where results go (default: results/<deck name>, followed by what is laid over it: _<overlay name>, _<key>=<value>)");
+  app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
   app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
   app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
@@ -78,6 +84,7 @@ int run(const Arguments& arguments, bool speaks) {
     throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
   if (resume && !arguments.output.empty())
     throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
+  if (resume && arguments.overwrite) throw UserError("--overwrite and --resume contradict each other: one deletes what the other goes on from.");
 
   const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
   Scene scene, before;
@@ -96,15 +103,22 @@ int run(const Arguments& arguments, bool speaks) {
     if (speaks) std::cout << deck.effective() << "\n" << plan;
     return done;
   }
-  const std::filesystem::path named = resume ? arguments.resume : arguments.decks.front();
   RunRequest request;
-  request.name = named.stem();
-  request.output = resume ? arguments.resume : arguments.output.empty() ? "results/" + request.name : arguments.output;
+  request.output = resume                     ? arguments.resume
+                   : arguments.output.empty() ? "results/" + default_name(arguments.decks, arguments.settings)
+                                              : arguments.output;
   request.resume = resume;
+  request.overwrite = arguments.overwrite;
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   request.quiet = arguments.quiet;
   request.deck_text = deck.effective();
   return simulate(scene, request);
+}
+
+/// Throws RunFailure when something did not get onto standard output.
+void check_output() {
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw RunFailure(std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
 /// One line of bearable length, whatever the message holds.
@@ -129,10 +143,14 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
       if (error.get_exit_code() != 0) return report(error.what(), mistake);
-      if (speaks) app.exit(error);  // --help, --version
+      if (!speaks) return done;
+      app.exit(error);  // --help, --version
+      check_output();
       return done;
     }
-    return run(arguments, speaks);
+    const int code = run(arguments, speaks);
+    if (speaks) check_output();
+    return code;
   } catch (const motion::Stopped&) {
     return report("stopped by a signal before there was anything to keep", stopped);
   } catch (const UserError& error) {

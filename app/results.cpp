@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "app/duct_picture.hpp"
 #include "app/provenance.hpp"
+#include "app/together.hpp"
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "deck/expectation.hpp"
-#include "output/checkpoint.hpp"
+#include "output/checksum.hpp"
 #include "output/file.hpp"
 #include "output/progress.hpp"
 #include "output/snapshot.hpp"
@@ -20,6 +23,17 @@
 namespace tanktread {
 
 namespace {
+
+constexpr std::chrono::seconds second(1);
+
+/// Of a run, unlike any other's: sixteen hexadecimal digits.
+std::string identifier() {
+  std::random_device random;
+  output::Checksum sum;
+  for (int k = 0; k < 4; ++k) sum.add(static_cast<std::uint64_t>(random()));
+  sum.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
+  return sum.digits();
+}
 
 /// The edges of the T-mesh; the lattice follows from the deck.
 void store(const spline::TMesh& mesh, output::Checkpoint& checkpoint) {
@@ -48,10 +62,14 @@ std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const o
   return body;
 }
 
+UserError another_version(const std::filesystem::path& directory) {
+  return UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
+}
+
 Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
   return {output::stored_state(checkpoint), stored_standing(checkpoint), stored_body(scene, first, checkpoint)};
 } catch (const std::out_of_range&) {
-  throw UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
+  throw another_version(directory);
 }
 
 }  // namespace
@@ -71,34 +89,38 @@ output::Entries<double> with_earlier(const Phases& phases, const output::Entries
 
 std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
 
-/// Ranks act; if one fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else.
-template <class Act>
-void Results::together(bool acts, const Act& action) {
-  std::string error;
-  bool mistake = false;
-  if (acts) {
-    try {
-      action();
-    } catch (const std::exception& exception) {
-      error = exception.what();
-      mistake = dynamic_cast<const UserError*>(&exception) != nullptr;
-    }
-  }
-  if (!ranks_.any(!error.empty())) return;
-  if (error.empty()) error = "another rank could not write";
-  if (ranks_.any(mistake)) throw UserError(error);
-  throw RunFailure(error);
+output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks) {
+  const bool chooses = ranks.rank() == 0;
+  std::optional<output::Saved> saved;
+  together(ranks, chooses, [&] { saved = output::newest_checkpoint(directory); });
+  std::int64_t step = saved ? saved->file.step : -1;
+  ranks.first({&step, 1});
+  if (step < 0) throw UserError("--resume " + directory.string() + ": there is no checkpoint in this directory");
+  together(ranks, !chooses, [&] {
+    const std::filesystem::path path = directory / output::snapshot_name(static_cast<int>(step));
+    saved = {{path, static_cast<int>(step)}, output::read_checkpoint(path), {}};
+  });
+  return *saved;
+}
+
+void check_vacant(const RunRequest& request) {
+  const coupling::Ranks ranks;
+  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output), [&] {
+    const output::Occupation occupation(request.output);
+    output::check_vacant(request.output);
+  });
 }
 
 /// The first rank does.
 template <class Write>
 void Results::write(const Write& action) {
-  together(writes_, action);
+  together(ranks_, writes_, action);
 }
 
 std::map<std::string, std::string> Results::origin() const {
   std::map<std::string, std::string> made_by = provenance();
   made_by["ranks"] = std::to_string(ranks_.size());
+  made_by["run"] = run_;
   return made_by;
 }
 
@@ -114,7 +136,9 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
 
 /// The files of a new run.
 void Results::begin() {
+  if (!request_.overwrite) output::check_vacant(directory_);
   output::start_directory(directory_);
+  run_ = identifier();
   if (scene_.tube.outline) keep(*scene_.tube.outline, kept_outline(scene_));
   if (scene_.particle.shape.imported) keep(*scene_.particle.shape.file, kept_surface);
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
@@ -141,26 +165,59 @@ void Results::remesh(const Body& body, const surface::BezierMap& map) {
 
 std::optional<Resumed> Results::resumed() {
   if (!request_.resume) return {};
-  const auto saved = output::newest_checkpoint(directory_);  // every rank reads it: one file, read-only
-  if (!saved) throw UserError("--resume " + directory_.string() + ": there is no checkpoint in this directory");
-  for (const output::Snapshot& file : saved->damaged)
-    warn(file.path.filename().string() + " is damaged: the run goes on from " + saved->file.path.filename().string());
-  Resumed resumed = stored_run(scene_, *body_, saved->checkpoint, directory_);
+  const output::Saved saved = newest_checkpoint(directory_, ranks_);
+  const std::string chosen = saved.file.path.filename();
+  Resumed resumed = stored_run(scene_, *body_, saved.checkpoint, directory_);
   last_saved_ = resumed.standing.step;
+  if (saved.file.step != last_saved_)
+    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name says.", last_saved_));
   for (const Warning& warning : resumed.standing.warnings.said) warnings_.push_back(warning.sentence);
   write([&] {
-    record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
-    record_->truncate(static_cast<size_t>(resumed.standing.step) + 1);
-    record_->describe(request_.deck_text, origin());
-    declare_columns();
-    series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_));
+    load_record(saved.checkpoint, chosen);
+    set_aside(saved.damaged, chosen);
+    series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_, run_));
   });
+  if (writes_ && !request_.quiet) std::printf("  resumed     from %s\n", chosen.c_str());
   return resumed;
 }
 
-void Results::record(const std::vector<double>& row) {
-  write([&] { record_->append(row); });
+/// The record up to a checkpoint. Throws UserError where it is not the one that the checkpoint was saved with.
+void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
+  if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
+  run_ = checkpoint.texts.at("run");
+  record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
+  const auto rows = static_cast<std::size_t>(last_saved_) + 1;
+  const auto& origin_of_record = record_->provenance();
+  if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
+    throw UserError("--resume " + directory_.string() + ": " + chosen + " and run.h5 are of different runs; remove the one that does not belong here.");
+  if (record_->rows() < rows || record_->checksum(rows) != checkpoint.texts.at("record"))
+    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen + " are not as they were written; bring the file back.");
+  record_->truncate(rows);
+  record_->describe(request_.deck_text, origin());
+  declare_columns();
 }
+
+/// Files that a run would have gone on from, had they been whole: they stay, under other names.
+void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen) {
+  for (const auto& [path, reason] : damaged)
+    warn(path.filename().string() + " is damaged (" + reason + ") and now is called " + output::set_aside(path).filename().string() +
+         ": the run goes on from " + chosen);
+}
+
+void Results::record(const std::vector<double>& row) {
+  write([&] {
+    record_->append(row);
+    if (record_->rows() == 1 || Clock::now() - written_ >= second) write_record();
+  });
+}
+
+void Results::write_record() {
+  record_->write(durable());
+  written_ = Clock::now();
+}
+
+/// What a shorter run has written is sooner written again than waited for.
+output::Durable Results::durable() const { return Clock::now() - start_ < second ? output::Durable::no : output::Durable::yes; }
 
 void Results::warn(const std::string& sentence) {
   warnings_.push_back(sentence);
@@ -172,10 +229,12 @@ void Results::write_surface(const Net& surface) {
 }
 
 void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
-  const std::filesystem::path path = directory_ / output::snapshot_name(standing.step);
-  write_picture(path, portrait, state, standing, picture_time);
+  const std::vector<output::Field> fields = gathered(portrait);
   write([&] {
-    output::finish(path);
+    write_record();
+    output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint(state, standing, picture_time), nodes_->mesh(), fields,
+                           durable());
+    if (durable() == output::Durable::yes) output::sync(directory_);
     series_->add(standing.step, picture_time);
   });
   last_saved_ = standing.step;
@@ -189,43 +248,35 @@ output::Checkpoint Results::checkpoint(const motion::State& state, const Standin
   checkpoint.arrays["unstressed"] = body_->unstressed;
   checkpoint.arrays["initial"] = body_->rest;
   checkpoint.texts["deck"] = request_.deck_text;
+  checkpoint.texts["run"] = run_;
+  checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(standing.step) + 1);
   checkpoint.numbers["initial volume"] = body_->volume;
   checkpoint.numbers["refit error"] = body_->refit_error;
   if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
   return checkpoint;
 }
 
-/// The first rank lays the file out, while others evaluate the fields at their nodes already; each fills in its own, piece by piece, and the last
-/// one the cells.
-void Results::write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
-                            double picture_time) {
-  constexpr int most = 4096;  // shorter pieces take longer to write, longer ones wait for those of others
+/// A picture at all nodes, on every rank: each has evaluated its share, in pieces that stay in the cache.
+std::vector<output::Field> Results::gathered(const Portrait& portrait) const {
+  constexpr int most = 4096;
   const std::int64_t n = nodes_->all().size(), rank = ranks_.rank(), size = ranks_.size();
-  const int end = static_cast<int>((rank + 1) * n / size);
-  output::NodeRange piece{static_cast<int>(rank * n / size), 0};
-  std::vector<output::Field> fields;
-  const auto evaluate = [&](int length) {
-    piece.end = std::min(piece.begin + length, end);
-    fields = output::picture(*nodes_, portrait.surface, piece);
-    for (output::Field& field : portrait.fields(*nodes_, piece)) fields.push_back(std::move(field));
+  const auto at = [&](output::NodeRange range) {
+    std::vector<output::Field> fields = output::picture(*nodes_, portrait.surface, range);
+    for (output::Field& field : portrait.fields(*nodes_, range)) fields.push_back(std::move(field));
+    return fields;
   };
-  evaluate(writes_ ? 0 : most);
-  const output::Checkpoint saved = checkpoint(state, standing, picture_time);
-  std::vector<std::int64_t> places(output::n_places(saved, fields));
-  write([&] { places = output::lay_out_snapshot(path, saved, nodes_->mesh(), fields); });
-  ranks_.first(places);
-  together(true, [&] {
-    output::SnapshotParts file(path, places);
-    if (writes_) file.write(saved);
-    if (rank == size - 1) file.write(nodes_->mesh());
-    file.write(fields, piece);
-    while (piece.end < end) {
-      piece.begin = piece.end;
-      evaluate(most);
-      file.write(fields, piece);
+  std::vector<output::Field> whole = at({0, 0});
+  for (output::Field& field : whole) field.values.setZero(n, field.values.cols());
+  const int end = static_cast<int>((rank + 1) * n / size);
+  together(ranks_, true, [&] {
+    for (output::NodeRange piece{static_cast<int>(rank * n / size), 0}; piece.begin < end; piece.begin = piece.end) {
+      piece.end = std::min(piece.begin + most, end);
+      const std::vector<output::Field> fields = at(piece);
+      for (std::size_t k = 0; k < whole.size(); ++k) whole[k].values.middleRows(piece.begin, piece.size()) = fields[k].values;
     }
-    file.close();
   });
+  for (output::Field& field : whole) ranks_.add({field.values.data(), static_cast<std::size_t>(field.values.size())});
+  return whole;
 }
 
 int Results::close(const Account& account, const Phases& phases) {
@@ -260,6 +311,8 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.plan = account.plan;
   summary.warnings = warnings_;
   output::write_summary(directory_ / "summary.yaml", summary);
+  if (durable() == output::Durable::yes)
+    for (const char* name : {"summary.yaml", "run.hdf.series", "."}) output::sync(directory_ / name);
   return missed;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Everything that a run writes, and how a run finds its way back from it.
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +12,8 @@
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
 #include "motion/integrator.hpp"
+#include "output/checkpoint.hpp"
+#include "output/file.hpp"
 #include "output/nodes.hpp"
 #include "output/occupation.hpp"
 #include "output/run_record.hpp"
@@ -36,9 +39,18 @@ struct Account {
 /// Seconds by phase, those of earlier parts of the run included.
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
 
-/// The files of a run (README.md, Results). The first rank writes, and every one its own nodes of a picture; every call is made by all
-/// ranks, which see one directory, and all of them throw: RunFailure when the
-/// disk refuses, UserError where a run cannot begin in its directory.
+/// The newest sound checkpoint of a directory: the first rank finds it, and every rank reads the one that it names. Throws UserError when there is none,
+/// RunFailure when one cannot be read. Collective.
+output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks);
+
+/// Throws UserError where the directory holds results that the request does not allow to delete, or another run writes to it. Collective.
+void check_vacant(const RunRequest& request);
+
+/// The files of a run (README.md, Results). Every rank evaluates its own nodes of a picture, and the first one writes all files; every call is made by
+/// all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
+///
+/// From the first second of a run on, a snapshot and the record up to it are on the disk itself before `run.hdf.series` names the snapshot, and all
+/// that a run has written is when it ends.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const std::vector<Column>& columns,
@@ -50,7 +62,7 @@ class Results {
   /// The body that is drawn from now on, and its extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// One finished step: a row of the record, written at once.
+  /// One finished step: a row of the record, which is written at every snapshot and otherwise once a second.
   void record(const std::vector<double>& row);
 
   /// A sentence about what the run has come near to, on standard error and in the summary.
@@ -71,16 +83,17 @@ class Results {
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
-  template <class Act>
-  void together(bool acts, const Act& action);
   template <class Write>
   void write(const Write& action);
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_columns();
   output::Checkpoint checkpoint(const motion::State& state, const Standing& standing, double picture_time) const;
-  void write_picture(const std::filesystem::path& path, const Portrait& portrait, const motion::State& state, const Standing& standing,
-                     double picture_time);
+  std::vector<output::Field> gathered(const Portrait& portrait) const;
+  void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
+  void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
+  void write_record();
+  output::Durable durable() const;
   std::string finish(const Account& account, const Phases& phases);
   std::map<std::string, std::string> origin() const;
 
@@ -90,6 +103,7 @@ class Results {
   std::vector<Column> columns_;
   const coupling::Ranks& ranks_;
   bool writes_;
+  std::string run_;  // its identifier
   std::filesystem::path directory_;
   std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
@@ -97,6 +111,8 @@ class Results {
   std::optional<output::Nodes> nodes_;  // of the pictures
   std::vector<std::string> warnings_;
   int last_saved_ = -1;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now(), written_ = start_;  // the latter: the record
 };
 
 }  // namespace tanktread

@@ -23,7 +23,6 @@
 #include "motion/dense_output.hpp"
 #include "motion/guarded.hpp"
 #include "motion/integrator.hpp"
-#include "output/checkpoint.hpp"
 #include "output/progress.hpp"
 #include "output/state.hpp"
 
@@ -381,6 +380,7 @@ std::vector<std::string> check_expectations(const Scene& scene) {
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {
+  check_vacant(request);
   if (scene.particle.motion == "prescribed") return resist(scene, request);
   return Run(scene, request).go();
 }
@@ -400,9 +400,7 @@ std::string plan_text(const output::Entries<std::string>& plan) {
 }
 
 std::string stored_deck(const std::string& directory) {
-  const auto saved = output::newest_checkpoint(directory);
-  if (!saved) throw UserError("--resume " + directory + ": there is no checkpoint in this directory");
-  return saved->checkpoint.texts.at("deck");
+  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
 }
 
 }  // namespace tanktread

@@ -11,9 +11,9 @@ namespace tanktread {
 
 /// What the command line says beside the deck.
 struct RunRequest {
-  std::string name;             ///< of the run: the deck's file name without its ending
   std::string output;           ///< directory of the results
   bool resume = false;          ///< go on from the newest checkpoint there
+  bool overwrite = false;       ///< delete the results of an earlier run there
   bool another_scheme = false;  ///< than the checkpoint's, of whose memory only shape, slope and step mean something to it
   bool quiet = false;           ///< no progress bar
   std::string deck_text;        ///< the effective deck, to be stored with the results
@@ -34,7 +34,7 @@ int simulate(const Scene& scene, const RunRequest& request);
 std::string plan_text(const Scene& scene, int ranks = 1);
 std::string plan_text(const output::Entries<std::string>& plan);  ///< of a plan that is made already
 
-/// The effective deck that the newest checkpoint of a directory holds. Throws UserError when there is none.
+/// The effective deck that the newest checkpoint of a directory holds. Throws as newest_checkpoint does. Collective.
 std::string stored_deck(const std::string& directory);
 
 }  // namespace tanktread

@@ -1,13 +1,14 @@
 #include "output/checkpoint.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
-#include <cinttypes>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
 
+#include "base/errors.hpp"
+#include "output/checksum.hpp"
+#include "output/file.hpp"
 #include "output/hdf.hpp"
 
 namespace tanktread::output {
@@ -15,21 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Mixes numbers into one that every bit of them changes (a chain of invertible steps, the constants of FNV-1a).
-class Mix {
- public:
-  void add(std::uint64_t word) { sum_ = std::rotl((sum_ ^ word) * 0x00000100000001b3u, 29); }
-  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-  void add(const std::string& text) {
-    add(static_cast<std::uint64_t>(text.size()));
-    for (const char c : text) add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
-  }
-  std::uint64_t sum() const { return sum_; }
-
- private:
-  std::uint64_t sum_ = 0xcbf29ce484222325u;
-};
 
 /// Step of a snapshot's file name, or -1.
 int step_of(const std::string& name) {
@@ -50,18 +36,16 @@ std::string snapshot_name(int step) {
 }
 
 std::string checksum(const Checkpoint& checkpoint) {
-  Mix mix;
+  Checksum sum;
   for (const auto& [name, matrix] : checkpoint.arrays) {
-    mix.add(name);
-    mix.add(static_cast<std::uint64_t>(matrix.rows()));
-    mix.add(static_cast<std::uint64_t>(matrix.cols()));
-    for (Eigen::Index k = 0; k < matrix.size(); ++k) mix.add(matrix.data()[k]);
+    sum.add(name);
+    sum.add(static_cast<std::uint64_t>(matrix.rows()));
+    sum.add(static_cast<std::uint64_t>(matrix.cols()));
+    for (Eigen::Index k = 0; k < matrix.size(); ++k) sum.add(matrix.data()[k]);
   }
-  for (const auto& [name, number] : checkpoint.numbers) mix.add(name), mix.add(number);
-  for (const auto& [name, text] : checkpoint.texts) mix.add(name), mix.add(text);
-  char digits[17];
-  std::snprintf(digits, sizeof digits, "%016" PRIx64, mix.sum());
-  return digits;
+  for (const auto& [name, number] : checkpoint.numbers) sum.add(name), sum.add(number);
+  for (const auto& [name, text] : checkpoint.texts) sum.add(name), sum.add(text);
+  return sum.digits();
 }
 
 Checkpoint read_checkpoint(const fs::path& path) {
@@ -93,25 +77,28 @@ std::vector<Snapshot> snapshots(const fs::path& directory) {
   return found;
 }
 
-std::optional<double> snapshot_time(const fs::path& path) {
+std::optional<Picture> pictured(const fs::path& path) {
   try {
     const hdf::Id file = hdf::open(path);
+    const hdf::Id numbers = hdf::group(hdf::group(file, "checkpoint"), "numbers"), texts = hdf::group(hdf::group(file, "checkpoint"), "texts");
+    const auto held = hdf::names(numbers);
     hdf::Shape shape;
-    const hdf::Id numbers = hdf::group(hdf::group(file, "checkpoint"), "numbers");
-    const auto names = hdf::names(numbers);
-    const bool of_the_picture = std::ranges::find(names, "picture time") != names.end();
-    return hdf::read_doubles(numbers, of_the_picture ? "picture time" : "time", shape).at(0);
+    const char* time = std::ranges::count(held, "picture time") > 0 ? "picture time" : "time";
+    return Picture{hdf::read_doubles(numbers, time, shape).at(0), std::ranges::count(hdf::names(texts), "run") > 0 ? hdf::read_text(texts, "run") : ""};
   } catch (const std::exception&) {
     return std::nullopt;
   }
 }
 
 std::optional<Saved> newest_checkpoint(const fs::path& directory) {
-  std::vector<Snapshot> damaged;
+  std::vector<Damaged> damaged;
   for (auto found = snapshots(directory); !found.empty(); found.pop_back()) try {
       return Saved{found.back(), read_checkpoint(found.back().path), std::move(damaged)};
-    } catch (const std::exception&) {
-      damaged.push_back(found.back());
+    } catch (const RunFailure&) {
+      throw;  // the next attempt may succeed
+    } catch (const std::exception& error) {
+      check_readable(found.back().path);
+      damaged.push_back({found.back().path, error.what()});
     }
   return std::nullopt;
 }

@@ -25,7 +25,7 @@ std::string checksum(const Checkpoint& checkpoint);
 /// `snapshot_000123.hdf` for step 123.
 std::string snapshot_name(int step);
 
-/// The checkpoint of a snapshot. Throws std::runtime_error when the file is missing or damaged, be it by one bit.
+/// The checkpoint of a snapshot. Throws RunFailure when the system does not open it, std::runtime_error when it is damaged, be it by one bit.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
 /// A snapshot file of a directory.
@@ -37,16 +37,28 @@ struct Snapshot {
 /// All of them, by step; readable or not.
 std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
-/// The number "picture time" of its checkpoint, or "time"; empty when the file cannot be read or holds none.
-std::optional<double> snapshot_time(const std::filesystem::path& path);
+/// What a list of pictures needs of a snapshot.
+struct Picture {
+  double time = 0;  ///< the number "picture time" of the checkpoint, or "time"
+  std::string run;  ///< its text "run", the identifier of the run
+};
+
+/// Empty when the file cannot be read.
+std::optional<Picture> pictured(const std::filesystem::path& path);
+
+struct Damaged {
+  std::filesystem::path path;
+  std::string reason;
+};
 
 struct Saved {
   Snapshot file;
   Checkpoint checkpoint;
-  std::vector<Snapshot> damaged;  ///< newer ones that cannot be read, the newest first
+  std::vector<Damaged> damaged;  ///< newer ones, the newest first
 };
 
-/// The newest snapshot of a directory that can be read. None: empty.
+/// The newest snapshot of a directory that is sound. None: empty. Throws RunFailure when one that is newer cannot be read for a reason of the system's
+/// (permission, a failing disk), since it may be sound.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
 }  // namespace tanktread::output

@@ -1,5 +1,6 @@
 #include "output/file.hpp"
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/errors.hpp"
@@ -16,99 +18,129 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kUnfinished = ".part";
+constexpr std::string_view unfinished = ".part", damaged = ".damaged";
 
 bool is_result(const std::string& name) {
   return name == "run.h5" || name == "duct.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
-         (name.starts_with("snapshot_") && name.ends_with(".hdf"));
+         (name.starts_with("snapshot_") && (name.ends_with(".hdf") || name.find(std::string(".hdf").append(damaged)) != name.npos));
 }
 
-bool is_unfinished(const std::string& name) {
-  return name.ends_with(kUnfinished) && is_result(name.substr(0, name.size() - kUnfinished.size()));
-}
+bool is_unfinished(const std::string& name) { return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size())); }
 
 template <class Test>
-void remove_where(const fs::path& directory, const Test& test) {
-  std::vector<fs::path> doomed;
+std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
+  std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (entry.is_regular_file() && test(entry.path().filename().string())) doomed.push_back(entry.path());
-  for (const auto& path : doomed) fs::remove(path);
+    if (std::error_code unknown; !entry.is_directory(unknown) && test(entry.path().filename().string())) found.push_back(entry.path());
+  return found;
 }
 
-[[noreturn]] void fail(const fs::path& path) { throw RunFailure("cannot write " + path.string() + ": " + std::strerror(errno)); }
-
-fs::path beside(const fs::path& path) { return path.string() + std::string(kUnfinished); }
-
-void write_beside(const fs::path& path, std::string_view bytes) {
-  Unfinished file(path, Unfinished::Begin::anew);
-  file.write(0, bytes);
-  file.close();
+/// What is done to a directory; the system's refusal becomes a UserError.
+template <class Act>
+void in_directory(const fs::path& directory, const Act& act) try {
+  act();
+} catch (const fs::filesystem_error& error) {
+  throw UserError("the output directory " + directory.string() + " cannot be used: " + error.code().message());
 }
 
-}  // namespace
-
-Unfinished::Unfinished(const fs::path& path, Begin begin)
-    : path_(path), file_(::open(beside(path).c_str(), begin == Begin::anew ? O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC : O_WRONLY | O_CLOEXEC, 0666)) {
-  if (file_ < 0) fail(path_);
+[[noreturn]] void fail(const char* what, const fs::path& path) {
+  throw RunFailure(std::string("cannot ") + what + " " + path.string() + ": " + std::strerror(errno));
 }
 
-Unfinished::~Unfinished() {
-  if (file_ >= 0) ::close(file_);
-}
+/// An open file, which it closes.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  operator int() const { return number_; }
+  bool close() { return ::close(std::exchange(number_, -1)) == 0; }
 
-void Unfinished::write(std::uint64_t at, std::string_view bytes) {
+ private:
+  int number_;
+};
+
+/// Some file systems know no fsync, of directories above all.
+bool synced(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == EROFS; }
+
+void write_all(const Descriptor& file, const fs::path& path, std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t done = ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    const ssize_t done = ::write(file, bytes.data(), bytes.size());
     if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) fail(path_);
-    at += static_cast<std::uint64_t>(done);
+    if (done <= 0) fail("write", path);
     bytes.remove_prefix(static_cast<std::size_t>(done));
   }
 }
 
-void Unfinished::write(std::uint64_t at, std::span<const double> numbers) {
-  write(at, std::string_view(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()));
+/// An existing file; a pipe does not let wait.
+int open_to_read(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) fail("read", path);
+  return file;
 }
 
-void Unfinished::resize(std::uint64_t size) {
-  if (::ftruncate(file_, static_cast<off_t>(size)) != 0) fail(path_);
+}  // namespace
+
+void write_whole(const fs::path& path, std::string_view bytes, Durable durable) {
+  const fs::path beside = path.string() + std::string(unfinished);
+  Descriptor file(::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (file < 0) fail("write", path);
+  write_all(file, path, bytes);
+  if (durable == Durable::yes && !synced(file)) fail("write", path);
+  if (!file.close() || std::rename(beside.c_str(), path.c_str()) != 0) fail("write", path);
 }
 
-void Unfinished::close() {
-  if (::close(std::exchange(file_, -1)) != 0) fail(path_);
+void sync(const fs::path& path) {
+  const Descriptor file(open_to_read(path));
+  if (!synced(file)) fail("write", path);
 }
 
-void finish(const fs::path& path) {
-  if (std::rename(beside(path).c_str(), path.c_str()) != 0) fail(path);
+void check_opens(const fs::path& path) {
+  const Descriptor file(open_to_read(path));
+  struct stat status;
+  if (::fstat(file, &status) != 0) fail("read", path);
+  if (!S_ISREG(status.st_mode)) throw RunFailure("cannot read " + path.string() + ": it is no regular file");
 }
 
-void write_whole(const fs::path& path, std::string_view bytes) {
-  write_beside(path, bytes);
-  finish(path);
+void check_readable(const fs::path& path) {
+  check_opens(path);
+  const Descriptor file(open_to_read(path));
+  std::array<char, 1 << 16> bytes;
+  for (ssize_t n = 1; n != 0;)
+    if (n = ::read(file, bytes.data(), bytes.size()); n < 0 && errno != EINTR) fail("read", path);
 }
 
-void rewrite_whole(const fs::path& path, std::string_view bytes) {
-  write_beside(path, bytes);
-  const fs::path part = beside(path);
-  const bool exchanged = renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0;
-  if ((exchanged ? std::remove(part.c_str()) : std::rename(part.c_str(), path.c_str())) != 0) fail(path);
+fs::path set_aside(const fs::path& path) {
+  fs::path aside = path.string() + std::string(damaged);
+  for (int k = 2; fs::exists(aside); ++k) aside = path.string() + std::string(damaged) + "." + std::to_string(k);
+  if (std::rename(path.c_str(), aside.c_str()) != 0) fail("rename", path);
+  return aside;
+}
+
+void check_vacant(const fs::path& directory) {
+  std::error_code absent;
+  if (!fs::is_directory(directory, absent)) return;
+  in_directory(directory, [&] {
+    if (!files_where(directory, is_result).empty())
+      throw UserError(directory.string() + " holds a run: --resume " + directory.string() +
+                      " goes on with it, --overwrite deletes it first, --output names another directory.");
+  });
 }
 
 void start_directory(const fs::path& directory) {
-  try {
+  in_directory(directory, [&] {
     fs::create_directories(directory);
-    remove_where(directory, [](const std::string& name) { return is_result(name) || is_unfinished(name); });
-  } catch (const fs::filesystem_error& error) {
-    throw UserError("the output directory " + directory.string() + " cannot be used: " + error.code().message());
-  }
+    for (const auto& old : files_where(directory, [](const std::string& name) { return is_result(name) || is_unfinished(name); })) fs::remove(old);
+  });
 }
 
 void tidy_directory(const fs::path& directory) {
-  try {
-    remove_where(directory, is_unfinished);
-  } catch (const fs::filesystem_error& error) {
-    throw UserError("the output directory " + directory.string() + " cannot be used: " + error.code().message());
-  }
+  in_directory(directory, [&] {
+    for (const auto& old : files_where(directory, is_unfinished)) fs::remove(old);
+  });
 }
 
 }  // namespace tanktread::output

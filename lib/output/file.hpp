@@ -1,43 +1,32 @@
 #pragma once
 // Files that are whole at every moment: written beside their place, then renamed into it.
 
-#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 
 namespace tanktread::output {
 
-/// A file while it is written, beside its place, by any number of processes, each other bytes of it; `finish` puts it there.
-/// All throw RunFailure (disk full, no permission).
-class Unfinished {
- public:
-  enum class Begin { anew, with_what_is_there };
-  Unfinished(const std::filesystem::path& path, Begin begin);
-  ~Unfinished();
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
-
-  void write(std::uint64_t at, std::string_view bytes);
-  void write(std::uint64_t at, std::span<const double> numbers);
-  void resize(std::uint64_t size);  ///< what nobody writes is zero
-  void close();                     ///< before finish
-
- private:
-  std::filesystem::path path_;
-  int file_;
-};
-void finish(const std::filesystem::path& path);
+/// Whether bytes are on the disk itself, which a failure of power leaves as it is, before anything says that they are.
+enum class Durable { no, yes };
 
 /// Puts `bytes` at `path` in one step: a reader, or a run that is killed here, finds the old file or the new one, never half of one.
 /// Throws RunFailure (disk full, no permission).
-void write_whole(const std::filesystem::path& path, std::string_view bytes);
+void write_whole(const std::filesystem::path& path, std::string_view bytes, Durable durable = Durable::no);
 
-/// The same for a file that is written many times a second. Old and new file change places, which no file system takes as a reason to go to the disk
-/// at once, as some do for a file renamed over (0.2 ms and more); so it is the system's own time of writing, not this one, that a power failure
-/// goes back to, maybe to no file.
-void rewrite_whole(const std::filesystem::path& path, std::string_view bytes);
+/// Returns once a file, or the names of a directory, are on the disk. Throws RunFailure.
+void sync(const std::filesystem::path& path);
+
+/// Throw RunFailure with the system's reason where a file does not open (absent, no permission, too many open files, a pipe), or cannot be read to its
+/// end. A file that passes and is not understood is damaged.
+void check_opens(const std::filesystem::path& path);
+void check_readable(const std::filesystem::path& path);
+
+/// Gives a file another name, on which no run goes on: `<name>.damaged`, or `<name>.damaged.2` and so on. Returns it. Throws RunFailure.
+std::filesystem::path set_aside(const std::filesystem::path& path);
+
+/// Throws UserError where a directory holds results of a run.
+void check_vacant(const std::filesystem::path& directory);
 
 /// Makes `directory` ready for a run: creates it, and removes the results of an earlier run and unfinished files (only names that
 /// a run writes). Throws UserError where it cannot.

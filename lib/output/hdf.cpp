@@ -1,10 +1,10 @@
 #include "output/hdf.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
+
+#include "output/file.hpp"
 
 namespace tanktread::output::hdf {
 namespace {
@@ -59,76 +59,22 @@ Id::Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.cl
 
 Id new_file() {
   silence();
-  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list"), layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "no creation list");
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
-  check(H5Pset_istore_k(layout, 1), "no short index");  // a column is one chunk
-  return {H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, layout, access), H5Fclose, "no file in memory"};
+  return {H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory"};
 }
 
-std::string_view image(const Id& file) {
+std::string image(const Id& file) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot flush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  void* handle = nullptr;  // of the driver: where its memory begins
-  if (size < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
-  return {*static_cast<const char**>(handle), static_cast<std::size_t>(size)};
-}
-
-/// HDF5 frees the memory of a file that it closes, unless it is somebody else's.
-struct Draft::Memory {
-  char* begin = nullptr;
-  std::size_t size = 0;
-  ~Memory() { std::free(begin); }
-
-  void* resize(std::size_t new_size) {
-    void* moved = std::realloc(begin, new_size);
-    if (!moved) return nullptr;
-    begin = static_cast<char*>(moved);
-    size = new_size;
-    return moved;
-  }
-
-  H5FD_file_image_callbacks_t callbacks() {
-    using Use = H5FD_file_image_op_t;
-    return {[](std::size_t n, Use, void* self) { return static_cast<Memory*>(self)->resize(n); },
-            [](void* to, const void* from, std::size_t n, Use, void*) { return std::memcpy(to, from, n); },
-            [](void*, std::size_t n, Use, void* self) { return static_cast<Memory*>(self)->resize(n); },
-            [](void*, Use, void*) -> herr_t { return 0; },
-            [](void* self) { return self; },
-            [](void*) -> herr_t { return 0; },
-            this};
-  }
-};
-
-Draft::Draft() : memory_(std::make_unique<Memory>()) {
-  silence();
-  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
-  H5FD_file_image_callbacks_t callbacks = memory_->callbacks();
-  check(H5Pset_fapl_core(access, 1 << 16, false), "no file in memory");
-  check(H5Pset_file_image_callbacks(access, &callbacks), "no file in memory");
-  check(H5Pset_meta_block_size(access, 1 << 15), "no place for names in front of the data");
-  file_.emplace(H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory");
-}
-Draft::~Draft() = default;
-
-std::int64_t Draft::room(hid_t parent, const std::string& name, const Shape& shape, hid_t type) {
-  const Id space = space_of(shape), how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "no creation list");
-  check(H5Pset_alloc_time(how, H5D_ALLOC_TIME_EARLY), "no early place");
-  check(H5Pset_fill_time(how, H5D_FILL_TIME_NEVER), "no place without values");
-  const Id set(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, "cannot create " + name);
-  const haddr_t place = H5Dget_offset(set);
-  if (place == HADDR_UNDEF && H5Sget_simple_extent_npoints(space) > 0) throw std::runtime_error("HDF5: no place for " + name);
-  return static_cast<std::int64_t>(place);
-}
-
-Draft::Bytes Draft::close() {
-  hsize_t size = 0;
-  check(H5Fget_filesize(*file_, &size), "no size of a file in memory");
-  file_.reset();
-  return {{memory_->begin, std::min<std::size_t>(memory_->size, size)}, size};
+  std::string bytes(static_cast<std::size_t>(std::max<ssize_t>(size, 0)), '\0');
+  if (size <= 0 || H5Fget_file_image(file, bytes.data(), bytes.size()) < 0) throw std::runtime_error("HDF5: no image");
+  return bytes;
 }
 
 Id open(const std::filesystem::path& path) {
   silence();
+  check_opens(path);
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot open " + path.string()};
 }
 
@@ -158,25 +104,6 @@ void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> 
   write_any(parent, name, H5T_NATIVE_UINT8, {values.size()}, values.data());
 }
 void write(hid_t parent, const std::string& name, const std::string& text) { write_any(parent, name, text_type(text), {}, text.c_str()); }
-
-Id new_column(hid_t parent, const std::string& name, std::span<const double> values, std::size_t capacity) {
-  const hsize_t rows = values.size(), most = capacity;
-  const Id space(H5Screate_simple(1, &rows, &most), H5Sclose, "no data space"), how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "no creation list");
-  check(H5Pset_chunk(how, 1, &most), "no chunk");
-  Id set(H5Dcreate2(parent, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, "cannot create " + name);
-  check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "cannot write " + name);
-  return set;
-}
-
-void append(std::span<const Id> columns, std::size_t rows, std::span<const double> values) {
-  const hsize_t last = rows, size = rows + 1, one = 1;
-  const Id from(H5Screate(H5S_SCALAR), H5Sclose, "no data space"), to(H5Screate_simple(1, &size, nullptr), H5Sclose, "no data space");
-  check(H5Sselect_hyperslab(to, H5S_SELECT_SET, &last, nullptr, &one, nullptr), "no last place");
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    check(H5Dset_extent(columns[i], &size), "cannot extend a column");
-    check(H5Dwrite(columns[i], H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, &values[i]), "cannot write to a column");
-  }
-}
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape) {
   const Id set = dataset(parent, name);

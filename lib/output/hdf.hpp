@@ -3,11 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <hdf5.h>
@@ -29,11 +26,12 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// A new file that lives in memory only, and its bytes as they would stand on disk: valid until the file changes or is closed.
+/// A new file in memory, and its bytes as they would stand on disk: what is written to the disk goes there in one piece (write_whole), and a disk
+/// that refuses is met with the system's reason and outside of HDF5, which does not recover from it.
 Id new_file();
-std::string_view image(const Id& file);
+std::string image(const Id& file);
 
-/// An existing file, for reading. Throws std::runtime_error when it is missing, damaged or no HDF5 file.
+/// An existing file, for reading. Throws RunFailure when the system does not open it as a file, std::runtime_error when it is no HDF5 file.
 Id open(const std::filesystem::path& path);
 
 Id new_group(hid_t parent, const std::string& name);
@@ -42,40 +40,11 @@ std::vector<std::string> names(hid_t group);  ///< of the members, in alphabetic
 
 using Shape = std::vector<hsize_t>;  ///< empty: a scalar
 
-/// A new file some of whose datasets others fill on disk. It lives in memory, where those take no room when they are made last.
-class Draft {
- public:
-  Draft();
-  ~Draft();
-  operator hid_t() const { return *file_; }
-
-  /// A dataset that has no values yet. Returns where in the file its first one belongs.
-  std::int64_t room(hid_t parent, const std::string& name, const Shape& shape, hid_t type = H5T_NATIVE_DOUBLE);
-
-  /// Closes the file: its size, and bytes that it begins with. Behind them stands nothing but what is to be filled.
-  struct Bytes {
-    std::string_view first;
-    std::uint64_t size;
-  };
-  Bytes close();
-
- private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
-  std::optional<Id> file_;
-};
-
 /// Datasets, row-major. `read_*` fill `shape` with what was found.
 void write(hid_t parent, const std::string& name, std::span<const double> values, const Shape& shape);
 void write(hid_t parent, const std::string& name, std::span<const std::int64_t> values);
 void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values);
 void write(hid_t parent, const std::string& name, const std::string& text);
-
-/// A one-dimensional dataset of doubles that holds `values` and can grow to `capacity` of them.
-Id new_column(hid_t parent, const std::string& name, std::span<const double> values, std::size_t capacity);
-
-/// Makes columns of `rows` values longer by one value each.
-void append(std::span<const Id> columns, std::size_t rows, std::span<const double> values);
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape);
 std::string read_text(hid_t parent, const std::string& name);

@@ -1,30 +1,17 @@
 #include "output/run_record.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <stdexcept>
 
 #include "base/errors.hpp"
-#include "output/file.hpp"
+#include "output/checksum.hpp"
 #include "output/hdf.hpp"
 
 namespace tanktread::output {
 
-namespace {
-constexpr std::chrono::milliseconds often(50);  // between rows: then a way to the disk with each is more than a hundredth of the run's time
-}
-
-struct RunRecord::Image {
-  hdf::Id file;
-  std::vector<hdf::Id> columns;
-  std::size_t capacity;
-};
-
 RunRecord::RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance)
     : path_(std::move(path)), deck_(std::move(deck)), provenance_(std::move(provenance)) {}
-RunRecord::~RunRecord() = default;
-RunRecord::RunRecord(RunRecord&&) noexcept = default;
 
 RunRecord RunRecord::load(const std::filesystem::path& path) try {
   const hdf::Id file = hdf::open(path);
@@ -43,7 +30,6 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
 }
 
 void RunRecord::declare(std::string name, std::string unit, std::string description) {
-  image_.reset();
   const auto old = std::ranges::find(series_, name, &Series::name);
   if (old == series_.end()) {
     const std::vector<double> unknown(rows(), std::numeric_limits<double>::quiet_NaN());
@@ -60,24 +46,14 @@ void RunRecord::declare(std::string name, std::string unit, std::string descript
 
 void RunRecord::append(std::span<const double> row) {
   if (row.size() != series_.size()) throw std::logic_error("a row needs one value for every series");
-  const std::size_t before = rows();
   for (std::size_t i = 0; i < row.size(); ++i) series_[i].values.push_back(row[i]);
-  if (!image_ || rows() > image_->capacity)
-    lay_out();
-  else
-    hdf::append(image_->columns, before, row);
-  const auto now = std::chrono::steady_clock::now();
-  (now - written_ < often ? rewrite_whole : write_whole)(path_, hdf::image(image_->file));
-  written_ = now;
 }
 
 void RunRecord::truncate(std::size_t rows) {
-  image_.reset();
   for (Series& one : series_) one.values.resize(std::min(rows, one.values.size()));
 }
 
 void RunRecord::describe(std::string deck, std::map<std::string, std::string> provenance) {
-  image_.reset();
   deck_ = std::move(deck);
   provenance_ = std::move(provenance);
 }
@@ -88,18 +64,30 @@ const std::vector<double>& RunRecord::values(std::string_view name) const {
   return it->values;
 }
 
-void RunRecord::lay_out() {
-  image_.reset();
-  Image image{hdf::new_file(), {}, rows() + std::max<std::size_t>(63, rows() / 8)};
-  hdf::write(image.file, "deck", deck_);
-  const hdf::Id provenance = hdf::new_group(image.file, "provenance"), series = hdf::new_group(image.file, "series");
-  for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
-  for (const Series& one : series_) {
-    image.columns.push_back(hdf::new_column(series, one.name, one.values, image.capacity));
-    hdf::attribute(series, one.name, "unit", one.unit);
-    hdf::attribute(series, one.name, "description", one.description);
+void RunRecord::write(Durable durable) const {
+  const hdf::Id file = hdf::new_file();
+  {
+    hdf::write(file, "deck", deck_);
+    const hdf::Id provenance = hdf::new_group(file, "provenance"), series = hdf::new_group(file, "series");
+    for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
+    for (const Series& one : series_) {
+      hdf::write(series, one.name, one.values, {one.values.size()});
+      hdf::attribute(series, one.name, "unit", one.unit);
+      hdf::attribute(series, one.name, "description", one.description);
+    }
   }
-  image_ = std::make_unique<Image>(std::move(image));
+  write_whole(path_, hdf::image(file), durable);
+}
+
+std::string RunRecord::checksum(std::size_t rows) const {
+  std::map<std::string_view, const Series*> by_name;
+  for (const Series& one : series_) by_name[one.name] = &one;
+  Checksum sum;
+  for (const auto& [name, one] : by_name) {
+    sum.add(one->name);
+    for (const double value : std::span(one->values).first(std::min(rows, one->values.size()))) sum.add(value);
+  }
+  return sum.digits();
 }
 
 }  // namespace tanktread::output

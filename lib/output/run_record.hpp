@@ -1,14 +1,14 @@
 #pragma once
 // The record of a run, `run.h5`: one row a finished step, whole at every moment.
 
-#include <chrono>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "output/file.hpp"
 
 namespace tanktread::output {
 
@@ -19,18 +19,14 @@ struct Series {
 };
 
 /// `/series/<name>`, 1-D doubles of equal length with attributes `unit` and `description`; `/deck`, the effective deck as text;
-/// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks).
+/// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks) and which `run` it is of.
 ///
-/// The columns live here, and so does an image of the file, which every `append` extends and writes beside the file on disk, to be renamed
-/// to it or, where rows come quickly, to change places with it: some tenth of a millisecond. A process killed at any moment leaves a file with every
-/// row whose `append` returned. Columns are one chunk each, with room for an eighth more rows, or for some dozens, than when they were made; then the
-/// file is laid out anew. Serial: on several ranks only the first holds one.
+/// The rows live here, and `write` puts all of them on disk in one step (write_whole): HDF5 1.10 cannot append to a file so that a process killed
+/// within leaves one that every reader opens (its single-writer mode leaves a mark that refuses them). Serial: on several ranks only the first holds one.
 class RunRecord {
  public:
-  /// A record without rows. Nothing is written before the first `append`.
+  /// A record without rows.
   RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance);
-  ~RunRecord();
-  RunRecord(RunRecord&&) noexcept;
 
   /// The record that stands at `path`. Throws UserError when it is missing or damaged.
   static RunRecord load(const std::filesystem::path& path);
@@ -39,7 +35,7 @@ class RunRecord {
   /// one has none (not a number) in the rows that exist.
   void declare(std::string name, std::string unit, std::string description);
 
-  /// One row, a value for every series in the order of declaration, and writes the file.
+  /// One row, a value for every series in the order of declaration. Writes nothing.
   void append(std::span<const double> row);
 
   /// Keeps the first `rows` rows, as a run that goes on from an earlier checkpoint does. Writes nothing.
@@ -48,6 +44,11 @@ class RunRecord {
   /// Replaces deck and provenance (the resumed run may have other ranks and another final time). Writes nothing.
   void describe(std::string deck, std::map<std::string, std::string> provenance);
 
+  void write(Durable durable = Durable::no) const;
+
+  /// Of the first `rows` rows of every series, in whatever order the series were declared (Checksum).
+  std::string checksum(std::size_t rows) const;
+
   std::size_t rows() const { return series_.empty() ? 0 : series_.front().values.size(); }
   const std::vector<Series>& series() const { return series_; }
   const std::vector<double>& values(std::string_view name) const;  ///< throws std::out_of_range
@@ -55,15 +56,10 @@ class RunRecord {
   const std::map<std::string, std::string>& provenance() const { return provenance_; }
 
  private:
-  struct Image;
-  void lay_out();
-
   std::filesystem::path path_;
   std::string deck_;
   std::map<std::string, std::string> provenance_;
   std::vector<Series> series_;
-  std::unique_ptr<Image> image_;  // of the file; none when it must be laid out anew
-  std::chrono::steady_clock::time_point written_;
 };
 
 }  // namespace tanktread::output

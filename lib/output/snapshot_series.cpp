@@ -13,14 +13,11 @@ namespace fs = std::filesystem;
 
 SnapshotSeries::SnapshotSeries(fs::path directory) : directory_(std::move(directory)) {}
 
-SnapshotSeries SnapshotSeries::resumed(fs::path directory, int step) {
+SnapshotSeries SnapshotSeries::resumed(fs::path directory, int step, const std::string& run) {
   SnapshotSeries series(std::move(directory));
-  for (const Snapshot& snapshot : snapshots(series.directory_)) {
-    if (snapshot.step > step)
-      fs::remove(snapshot.path);
-    else if (const auto time = snapshot_time(snapshot.path))
-      series.entries_.push_back({snapshot.step, *time});
-  }
+  for (const Snapshot& snapshot : snapshots(series.directory_))
+    if (const auto picture = snapshot.step <= step ? pictured(snapshot.path) : std::nullopt; picture && picture->run == run)
+      series.entries_.push_back({snapshot.step, picture->time});
   return series;
 }
 

@@ -2,6 +2,7 @@
 // `run.hdf.series`: the list with which ParaView opens all snapshots of a run behind one time slider.
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace tanktread::output {
@@ -11,9 +12,8 @@ class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
 
-  /// The list that a resumed run goes on with: snapshots up to `step` that can be read, each with its snapshot_time().
-  /// Files of later steps are removed: the run writes them again.
-  static SnapshotSeries resumed(std::filesystem::path directory, int step);
+  /// The list that a resumed run goes on with: snapshots up to `step` that can be read and are of `run` (Picture).
+  static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
   /// Adds the snapshot of a step, which stands in the directory already, and rewrites the list.
   void add(int step, double time);

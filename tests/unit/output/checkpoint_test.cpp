@@ -7,9 +7,11 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/errors.hpp"
 #include "output/file.hpp"
 #include "output/snapshot.hpp"
 #include "output/snapshot_series.hpp"
@@ -112,8 +114,33 @@ TEST(NewestCheckpoint, PassesOverDamagedFiles) {
   EXPECT_EQ(newest->file.step, 7);
   EXPECT_EQ(newest->checkpoint.numbers.at("time"), 3.5);
   ASSERT_EQ(newest->damaged.size(), 2u);
-  EXPECT_EQ(newest->damaged[0].step, 1000000);
-  EXPECT_EQ(newest->damaged[1].step, 12);
+  EXPECT_EQ(newest->damaged[0].path.filename(), snapshot_name(1000000));
+  EXPECT_EQ(newest->damaged[1].path.filename(), snapshot_name(12));
+  EXPECT_FALSE(newest->damaged[1].reason.empty());
+}
+
+/// /proc/self/mem is a file that opens and whose first byte cannot be read (EIO).
+TEST(NewestCheckpoint, IsNotLookedForBehindAFileThatTheSystemDoesNotRead) {
+  const Scratch scratch;
+  const Scene scene;
+  scene.write(scratch / snapshot_name(1), {{}, {{"time", 0.5}}, {}});
+  const auto newer = scratch / snapshot_name(2);
+  for (const char* target : {"/proc/self/mem", "/absent/file"}) {
+    std::filesystem::create_symlink(target, newer);
+    EXPECT_THROW(newest_checkpoint(scratch.path()), RunFailure) << target;
+    std::filesystem::remove(newer);
+  }
+  ASSERT_EQ(mkfifo(newer.c_str(), 0600), 0);
+  EXPECT_THROW(newest_checkpoint(scratch.path()), RunFailure);
+}
+
+TEST(SetAside, NeverTakesTheNameOfAnotherFile) {
+  const Scratch scratch;
+  for (const char* name : {"a.damaged", "a.damaged.2"}) {
+    write_whole(scratch / "a", name);
+    EXPECT_EQ(set_aside(scratch / "a").filename(), name);
+  }
+  EXPECT_EQ(contents(scratch / "a.damaged"), "a.damaged");
 }
 
 /// Not where HDF5 leaves room, nor in the picture.
@@ -143,12 +170,12 @@ TEST(Checkpoint, IsRefusedOrTheSameWhateverByteOfTheFileChanged) {
   EXPECT_GT(refused, 1440 / 127) << "the array alone has 1440 bytes";
 }
 
-TEST(SnapshotSeries, OfAResumedRunHoldsWhatCanBeReadAndForgetsTheRest) {
+TEST(SnapshotSeries, OfAResumedRunHoldsWhatCanBeReadAndIsOfTheRun) {
   const Scratch scratch;
   const Scene scene;
   SnapshotSeries series(scratch.path());
   for (const int step : {0, 4, 9}) {
-    scene.write(scratch / snapshot_name(step), {{}, {{"time", 0.25 * step}}, {}});
+    scene.write(scratch / snapshot_name(step), {{}, {{"time", 0.25 * step}}, {{"run", "this"}}});
     series.add(step, 0.25 * step);
   }
   const std::string whole = contents(scratch / "run.hdf.series");
@@ -158,9 +185,9 @@ TEST(SnapshotSeries, OfAResumedRunHoldsWhatCanBeReadAndForgetsTheRest) {
             "{\"name\":\"snapshot_000004.hdf\",\"time\":1.0},\n"
             "{\"name\":\"snapshot_000009.hdf\",\"time\":2.25}\n]}\n");
 
-  SnapshotSeries resumed = SnapshotSeries::resumed(scratch.path(), 4);
-  EXPECT_FALSE(exists(scratch / snapshot_name(9)));
-  scene.write(scratch / snapshot_name(9), {{}, {{"time", 2.25}}, {}});
+  scene.write(scratch / snapshot_name(3), {{}, {{"time", 0.75}}, {{"run", "another"}}});
+  SnapshotSeries resumed = SnapshotSeries::resumed(scratch.path(), 4, "this");
+  EXPECT_TRUE(exists(scratch / snapshot_name(9)));
   resumed.add(9, 2.25);
   EXPECT_EQ(contents(scratch / "run.hdf.series"), whole);
 }
@@ -191,28 +218,9 @@ TEST(Snapshot, KilledWhileWritingLeavesOnlyWholeFiles) {
     close(ends[0]);
     waitpid(child, nullptr, 0);
 
-    for (const Snapshot& snapshot : snapshots(scratch.path())) EXPECT_EQ(snapshot_time(snapshot.path), snapshot.step);
+    for (const Snapshot& snapshot : snapshots(scratch.path())) EXPECT_EQ(pictured(snapshot.path)->time, snapshot.step);
     EXPECT_GE(newest_checkpoint(scratch.path())->file.step, announced);
   }
-}
-
-TEST(Snapshot, IsTheSameFileWhetherOneProcessFillsItOrEachItsNodes) {
-  const Scratch scratch;
-  const Scene scene;
-  Checkpoint checkpoint;
-  checkpoint.arrays["x"] = scene.net;
-  scene.write(scratch / "one", checkpoint);
-  const std::vector<std::int64_t> places = lay_out_snapshot(scratch / "many", checkpoint, scene.nodes->mesh(), scene.fields({0, 0}));
-  for (const NodeRange range : {NodeRange{20, scene.nodes->all().end}, NodeRange{0, 7}, NodeRange{7, 20}}) {
-    SnapshotParts part(scratch / "many", places);
-    if (range.begin == 0) part.write(checkpoint);
-    if (range.begin == 7) part.write(scene.nodes->mesh());
-    part.write(scene.fields(range), range);
-    part.close();
-    EXPECT_FALSE(exists(scratch / "many"));
-  }
-  finish(scratch / "many");
-  EXPECT_EQ(contents(scratch / "many"), contents(scratch / "one"));
 }
 
 /// The layout as another reader of HDF5 sees it.

@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+# ranks: 1
+# Results are not lost: not to another run in their directory, not to a read error, not to files of other runs; and what is not written is said.
+import pathlib
+import shutil
+
+import h5py
+
+from harness import check, deck, main, run, series
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.1}
+  Output: {interval: 0.05}
+"""
+
+
+def _refused(directory, *words):
+    said = run("--resume", directory, "--quiet", code=2).stderr
+    check(all(word in said for word in words) and said.count("\n") == 1, said)
+
+
+def a_finished_run_is_deleted_only_when_asked():
+    run(deck(DECK), "--output", "out", "--quiet")
+    whole = pathlib.Path("out/run.h5").read_bytes()
+    said = run("deck.yaml", "--output", "out", "--quiet", code=2).stderr
+    check("--resume" in said and "--overwrite" in said and said.count("\n") == 1, said)
+    check(pathlib.Path("out/run.h5").read_bytes() == whole, "the record is another")
+    run("deck.yaml", "--output", "out", "--overwrite", "--set", "Time/final time=0.05", "--quiet")
+    check(series("out", "time")[-1] == 0.05, "the old run is still there")
+    run("deck.yaml", "--output", "out", "--check")
+    check("contradict" in run("--resume", "out", "--overwrite", code=2).stderr, "--overwrite and --resume")
+    pathlib.Path("notes").mkdir()
+    pathlib.Path("notes/notes.txt").write_text("mine")
+    run("deck.yaml", "--output", "notes", "--quiet")
+    check(pathlib.Path("notes/notes.txt").read_text() == "mine", "a file that is no result is gone")
+
+
+def a_sweep_names_its_own_directories():
+    deck(DECK)
+    deck("Tanktread: {Time: {final time: 0.05}}", "over lay.yaml")
+    for ca in "0.2", "0.3":
+        run("deck.yaml", "over lay.yaml", "--set", f"Membrane/capillary number={ca}", "--quiet")
+    run("deck.yaml", "--set", "Time/final time=0.05", "--quiet")
+    run("deck.yaml", "--set", "Time/final time=0.05", *["--set", "Time/tolerance=1e-3"] * 20, "--quiet")
+    found = {path.name for path in pathlib.Path("results").iterdir()}
+    check({"deck_over_lay_capillary_number=0.2", "deck_over_lay_capillary_number=0.3", "deck_final_time=0.05"} < found and len(found) == 4, found)
+    check(max(map(len, found)) == 100, found)
+
+
+def a_file_that_cannot_be_read_stops_and_nothing_is_removed():
+    run(deck(DECK), "--output", "out", "--quiet")
+    before = sorted(path.name for path in pathlib.Path("out").iterdir())
+    newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1]
+    newest.rename("kept")
+    newest.symlink_to("/proc/self/mem")  # opens, and reading it is an error of input
+    said = run("--resume", "out", "--quiet", code=3).stderr
+    check(f"cannot read out/{newest.name}: Input/output error" in said, said)
+    check(newest.is_symlink() and before == sorted(path.name for path in pathlib.Path("out").iterdir()), "a file is gone")
+
+
+def files_of_another_run_or_changed_ones_are_refused():
+    deck(DECK)
+    for name in "out", "other":
+        run("deck.yaml", "--output", name, "--quiet")
+    shutil.copytree("out", "flipped")
+    shutil.copy("other/run.h5", "out/run.h5")
+    _refused("out", "run.h5", "different runs")
+    newest = sorted(pathlib.Path("flipped").glob("snapshot_*.hdf"))[-1]
+    shutil.copy(newest, newest.with_name("snapshot_000099.hdf"))
+    _refused("flipped", "snapshot_000099.hdf", "different step")
+    newest.with_name("snapshot_000099.hdf").unlink()
+    with h5py.File("flipped/run.h5", "r+") as file:
+        file["series/energy"][1] *= 1 + 1e-15
+    _refused("flipped", "run.h5", "not as they were written")
+
+
+def what_standard_output_does_not_take_is_an_error():
+    import subprocess
+
+    from harness import command
+
+    for words in ([deck(DECK), "--check"], ["--help"], ["--reference"]):
+        with open("/dev/full", "w") as full:
+            result = subprocess.run(command(*words), stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        check(result.returncode == 3 and "cannot write to standard output" in result.stderr, words, result)
+
+
+main()
