@@ -170,7 +170,7 @@ std::optional<Resumed> Results::resumed() {
   Resumed resumed = stored_run(scene_, *body_, saved.checkpoint, directory_);
   last_saved_ = resumed.standing.step;
   if (saved.file.step != last_saved_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name says.", last_saved_));
+    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name has.", last_saved_));
   for (const Warning& warning : resumed.standing.warnings.said) warnings_.push_back(warning.sentence);
   write([&] {
     load_record(saved.checkpoint, chosen);
@@ -189,9 +189,9 @@ void Results::load_record(const output::Checkpoint& checkpoint, const std::strin
   const auto rows = static_cast<std::size_t>(last_saved_) + 1;
   const auto& origin_of_record = record_->provenance();
   if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen + " and run.h5 are of different runs; remove the one that does not belong here.");
+    throw UserError("--resume " + directory_.string() + ": " + chosen + " and run.h5 are of different runs: remove the foreign one.");
   if (record_->rows() < rows || record_->checksum(rows) != checkpoint.texts.at("record"))
-    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen + " are not as they were written; bring the file back.");
+    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen + " are not as they were written.");
   record_->truncate(rows);
   record_->describe(request_.deck_text, origin());
   declare_columns();

@@ -39,15 +39,15 @@ struct Account {
 /// Seconds by phase, those of earlier parts of the run included.
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
 
-/// The newest sound checkpoint of a directory: the first rank finds it, and every rank reads the one that it names. Throws UserError when there is none,
-/// RunFailure when one cannot be read. Collective.
+/// The newest sound checkpoint of a directory: the first rank finds it, and every rank reads the one that it names. Throws UserError when there is
+/// none, RunFailure when one cannot be read. Collective.
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks);
 
 /// Throws UserError where the directory holds results that the request does not allow to delete, or another run writes to it. Collective.
 void check_vacant(const RunRequest& request);
 
-/// The files of a run (README.md, Results). Every rank evaluates its own nodes of a picture, and the first one writes all files; every call is made by
-/// all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
+/// The files of a run (README.md, Results). Every rank evaluates its own nodes of a picture, and the first one writes all files; every call is made
+/// by all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
 ///
 /// From the first second of a run on, a snapshot and the record up to it are on the disk itself before `run.hdf.series` names the snapshot, and all
 /// that a run has written is when it ends.

@@ -62,7 +62,7 @@ class Study:
         if not (where / "summary.yaml").exists():
             if not self.makes:
                 return None
-            command = [str(self.program), str(SOURCE / "inputs" / f"spheroid_{mesh}.yaml"), "--quiet", "--output", str(where)]
+            command = [str(self.program), str(SOURCE / "inputs" / f"spheroid_{mesh}.yaml"), "--quiet", "--overwrite", "--output", str(where)]
             for key, value in settings.items():
                 command += ["--set", f"{key}={value}"]
             print("running", name, flush=True)

@@ -75,7 +75,7 @@ def run(program, directory, settings):
         deck.parent.mkdir(parents=True, exist_ok=True)
         deck.write_text(yaml.safe_dump({"Tanktread": nested(settings)}), encoding="utf-8")
         try:
-            done = subprocess.run([program, str(deck), "--quiet", "--output", str(directory)], capture_output=True, text=True, timeout=900, check=False)
+            done = subprocess.run([program, str(deck), "--quiet", "--overwrite", "--output", str(directory)], capture_output=True, text=True, timeout=900, check=False)
             if done.returncode != 0:
                 directory.mkdir(exist_ok=True)
                 failed.write_text(done.stderr, encoding="utf-8")

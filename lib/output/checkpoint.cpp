@@ -80,11 +80,13 @@ std::vector<Snapshot> snapshots(const fs::path& directory) {
 std::optional<Picture> pictured(const fs::path& path) {
   try {
     const hdf::Id file = hdf::open(path);
-    const hdf::Id numbers = hdf::group(hdf::group(file, "checkpoint"), "numbers"), texts = hdf::group(hdf::group(file, "checkpoint"), "texts");
+    const hdf::Id numbers = hdf::group(hdf::group(file, "checkpoint"), "numbers"),
+                  texts = hdf::group(hdf::group(file, "checkpoint"), "texts");
     const auto held = hdf::names(numbers);
     hdf::Shape shape;
     const char* time = std::ranges::count(held, "picture time") > 0 ? "picture time" : "time";
-    return Picture{hdf::read_doubles(numbers, time, shape).at(0), std::ranges::count(hdf::names(texts), "run") > 0 ? hdf::read_text(texts, "run") : ""};
+    return Picture{hdf::read_doubles(numbers, time, shape).at(0),
+                   std::ranges::count(hdf::names(texts), "run") > 0 ? hdf::read_text(texts, "run") : ""};
   } catch (const std::exception&) {
     return std::nullopt;
   }

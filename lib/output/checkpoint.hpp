@@ -57,8 +57,8 @@ struct Saved {
   std::vector<Damaged> damaged;  ///< newer ones, the newest first
 };
 
-/// The newest snapshot of a directory that is sound. None: empty. Throws RunFailure when one that is newer cannot be read for a reason of the system's
-/// (permission, a failing disk), since it may be sound.
+/// The newest snapshot of a directory that is sound. None: empty. Throws RunFailure when the system does not read one that is newer (permission, a
+/// failing disk), since it may be sound.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
 }  // namespace tanktread::output

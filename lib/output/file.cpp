@@ -25,7 +25,9 @@ bool is_result(const std::string& name) {
          (name.starts_with("snapshot_") && (name.ends_with(".hdf") || name.find(std::string(".hdf").append(damaged)) != name.npos));
 }
 
-bool is_unfinished(const std::string& name) { return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size())); }
+bool is_unfinished(const std::string& name) {
+  return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
+}
 
 template <class Test>
 std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
@@ -133,7 +135,8 @@ void check_vacant(const fs::path& directory) {
 void start_directory(const fs::path& directory) {
   in_directory(directory, [&] {
     fs::create_directories(directory);
-    for (const auto& old : files_where(directory, [](const std::string& name) { return is_result(name) || is_unfinished(name); })) fs::remove(old);
+    for (const auto& old : files_where(directory, [](const std::string& name) { return is_result(name) || is_unfinished(name); }))
+      fs::remove(old);
   });
 }
 

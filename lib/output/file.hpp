@@ -17,8 +17,8 @@ void write_whole(const std::filesystem::path& path, std::string_view bytes, Dura
 /// Returns once a file, or the names of a directory, are on the disk. Throws RunFailure.
 void sync(const std::filesystem::path& path);
 
-/// Throw RunFailure with the system's reason where a file does not open (absent, no permission, too many open files, a pipe), or cannot be read to its
-/// end. A file that passes and is not understood is damaged.
+/// Throw RunFailure with the system's reason where a file does not open (absent, no permission, too many open files, a pipe), or cannot be read to
+/// its end. A file that passes and is not understood is damaged.
 void check_opens(const std::filesystem::path& path);
 void check_readable(const std::filesystem::path& path);
 

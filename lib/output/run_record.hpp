@@ -22,7 +22,8 @@ struct Series {
 /// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks) and which `run` it is of.
 ///
 /// The rows live here, and `write` puts all of them on disk in one step (write_whole): HDF5 1.10 cannot append to a file so that a process killed
-/// within leaves one that every reader opens (its single-writer mode leaves a mark that refuses them). Serial: on several ranks only the first holds one.
+/// within leaves one that every reader opens (its single-writer mode leaves a mark that refuses them). Serial: on several ranks only the first has
+/// a record.
 class RunRecord {
  public:
   /// A record without rows.

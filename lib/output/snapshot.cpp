@@ -46,10 +46,12 @@ std::vector<Field> picture(const Nodes& nodes, const Net& net, NodeRange range) 
   return {{points, nodes.values(net, range)}, {"Normals", nodes.normals(net, range)}};
 }
 
-void write_snapshot(const fs::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields, Durable durable) {
+void write_snapshot(const fs::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields,
+                    Durable durable) {
   const hdf::Id file = hdf::new_file();
   {
-    const hdf::Id saved = hdf::new_group(file, "checkpoint"), drawn = hdf::new_group(file, "VTKHDF"), at_points = hdf::new_group(drawn, "PointData");
+    const hdf::Id saved = hdf::new_group(file, "checkpoint"), drawn = hdf::new_group(file, "VTKHDF"),
+                  at_points = hdf::new_group(drawn, "PointData");
     write(saved, checkpoint);
     write(drawn, mesh);
     for (const Field& field : fields)  // ParaView shows those of one dimension as scalars

@@ -26,7 +26,7 @@ CHOICES = [
 
 def counts(program, deck, settings, results):
     words = [word for setting in settings for word in ("--set", setting)]
-    said = subprocess.run([program, deck, *words, "--output", results, "--quiet"], capture_output=True, text=True)
+    said = subprocess.run([program, deck, *words, "--output", results, "--overwrite", "--quiet"], capture_output=True, text=True)
     if said.returncode not in (0, 1):
         return None, said.stderr.strip()
     summary = yaml.safe_load((pathlib.Path(results) / "summary.yaml").read_text())

@@ -23,7 +23,7 @@ def version_and_help_are_printed():
     text = run("--help").stdout
     check(text.startswith("Deformable capsules") and "Kokkos" not in text, f"not our help first:\n{text}")
     run("--kokkos-num-devices=1", "--version")
-    for option in ("--set", "--output", "--check", "--resume", "--reference", "--quiet", "deck"):
+    for option in ("--set", "--output", "--overwrite", "--check", "--resume", "--reference", "--quiet", "deck"):
         check(option in text, f"{option} is not in the help")
 
 

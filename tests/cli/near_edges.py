@@ -16,7 +16,7 @@ LOW = ["Membrane/capillary number=0.02", "Surface/elements per side=6", "Time/fi
 def _said(*settings, code=0):
     """The sentences of a run, and those of its summary."""
     words = [word for setting in settings for word in ("--set", setting)]
-    told = [line for line in run(deck(DECK), *words, "--output", "out", "--quiet", code=code).stderr.splitlines() if "warning:" in line]
+    told = [line for line in run(deck(DECK), *words, "--output", "out", "--overwrite", "--quiet", code=code).stderr.splitlines() if "warning:" in line]
     return told, summary("out")["warnings"] if code == 0 else None
 
 

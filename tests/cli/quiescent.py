@@ -17,7 +17,7 @@ Tanktread:
 def _relax(*settings):
     """The energy falls in every step, by more than a hundredth in all, and in the end nothing moves."""
     words = [word for setting in settings for word in ("--set", setting)]
-    run(deck(DECK), *words, "--output", "out", "--quiet")
+    run(deck(DECK), *words, "--output", "out", "--overwrite", "--quiet")
     energy = series("out", "energy")
     rise = numpy.max(numpy.diff(energy))
     check(rise <= 1e-10 * energy[0], f"the energy rises by {rise:.2e} of {energy[0]:.4f}")

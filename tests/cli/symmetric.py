@@ -15,7 +15,7 @@ def _compare(*settings):
     """Deformation to 1e-10 at the common end, after implicit steps by the default; kernel evaluations of the whole over those of the part."""
     words = [word for setting in settings for word in ("--set", setting)]
     for use in "auto", "none":
-        run(deck(DECK), *words, "--set", f"Symmetry/use={use}", "--output", use, "--quiet")
+        run(deck(DECK), *words, "--set", f"Symmetry/use={use}", "--output", use, "--overwrite", "--quiet")
     part, whole = (series(use, "taylor_inertia") for use in ("auto", "none"))
     check(len(part) == len(whole), f"{len(part) - 1} steps of the part, {len(whole) - 1} of the whole")
     off = abs(part[-1] - whole[-1])

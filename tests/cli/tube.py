@@ -93,17 +93,17 @@ def _compare(one, other, tolerance):
 def two_ranks_give_the_answer_of_one():
     for settings in ["Particle/viscosity ratio=1"], ["Particle/viscosity ratio=5", "Time/final time=0.1"]:
         for ranks in 1, 2:
-            run(deck(DECK), *_words(settings), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
+            run(deck(DECK), *_words(settings), "--output", f"on_{ranks}", "--overwrite", "--quiet", ranks=ranks)
         _compare("on_1", "on_2", 1e-10)
 
 
 def every_form_of_the_block_system_gives_the_same_run():
     for ratio in 1, 5:
         fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10"]
-        run(deck(DECK), *_words(fixed), "--output", "schur", "--quiet")
+        run(deck(DECK), *_words(fixed), "--output", "schur", "--overwrite", "--quiet")
         for form in "block triangular", "block diagonal", "block":
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
-            run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--quiet")
+            run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
             _compare("schur", "blocks", 1e-6)  # the tolerance of the iteration of the implicit step
 

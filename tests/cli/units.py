@@ -37,7 +37,7 @@ def _series(scene, name, length, time, viscosity, **words):
     text = scene.format(length=length, longer=2 * length, rate=1 / time, viscosity=viscosity, bending=0.05 * stress * length**3,
                         tension=2 * stress * length, speed=length / time, **words)
     common = f"  Surface: {{elements per side: 3}}\n  Time: {{final time: {0.4 * time!r}}}\n  Output: {{interval: {0.4 * time!r}}}\n"
-    said = run(deck("Tanktread:" + text + common), "--output", name, "--quiet").stderr
+    said = run(deck("Tanktread:" + text + common), "--output", name, "--overwrite", "--quiet").stderr
     return {key: series(name, key) for key in ("taylor_inertia", "volume_error", "smallest_tension", "n_control_points")}, re.findall(r"by (\S+) R_C", said)
 
 

@@ -110,9 +110,7 @@ TEST(RunRecord, SaysThatADamagedFileIsOne) {
   EXPECT_THROW(RunRecord::load(scratch / "absent.h5"), UserError);
 }
 
-TEST(RunRecord, ADiskThatRefusesIsARunFailure) {
-  EXPECT_THROW(three_series("/proc/none/run.h5").write(), RunFailure);
-}
+TEST(RunRecord, ADiskThatRefusesIsARunFailure) { EXPECT_THROW(three_series("/proc/none/run.h5").write(), RunFailure); }
 
 /// Writes rows (k, k^2, 1/k) for ever, and says through the pipe how many are done.
 [[noreturn]] void append_until_killed(const std::filesystem::path& path, int pipe) {
@@ -150,7 +148,8 @@ TEST(RunRecord, KilledAtAnyMomentHoldsEveryRowThatWasAnnounced) {
 
 TEST(OutputDirectory, StartsEmptyOfOldResultsAndLeavesOtherFilesAlone) {
   const Scratch scratch;
-  for (const char* name : {"run.h5", "snapshot_000003.hdf", "snapshot_000004.hdf.part", "snapshot_000005.hdf.damaged.2", "summary.yaml", "notes.txt", "picture.png.part"})
+  for (const char* name : {"run.h5", "snapshot_000003.hdf", "snapshot_000004.hdf.part", "snapshot_000005.hdf.damaged.2", "summary.yaml",
+                           "notes.txt", "picture.png.part"})
     write_whole(scratch / name, "old");
   tidy_directory(scratch.path());
   EXPECT_FALSE(exists(scratch / "snapshot_000004.hdf.part"));
