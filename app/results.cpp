@@ -170,7 +170,7 @@ std::optional<Resumed> Results::resumed() {
   Resumed resumed = stored_run(scene_, *body_, saved.checkpoint, directory_);
   last_saved_ = resumed.standing.step;
   if (saved.file.step != last_saved_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name has.", last_saved_));
+    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name", last_saved_));
   for (const Warning& warning : resumed.standing.warnings.said) warnings_.push_back(warning.sentence);
   write([&] {
     load_record(saved.checkpoint, chosen);
