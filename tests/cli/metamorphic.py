@@ -85,7 +85,7 @@ class Scene:  # an ellipsoid of a kind (capsule, free, or how the mesh of a drop
         """The last surface about its middle, in units of the scene's length, and the last row of the series in its units."""
         import h5py
 
-        run(deck(self.text(), f"{name}.yaml"), "--output", name, "--quiet", ranks=ranks)
+        run(deck(self.text(), f"{name}.yaml"), "--output", name, "--overwrite", "--quiet", ranks=ranks)
         with h5py.File(sorted(pathlib.Path(name).glob("snapshot_*.hdf"))[-1], "r") as file:
             points = file["VTKHDF/Points"][:] / self.length
         kinds = {} if self.kind == "free" else SERIES

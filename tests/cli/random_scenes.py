@@ -238,7 +238,7 @@ def _verdict(seed, directory):
     path = pathlib.Path(directory) / f"scene_{seed}.yaml"
     path.write_text(_text(seed))
     out = path.with_suffix("")
-    words = [str(PROGRAM), str(path), "--output", str(out), "--quiet"]
+    words = [str(PROGRAM), str(path), "--output", str(out), "--overwrite", "--quiet"]
     try:
         result = subprocess.run(words, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
