@@ -15,6 +15,10 @@ namespace {
 /// Radial points for a tolerance. The integrand is smooth along a ray; measured on the cube mesh, n = 3 and up (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
+/// By how much of its distance a corner may be off where the tangents say before orders are raised: the more digits, the less. Measured on spheroids
+/// 10 : 1 (tests/verify/layer_shapes.cpp), whose tips are as sharp as their elements.
+double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
+
 /// Rules kept at a time, and their points, of 136 bytes: metrics come and go in a long run, and a wild shape asks for rules of 25,000 points.
 constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
 
@@ -77,18 +81,19 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
   return *pair.table;
 }
 
-/// None where the corners are where the tangents a1, a2 at the collocation point say, to half their distance.
+/// None where the corners are about where the tangents a1, a2 at the collocation point say.
 quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear,
                                                  const Vec3& a1, const Vec3& a2) const {
   const int n = degree + 1, n_b = n * n;
   const int at[4] = {0, degree, n_b - 1, n_b - n};
   const Vec3 x0 = product(pair.bernstein.data(), pair.bernstein.data() + n, n, bezier);
   std::array<Vec3, 4> corner, affine;
+  const double allowed = std::pow(distortion_allowed(options_.tolerance), 2), rounding = 1e-20 * (a1.squaredNorm() + a2.squaredNorm());
   bool distorted = false;
   for (int k = 0; k < 4; ++k) {
     corner[k] = Vec3(bezier[at[k]], bezier[n_b + at[k]], bezier[2 * n_b + at[k]]) - x0;
     affine[k] = ((k == 1 || k == 2) - pair.s) * a1 + ((k == 2 || k == 3) - pair.t) * a2;
-    distorted |= (corner[k] - affine[k]).squaredNorm() > 0.25 * corner[k].squaredNorm() + 1e-20;
+    distorted |= (corner[k] - affine[k]).squaredNorm() > allowed * corner[k].squaredNorm() + rounding;
   }
   if (!distorted) return {};
   return quadrature::polar_orders(pair.s, pair.t, shear, radial_, options_.tolerance, corner, affine);

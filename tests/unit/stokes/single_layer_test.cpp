@@ -128,6 +128,20 @@ TEST(SingleLayer, MeasuresAgreeWhereTheSurfaceIsUnstressed) {
   EXPECT_LT(largest(scene().apply(scene().unstressed, scene().f, {.tolerance = 1e-6}, Measure::reference) - u), 1e-13 * largest(u));
 }
 
+TEST(SingleLayer, KeepsItsToleranceAtTipsThatAreAsSharpAsTheirElements) {
+  const spline::TMesh mesh = spline::cube(6);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  surface::ParticleShape spheroid;
+  spheroid.shape = "spheroid", spheroid.semi_axes = Vec3(0.3, 0.3, 3);
+  const Net x = surface::initial_shape(space, mesh, spheroid);
+  std::vector<int> all(space.n_points);
+  std::iota(all.begin(), all.end(), 0);
+  Net u = Net::Zero(space.n_points, 3), exact = u;
+  SingleLayer(space, {.tolerance = 1e-8}).apply(x, x, Measure::current, all, u);
+  SingleLayer(space, {.tolerance = 1e-12}).apply(x, x, Measure::current, all, exact);
+  EXPECT_LT(largest(u - exact), 2e-8 * largest(exact));  // twice the tolerance
+}
+
 TEST(SingleLayer, FixedRuleOfThePaperIsGoodToSevenDigitsAtVertices) {
   const Net exact = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
   const Net fixed = scene().apply(scene().x, scene().f, {.rule = "fixed", .points = 8});
