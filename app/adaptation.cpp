@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "coupling/agreement.hpp"
 #include "motion/adaptation.hpp"
 #include "spline/coarsening.hpp"
 #include "spline/locate.hpp"
@@ -73,11 +74,25 @@ struct Findings {
   std::vector<spline::Merge> merges;
 };
 
+/// The first rank's marks or merges, on all ranks.
+template <class Item>
+std::vector<Item> agreed(const std::vector<Item>& mine) {
+  std::vector<double> numbers;
+  for (const Item& item : mine)
+    for (const int number : {item.element, static_cast<int>(item.s), static_cast<int>(item.t)}) numbers.push_back(number);
+  numbers.resize(static_cast<size_t>(coupling::of_first(static_cast<double>(numbers.size()))));
+  coupling::take_first(numbers);
+  std::vector<Item> items;
+  for (size_t k = 0; k < numbers.size(); k += 3)
+    items.push_back({static_cast<int>(numbers[k]), static_cast<decltype(Item::s)>(numbers[k + 1]), static_cast<decltype(Item::t)>(numbers[k + 2])});
+  return items;
+}
+
 Findings findings(const Scene& scene, const Body& body, const motion::State& state, const surface::FieldAt& traction) {
   const motion::AdaptationOptions& options = scene.adaptation;
   const auto of = [&](auto indicator) {
-    auto merges = motion::merges(indicator, options);
-    return Findings{[found = std::move(indicator)](const motion::AdaptationOptions& limits) { return motion::marks(found, limits); },
+    auto merges = agreed(motion::merges(indicator, options));
+    return Findings{[found = std::move(indicator)](const motion::AdaptationOptions& limits) { return agreed(motion::marks(found, limits)); },
                     std::move(merges)};
   };
   if (options.indicator == "error")
@@ -144,6 +159,7 @@ Adapted coarsened(const Scene& scene, const Body& body, const motion::State& sta
       const std::vector<double> found = projection(*net).defect;
       for (size_t e = 0; e < defect.size(); ++e) defect[e] = std::max(defect[e], found[e]);
     }
+    coupling::take_first(defect);
     const double change = *std::max_element(defect.begin(), defect.end());
     if (change <= scene.adaptation.coarsening_tolerance) {
       Adapted result = carried(body, std::move(target), state, [&](const Net& field) { return projection(field).net; });

@@ -43,6 +43,7 @@ class Deforming : public Moving {
 
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, Standing& standing) override {
+    before_.reset();
     if (holds_centre_) hold_centre(body_->flow, capsule_->geometry(), scene_.particle.shape.center, state);
     if (!scene_.adaptation.enabled || standing.step % scene_.adaptation.interval != 0) return false;
     const auto clock = phases_.time("adaptation");

@@ -12,6 +12,7 @@
 #include "spline/bernstein.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
+#include "surface/shape_velocity.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {
@@ -40,6 +41,7 @@ const std::vector<Column>& columns() {
       {"length_x3", "length", "extent along x3"},
       {"normal_velocity", "1",
        "largest |v.n| over rate x R_C (in a tube over the mean velocity, in the particle's frame): zero when the shape is steady"},
+      {"shape_velocity", "1", "what smooth changes of shape have of it, root mean square (6.6): `Time/steady tolerance` is held against this"},
       {"n_control_points", "1", "control points of the surface"},
       {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"},
       {"rejected_steps", "1", "attempts given up in this step"},
@@ -67,11 +69,14 @@ double entry(const std::vector<Column>& columns, const std::vector<double>& row,
 
 namespace {
 
+/// Rate x R_C, or the mean velocity in a tube; of a fluid at rest R_C per unit of time.
+double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
+
 /// What is summed over elements, or sought on them and at sites.
 struct Whole {
   surface::Measures measures;
   membrane::TensionSummary tension;
-  double energy, normal_velocity;
+  double energy, normal_velocity, shape_velocity;  // the velocities over `unit_speed`
 };
 
 /// One number a rank, of which only this rank's is known yet.
@@ -110,11 +115,13 @@ Whole whole(const Scene& scene, const Body& body, const coupling::Capsule& capsu
   std::vector<double> area = surface::block_sums(tensions.area), compressed = surface::block_sums(tensions.compressed);
   std::vector<double> smallest = slots(ranks, elements.empty() ? 0 : tensions.smallest);
   std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, state, own));
-  ranks.add_all({moments, energy, area, compressed, smallest, fastest});
+  std::vector<double> shape = surface::shape_velocity_sums(geometry.bezier(), state.x, state.history.front(), body.radius, elements);
+  ranks.add_all({moments, energy, area, compressed, smallest, fastest, shape});
   return {surface::Geometry::measures(state.x, moments),
           {least(smallest, ranks, geometry.n_blocks()) / membrane::modulus(membrane.law()), sum(compressed) / sum(area)},
           sum(energy),
-          std::ranges::max(fastest)};
+          std::ranges::max(fastest),
+          surface::shape_velocity(shape, scene.tube.present) / unit_speed(scene, body)};
 }
 
 /// Ranks share the elements.
@@ -138,7 +145,7 @@ surface::Deformation deformation(const surface::Geometry& geometry, const Net& x
 
 std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
                         const motion::StepReport& report, double wall_seconds, const coupling::Ranks& ranks) {
-  const auto [measures, tension, energy, normal_velocity] = whole(scene, body, capsule, state, ranks);
+  const auto [measures, tension, energy, normal_velocity, shape_velocity] = whole(scene, body, capsule, state, ranks);
   const surface::Deformation shape = deformation(capsule.geometry(), state.x, measures, ranks);
   const Mat3 stresslet = capsule.stresslet(state.x, state.history.front());
   const coupling::Work& work = capsule.work();
@@ -163,6 +170,7 @@ std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule&
           shape.lengths[1],
           shape.lengths[2],
           normal_velocity,
+          shape_velocity,
           static_cast<double>(body.space.n_points),
           report.error,
           static_cast<double>(report.rejected),
@@ -191,8 +199,7 @@ double normal_velocity(const Scene& scene, const Body& body, const surface::Geom
     const Vec3 v = surface::place({map.degree(element), velocities}, s, t) - frame;
     largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));
   }
-  const double speed = scene.speed();
-  return largest / (speed > 0 ? speed : body.radius);
+  return largest / unit_speed(scene, body);
 }
 
 }  // namespace tanktread

@@ -35,7 +35,8 @@ struct Arguments {
 
 void state(CLI::App& app, Arguments& arguments) {
   app.footer("Exit codes: 0 done, and every Expect met; 1 an Expect was missed; 2 a mistake in the deck or here; 3 the run failed; "
-             "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it.");
+             "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it. Open MPI's mpirun answers any code but 0 with a "
+             "page of its own and a wait of seconds: `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
   app.add_option("--output", arguments.output,

@@ -144,7 +144,7 @@ class Run {
   std::string step() {
     const motion::State before = state_;
     const Standing standing = standing_;
-    remeshed_ = false;
+    adapting_ = false;
     const std::string error = error_of([this] { advance(); });
     if (error.empty() && !interrupted_) {
       settle();
@@ -155,7 +155,7 @@ class Run {
     interrupted_ = true;
     pictured_.reset();
     const std::string undone = error_of([&] {
-      if (!remeshed_) return;
+      if (!adapting_) return;
       particle_->undo_adapt(state_.x);
       results_.remesh(particle_->body(), particle_->bezier());
     });
@@ -191,8 +191,8 @@ class Run {
     ++standing_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
-    remeshed_ = particle_->adapt(state_, standing_);
-    if (remeshed_) results_.remesh(particle_->body(), particle_->bezier());
+    adapting_ = true;
+    if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body(), particle_->bezier());
     for (const Warning& remark : particle_->remarks())
       if (warnings_.fresh(remark)) results_.warn(remark.sentence);
     record();
@@ -315,7 +315,7 @@ class Run {
     const auto limit = scene_.output.wall_clock_limit;
     if (limit && ranks_.first(watch_.here()) > *limit) return by_clock;
     const auto tolerance = scene_.time.steady_tolerance;
-    if (tolerance && entry("normal_velocity") < *tolerance) return steady;
+    if (tolerance && entry("shape_velocity") < *tolerance) return steady;
     return {};
   }
 
@@ -357,7 +357,7 @@ class Run {
   Standing standing_;
   std::vector<double> row_;
   bool snapshot_due_ = false;
-  bool remeshed_ = false;     // in this step
+  bool adapting_ = false;     // within a step, or done with it
   bool interrupted_ = false;  // within a step, of which nothing is kept
   stokes::Evaluations earlier_kernel_;        // in earlier parts of the run
   output::Entries<double> earlier_seconds_;

@@ -27,11 +27,17 @@ int rank() {
 /// Waits until all have come to `request`; one that has met an error does so only for a while.
 void wait(MPI_Request& request, int code, const std::string& message) {
   const auto start = std::chrono::steady_clock::now();
-  for (int here = 0; MPI_Test(&request, &here, MPI_STATUS_IGNORE), !here; std::this_thread::sleep_for(std::chrono::milliseconds(1)))
-    if (code > 0 && std::chrono::steady_clock::now() - start > patience) {
+  for (int here = 0; MPI_Test(&request, &here, MPI_STATUS_IGNORE), !here;) {
+    const auto waited = std::chrono::steady_clock::now() - start;
+    if (waited < std::chrono::milliseconds(10))
+      std::this_thread::yield();
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (code > 0 && waited > patience) {
       if (!message.empty()) std::fprintf(stderr, "tanktread: rank %d: %s\n", rank(), message.c_str());
       MPI_Abort(MPI_COMM_WORLD, code);
     }
+  }
 }
 
 }  // namespace

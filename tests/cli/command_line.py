@@ -1,8 +1,10 @@
 #!/usr/bin/python3
+# ranks: 2
 # The command line does what it promises: every option, every exit code, where results go and what is stored with them.
 import pathlib
+import subprocess
 
-from harness import SOURCE, check, deck, main, run, start, summary
+from harness import SOURCE, check, command, deck, main, run, start, summary
 
 SMALL = """Tanktread:
   Membrane: {capillary number: 0.3}
@@ -62,6 +64,15 @@ def a_met_expectation_is_0_and_a_missed_one_1():
     missed = ["--set", "Expect/volume/value=5", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "missed", "--quiet"]
     check("Expect" in run(deck(SMALL), *missed, code=1).stderr, "not said")
     check(summary("missed")["expect"][0]["passed"] is False, "not noted")
+
+
+def a_missed_expectation_under_mpirun_is_one_line():
+    program = command(deck(SMALL), "--set", "Expect/volume/value=5", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "out", "--quiet", ranks=2)
+    launcher = ["mpirun", "-q", "--mca", "odls_base_sigkill_timeout", "0"]  # as the help says
+    result = subprocess.run(launcher + program[1:], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60)
+    check(result.returncode == 1 and result.stderr.startswith("tanktread: missed Expect/volume"), result.returncode, result.stderr)
+    check(result.stderr.count("\n") == 1, result.stderr)
+    check(" ".join(launcher) in " ".join(run("--help").stdout.split()), "not in the help")
 
 
 def an_expectation_that_the_run_does_not_reach_is_missed_and_said_to_be_before():

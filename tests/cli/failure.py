@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # ranks: 2
 # A run that fails, is stopped or runs out of time leaves a checkpoint from which it goes on with another scheme or tolerance.
+import os
 import pathlib
+import resource
 import signal
 import subprocess
 import time
@@ -76,6 +78,59 @@ def a_run_in_a_long_step_stops_before_its_end_and_goes_on_to_the_same_bits():
     check(summary("out")["status"] == "done", summary("out")["status"])
     for name in "time", "energy", "evaluations":
         check((series("out", name) == series("whole", name)).all(), f"{name} is not that of the run that was left alone")
+
+
+def _told(signal_number, *arguments):
+    """Starts the program, tells it to stop as soon as it listens, and gives exit code and standard error."""
+    process = start(*arguments)
+    end = time.monotonic() + 5
+    while time.monotonic() < end and process.poll() is None:
+        caught = [line.split()[1] for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines() if line.startswith("SigCgt")]
+        if caught and int(caught[0], 16) >> (signal_number - 1) & 1:
+            break
+        time.sleep(0.001)
+    process.send_signal(signal_number)
+    _, said = process.communicate(timeout=60)
+    return process.returncode, said
+
+
+def a_signal_before_the_first_step_ends_with_a_sentence():
+    rigid = ["--set", "Particle/motion=prescribed", "--set", "Particle/velocity=[1, 0, 0]", "--set", "Flow/type=quiescent"]
+    code, said = _told(signal.SIGTERM, deck("Tanktread:\n  Surface: {elements per side: 6}\n"), *rigid, "--output", "rigid", "--quiet")
+    check(code == 4 and said == "tanktread: stopped by a signal before there was anything to keep\n", code, said)
+    code, said = _told(signal.SIGINT, deck(DECK), "--set", "Surface/elements per side=12", "--output", "out", "--quiet")
+    check(code == 4 and said == "tanktread: stopped by a signal before there was anything to keep\n", code, said)
+
+
+def nobody_needs_to_listen():
+    words = command(deck(DECK), "--output", "out")
+    reader, writer = os.pipe()
+    os.close(reader)
+    code = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=writer, stderr=writer, timeout=60).returncode
+    os.close(writer)
+    check(code == 0 and summary("out")["status"] == "done", f"exit code {code}")
+
+
+def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
+    short = ["Particle/viscosity ratio=5", "Solvers/Belos/Maximum Iterations=8", "Time/initial step=3", "Time/final time=3", "Output/interval=3"]
+    said = _fails(*short)
+    check("did not bring the velocity at viscosity ratio 5" in said, said)
+    times = series("out", "time")
+    check(times[-1] > 1, f"ended at {times[-1]}, though eight iterations are enough until 1.5")
+    newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1].name
+    check(newest == f"snapshot_{len(times) - 1:06d}.hdf", f"{newest} is not of the last of {len(times)} rows")
+
+
+def memory_that_runs_out_leaves_the_last_good_step():
+    process = start(deck(DECK), "--set", "Surface/elements per side=6", "--set", "Particle/viscosity ratio=5", "--set", "Time/final time=50",
+                    "--set", "Output/interval=50", "--output", "out", "--quiet")
+    while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
+        time.sleep(0.01)
+    resource.prlimit(process.pid, resource.RLIMIT_AS, (1, 1))  # no more than it has
+    _, said = process.communicate(timeout=60)
+    check(process.returncode == 3 and "not enough memory at time" in said and said.count("\n") == 1, process.returncode, said)
+    newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1].name
+    check(newest == f"snapshot_{len(series('out', 'time')) - 1:06d}.hdf", f"{newest} is not of the last of {len(series('out', 'time'))} rows")
 
 
 def a_directory_belongs_to_one_run_at_a_time():

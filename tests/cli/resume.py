@@ -8,7 +8,7 @@ import time
 
 import numpy
 
-from harness import check, deck, main, run, series, start
+from harness import check, deck, main, run, series, start, summary
 
 DECK = """
 Tanktread:
@@ -121,6 +121,27 @@ def sigterm_stops_with_a_checkpoint_at_the_last_step():
     check(pathlib.Path(f"stopped/snapshot_{rows - 1:06d}.hdf").exists(), "no checkpoint of the last step")
     run("--resume", "stopped", "--quiet")
     _same_bits("whole", "stopped")
+
+
+def what_a_run_has_said_and_counted_is_that_of_all_its_parts():
+    strong = ["--set", "Membrane/load=strong", "--set", "Time/final time=0.5"]
+    said = run(deck(DECK), *strong, "--output", "whole", "--quiet").stderr
+    check("strong form" in said, "nothing to warn of", said)
+    run("deck.yaml", *strong, "--set", "Time/final time=0.25", "--output", "parts", "--quiet")
+    said = run("--resume", "parts", "--set", "Time/final time=0.5", "--quiet").stderr
+    check("strong form" not in said, "said again", said)
+    whole, parts = summary("whole"), summary("parts")
+    check(parts["warnings"] == whole["warnings"], parts["warnings"])
+    check(parts["counts"] == whole["counts"], parts["counts"], whole["counts"])
+
+
+def a_held_particle_makes_no_scheme_s_steps_shorter():
+    held = ["--set", "Particle/drift=held", "--set", "Particle/center=[0, 0, 1]", "--set", "Time/final time=1", "--set", "Time/tolerance=1e-4"]
+    steps = {}
+    for name, more in ("held", held), ("centred", held[4:]):
+        run(deck(DECK), *more, "--set", "Time/scheme=bdf3", "--set", "Output/interval=1", "--output", name, "--quiet")
+        steps[name] = len(series(name, "time"))
+    check(steps["held"] <= 1.2 * steps["centred"], steps)
 
 
 def a_damaged_newest_checkpoint_is_passed_over():

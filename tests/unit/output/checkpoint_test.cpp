@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/errors.hpp"
+#include "coupling/ranks.hpp"
 #include "output/file.hpp"
 #include "output/snapshot.hpp"
 #include "output/snapshot_series.hpp"
@@ -98,6 +99,16 @@ TEST(Checkpoint, HoldsTheStateOfAnIntegrator) {
   EXPECT_EQ(back.direction, state.direction);
   EXPECT_EQ(back.memory, state.memory);
   EXPECT_EQ(back.frozen.rows(), 0);
+}
+
+TEST(State, IsComparedOverTheRanksToTheLastBit) {
+  const coupling::Ranks ranks;
+  motion::State state;
+  state.x = Net::Ones(5, 3);
+  state.places = {{0.5, Net::Ones(5, 3)}};
+  EXPECT_TRUE(equal_on_all_ranks(state));
+  state.places[0].x(4, 2) += 1e-15 * ranks.rank();
+  EXPECT_EQ(equal_on_all_ranks(state), ranks.size() == 1);
 }
 
 TEST(NewestCheckpoint, PassesOverDamagedFiles) {
