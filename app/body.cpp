@@ -1,5 +1,6 @@
 #include "app/body.hpp"
 
+#include "app/numbers.hpp"
 #include "app/prescribed.hpp"
 #include "app/tube.hpp"
 #include "base/formatted.hpp"
@@ -51,6 +52,7 @@ Body body(const Scene& scene) {
   b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
   b.duct = duct(scene);
   b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
+  b.plane = flow_plane(scene.flow);
   b.radius = scene.radius();
   b.modulus = scene.modulus();
   b.law = law(scene.membrane, b.modulus);
@@ -114,6 +116,8 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                         : scene.membrane.law == "surface tension"    ? " per current area (3.6)"
                         : scene.membrane.load_measure == "reference" ? " per unstressed area (3.7), mass matrix factored once"
                                                                      : " per current area (3.6), mass matrix factored every evaluation")},
+      {"deformation", body.plane.description()},
+      {"numbers", numbers_text(numbers(scene, body))},
       {"far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node"},
       {"volume", scene.volume.constraint},
       {"time",

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "app/flow_plane.hpp"
 #include "app/scene.hpp"
 #include "base/timing.hpp"
 #include "base/types.hpp"
@@ -25,6 +26,7 @@ struct Body {
   Net rest;        ///< control net of the resting shape, where the run starts
   Net unstressed;  ///< smaller by the pre-inflation
   stokes::AmbientFlow flow;
+  FlowPlane plane;     ///< that D and tank-treading are measured in
   membrane::Law law;
   double radius = 1;   ///< R_C
   double volume = 0;   ///< V0, of the resting shape on the first mesh, whatever mesh the run goes on with

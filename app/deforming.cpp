@@ -1,5 +1,7 @@
 // The capsule or drop in the time loop, on a mesh that may change.
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "app/adaptation.hpp"
@@ -8,18 +10,34 @@
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "spline/locate.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread {
 
-std::vector<Column> deforming_columns(const Scene& scene) {
-  std::vector<Column> all = columns();
-  if (scene.tube.present) all.insert(all.end(), tube_columns().begin(), tube_columns().end());
-  if (scene.adaptation.enabled)
-    all.push_back({"refit_error", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over R_C"});
+namespace {
+
+std::vector<Series> deforming_series(const Scene& scene) {
+  std::vector<Series> all = series({"time", "time_step", "taylor_inertia", "taylor_surface", "inclination", "volume", "volume_error", "area",
+                                    "energy", "smallest_tension", "compressed_area", "stresslet_11", "stresslet_22", "stresslet_33",
+                                    "stresslet_12", "stresslet_13", "stresslet_23", "length_x1", "length_x2", "length_x3", "normal_velocity",
+                                    "shape_velocity", "n_control_points", "step_error", "rejected_steps", "iterations", "evaluations", "assemblies",
+                                    "solver_iterations", "velocity_iterations", "wall_seconds", "centroid_x1", "centroid_x2", "centroid_x3",
+                                    "velocity_x1", "velocity_x2", "velocity_x3"});
+  if (scene.tube.present) std::ranges::copy(series({"migration_velocity"}), std::back_inserter(all));
+  std::ranges::copy(series({"tank_treading_velocity"}), std::back_inserter(all));
+  if (scene.tube.present) std::ranges::copy(tube_series(), std::back_inserter(all));
+  std::ranges::copy(series({"tank_treading_frequency", "phase", "axis_1", "axis_2", "axis_3", "axis_1_x1", "axis_1_x2", "axis_1_x3"}),
+                    std::back_inserter(all));
+  if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
+  if (scene.adaptation.enabled) std::ranges::copy(series({"refit_error"}), std::back_inserter(all));
   return all;
 }
+
+}  // namespace
+
+std::vector<Column> deforming_columns(const Scene& scene) { return columns(deforming_series(scene)); }
 
 namespace {
 
@@ -27,7 +45,12 @@ class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), body_(std::make_unique<Body>(tanktread::body(scene))),
-        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, phases))), columns_(deforming_columns(scene)) {}
+        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, phases))), series_(deforming_series(scene)),
+        columns_(tanktread::columns(series_)) {
+    const spline::Space& space = body_->nested();
+    followed_ = site_ahead(space, body_->rest, capsule_->geometry().measures(body_->rest).centroid, body_->plane);
+    place_ = spline::place(space, followed_);
+  }
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
   const Body& body() const override { return *body_; }
@@ -39,6 +62,7 @@ class Deforming : public Moving {
       settle(resumed.body ? std::move(resumed.body) : std::move(body_), resumed.state.x);
     if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
     capsule_->work() = resumed.standing.work;
+    turning_ = resumed.standing.turning;
   }
 
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
@@ -70,6 +94,7 @@ class Deforming : public Moving {
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
 
   coupling::Work work() const override { return capsule_->work(); }
+  Turning turning() const override { return turning_; }
 
   stokes::Evaluations kernel_evaluations() const override {
     const stokes::Evaluations now = capsule_->kernel_evaluations();
@@ -79,13 +104,16 @@ class Deforming : public Moving {
   const std::vector<Column>& columns() const override { return columns_; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    std::vector<double> row = tanktread::row(scene_, *body_, *capsule_, state, report, wall_seconds, ranks_);
-    if (body_->wall) {
-      const std::vector<double> more = tube_row(*body_, *capsule_, state);
-      row.insert(row.end(), more.begin(), more.end());
-    }
-    if (scene_.adaptation.enabled) row.push_back(body_->refit_error);
-    return row;
+    Moment now = moment(scene_, *body_, *capsule_, state, report, ranks_);
+    now.wall_seconds = wall_seconds;
+    const Net v = material_velocity(state);
+    add_treading(scene_, *body_, capsule_->geometry(), state.x, v, now);
+    if (body_->wall) add_tube(*capsule_, state.x, v, now);
+    std::optional<double> angle;
+    if (!capsule_->slides()) angle = angle_in(body_->plane, surface::value(body_->nested(), state.x, followed_) - now.centre);
+    turning_.advance(report.step, now.treading.frequency, angle);
+    now.phase = turning_.degrees;
+    return tanktread::row(series_, now);
   }
 
   Portrait portrait(const motion::State& state) override {
@@ -97,6 +125,12 @@ class Deforming : public Moving {
   }
 
  private:
+  /// Of the fluids on the surface. In a tube it is asked for, as the slope carries what is left of the scheme's iteration, over the step.
+  Net material_velocity(const motion::State& state) {
+    if (body_->wall) return capsule_->fluid_velocity(state.x, state.history.front());
+    return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
+  }
+
   /// Goes on with the particle on another mesh, in the shape x.
   void settle(std::unique_ptr<Body> body, const Net& x) {
     body->symmetry = symmetry(scene_, *body, x);
@@ -108,6 +142,7 @@ class Deforming : public Moving {
     before_ = std::exchange(body_, std::move(body));
     capsule_ = capsule(scene_, *body_, ranks_, phases_, std::move(tube));
     capsule_->work() = work;
+    if (scene_.adaptation.enabled) followed_ = spline::Locator(body_->nested())(place_);
   }
 
   /// What a change of the mesh lacks.
@@ -156,7 +191,11 @@ class Deforming : public Moving {
   Phases& phases_;
   std::unique_ptr<Body> body_;
   std::unique_ptr<coupling::Capsule> capsule_;
+  std::vector<Series> series_;
   std::vector<Column> columns_;
+  spline::Place place_;    // of the material point whose phase is told, in the nested space
+  spline::Site followed_;  // the same on the present mesh
+  Turning turning_;
   stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
   std::unique_ptr<Body> before_;  // the latest change of mesh; until the next one
   std::vector<Warning> remarks_;

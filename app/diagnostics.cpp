@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
 
+#include "base/errors.hpp"
 #include "spline/bernstein.hpp"
+#include "surface/extremes.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 #include "surface/shape_velocity.hpp"
@@ -17,48 +21,200 @@
 
 namespace tanktread {
 
-const std::vector<Column>& columns() {
-  static const std::vector<Column> all = {
-      {"time", "time", "simulated time"},
-      {"time_step", "time", "size of the step that ended here"},
-      {"taylor_inertia", "1", "Taylor parameter of the ellipsoid with the same second moments, in the x1 x3 plane"},
-      {"taylor_surface", "1", "Taylor parameter of the longest and shortest distance from the centroid, in the x1 x3 plane"},
-      {"inclination", "degree", "angle of the long axis of inertia with x1"},
-      {"volume", "length^3", "enclosed volume"},
-      {"volume_error", "1", "V/V0 - 1"},
-      {"area", "length^2", "area of the surface"},
-      {"energy", "force length", "energy stored in the membrane"},
-      {"smallest_tension", "1", "smallest principal tension over G_s"},
-      {"compressed_area", "1", "share of the area with a negative principal tension"},
-      {"stresslet_11", "force length", "particle stresslet, component 11"},
-      {"stresslet_22", "force length", "particle stresslet, component 22"},
-      {"stresslet_33", "force length", "particle stresslet, component 33"},
-      {"stresslet_12", "force length", "particle stresslet, component 12"},
-      {"stresslet_13", "force length", "particle stresslet, component 13"},
-      {"stresslet_23", "force length", "particle stresslet, component 23"},
-      {"length_x1", "length", "extent along x1"},
-      {"length_x2", "length", "extent along x2"},
-      {"length_x3", "length", "extent along x3"},
-      {"normal_velocity", "1",
-       "largest |v.n| over rate x R_C (in a tube over the mean velocity, in the particle's frame): zero when the shape is steady"},
-      {"shape_velocity", "1", "what smooth changes of shape have of it, root mean square (6.6): `Time/steady tolerance` is held against this"},
-      {"n_control_points", "1", "control points of the surface"},
-      {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"},
-      {"rejected_steps", "1", "attempts given up in this step"},
-      {"iterations", "1", "nonlinear iterations or sub-iterations in this step"},
-      {"evaluations", "1", "velocity evaluations so far"},
-      {"assemblies", "1", "assemblies of the frozen layer operator so far"},
-      {"solver_iterations", "1", "iterations of the linear solver so far"},
-      {"velocity_iterations", "1", "iterations of the systems that velocities come from so far (viscosity ratio other than 1)"},
-      {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"},
-  };
+namespace {
+
+/// Every series of every kind of particle, once.
+constexpr Series table[] = {
+    {"time", "time", "simulated time; 0 of a steady problem", [](const Moment& m) { return m.time; }},
+    {"time_step", "time", "size of the step that ended here", [](const Moment& m) { return m.step.step; }},
+    {"taylor_inertia", "1", "Taylor parameter (6.2) of the ellipsoid with the same second moments, in the plane of the flow",
+     [](const Moment& m) { return m.shape.taylor_inertia; }},
+    {"taylor_surface", "1", "Taylor parameter (6.2) of the longest and shortest distance from the centroid, in the plane of the flow",
+     [](const Moment& m) { return m.shape.taylor_surface; }},
+    {"inclination", "degree", "angle of the long axis of inertia with the first direction of the plane of the flow (x1), towards the second (x3)",
+     [](const Moment& m) { return m.shape.inclination; }},
+    {"volume", "length^3", "enclosed volume (P-43)", [](const Moment& m) { return m.measures.volume; }},
+    {"volume_error", "1", "V/V0 - 1", [](const Moment& m) { return m.volume_error; }},
+    {"refit_error", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over R_C",
+     [](const Moment& m) { return m.refit_error; }},
+    {"area", "length^2", "area of the surface", [](const Moment& m) { return m.measures.area; }},
+    {"energy", "force length", "energy stored in the membrane", [](const Moment& m) { return m.energy; }},
+    {"smallest_tension", "1", "smallest principal tension over G_s", [](const Moment& m) { return m.tension.smallest; }},
+    {"compressed_area", "1", "share of the area with a negative principal tension",
+     [](const Moment& m) { return m.tension.compressed_area; }},
+    {"stresslet_11", "force length", "particle stresslet (6.7), component 11", [](const Moment& m) { return m.stresslet(0, 0); }},
+    {"stresslet_22", "force length", "particle stresslet (6.7), component 22", [](const Moment& m) { return m.stresslet(1, 1); }},
+    {"stresslet_33", "force length", "particle stresslet (6.7), component 33", [](const Moment& m) { return m.stresslet(2, 2); }},
+    {"stresslet_12", "force length", "particle stresslet (6.7), component 12", [](const Moment& m) { return m.stresslet(0, 1); }},
+    {"stresslet_13", "force length", "particle stresslet (6.7), component 13", [](const Moment& m) { return m.stresslet(0, 2); }},
+    {"stresslet_23", "force length", "particle stresslet (6.7), component 23", [](const Moment& m) { return m.stresslet(1, 2); }},
+    {"length_x1", "length", "extent along x1", [](const Moment& m) { return m.shape.lengths[0]; }},
+    {"length_x2", "length", "extent along x2", [](const Moment& m) { return m.shape.lengths[1]; }},
+    {"length_x3", "length", "extent along x3", [](const Moment& m) { return m.shape.lengths[2]; }},
+    {"normal_velocity", "1",
+     "largest |v.n| over rate x R_C (in a tube over the mean velocity, in the particle's frame): zero when the shape is steady",
+     [](const Moment& m) { return m.normal_velocity; }},
+    {"shape_velocity", "1", "what smooth changes of shape have of it, root mean square (6.8): `Time/steady tolerance` is held against this",
+     [](const Moment& m) { return m.shape_velocity; }},
+    {"n_control_points", "1", "control points of the surface", [](const Moment& m) { return static_cast<double>(m.n_points); }},
+    {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance", [](const Moment& m) { return m.step.error; }},
+    {"rejected_steps", "1", "attempts given up in this step", [](const Moment& m) { return static_cast<double>(m.step.rejected); }},
+    {"iterations", "1", "nonlinear iterations or sub-iterations in this step",
+     [](const Moment& m) { return static_cast<double>(m.step.iterations); }},
+    {"evaluations", "1", "velocity evaluations so far", [](const Moment& m) { return static_cast<double>(m.work.evaluations); }},
+    {"assemblies", "1", "assemblies of the frozen layer operator so far",
+     [](const Moment& m) { return static_cast<double>(m.work.assemblies); }},
+    {"solver_iterations", "1", "iterations of the linear solver so far",
+     [](const Moment& m) { return static_cast<double>(m.work.solver_iterations); }},
+    {"velocity_iterations", "1", "iterations of the systems that velocities come from so far (viscosity ratio other than 1)",
+     [](const Moment& m) { return static_cast<double>(m.work.velocity_iterations); }},
+    {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included",
+     [](const Moment& m) { return m.wall_seconds; }},
+    {"centroid_x1", "length", "centroid (P-42), component 1; in a tube what the frame has travelled",
+     [](const Moment& m) { return m.centre[0]; }},
+    {"centroid_x2", "length", "centroid (P-42), component 2", [](const Moment& m) { return m.centre[1]; }},
+    {"centroid_x3", "length", "centroid (P-42), component 3", [](const Moment& m) { return m.centre[2]; }},
+    {"center_x1", "length", "centre of the rigid body, component 1", [](const Moment& m) { return m.centre[0]; }},
+    {"center_x2", "length", "centre of the rigid body, component 2", [](const Moment& m) { return m.centre[1]; }},
+    {"center_x3", "length", "centre of the rigid body, component 3", [](const Moment& m) { return m.centre[2]; }},
+    {"velocity_x1", "length/time", "of the centroid (6.4), or of the centre of a rigid body, component 1",
+     [](const Moment& m) { return m.velocity[0]; }},
+    {"velocity_x2", "length/time", "of the centroid (6.4), or of the centre of a rigid body, component 2",
+     [](const Moment& m) { return m.velocity[1]; }},
+    {"velocity_x3", "length/time", "of the centroid (6.4), or of the centre of a rigid body, component 3",
+     [](const Moment& m) { return m.velocity[2]; }},
+    {"angular_velocity_x1", "1/time", "of the rigid body, component 1", [](const Moment& m) { return m.angular_velocity[0]; }},
+    {"angular_velocity_x2", "1/time", "of the rigid body, component 2", [](const Moment& m) { return m.angular_velocity[1]; }},
+    {"angular_velocity_x3", "1/time", "of the rigid body, component 3", [](const Moment& m) { return m.angular_velocity[2]; }},
+    {"quaternion_0", "1", "scalar part of the turn from the initial place", [](const Moment& m) { return m.quaternion[0]; }},
+    {"quaternion_1", "1", "vector part, component 1", [](const Moment& m) { return m.quaternion[1]; }},
+    {"quaternion_2", "1", "vector part, component 2", [](const Moment& m) { return m.quaternion[2]; }},
+    {"quaternion_3", "1", "vector part, component 3", [](const Moment& m) { return m.quaternion[3]; }},
+    {"axis_1", "length", "longest semi-axis of the ellipsoid with the same second moments (6.1)",
+     [](const Moment& m) { return m.axes.lengths[0]; }},
+    {"axis_2", "length", "the middle one", [](const Moment& m) { return m.axes.lengths[1]; }},
+    {"axis_3", "length", "the shortest one", [](const Moment& m) { return m.axes.lengths[2]; }},
+    {"axis_1_x1", "1", "direction of the longest one, component 1; the first component that is not zero is positive. Any where two are longest",
+     [](const Moment& m) { return m.axes.directions(0, 0); }},
+    {"axis_1_x2", "1", "direction of the longest one, component 2", [](const Moment& m) { return m.axes.directions(1, 0); }},
+    {"axis_1_x3", "1", "direction of the longest one, component 3", [](const Moment& m) { return m.axes.directions(2, 0); }},
+    {"tank_treading_velocity", "length/time",
+     "mean tangential velocity relative to the centroid on the curve that the plane of the flow through it cuts out (6.5); positive where the side "
+     "of larger x3 moves along x1, clockwise with x1 to the right and x3 up",
+     [](const Moment& m) { return m.treading.velocity; }},
+    {"tank_treading_frequency", "1/time",
+     "mean angular velocity of the material points of that curve about the centroid (6.6), in radians over time and of the same sense: 2 pi over "
+     "the period of a steady motion; of a rigid body its angular velocity",
+     [](const Moment& m) { return m.treading.frequency; }},
+    {"phase", "degree",
+     "angle about the centroid, in the plane of the flow and of the same sense, of the material point that starts at the angle 0, on the side of "
+     "x1, counted on past whole turns; of a drop whose mesh slides the integral of tank_treading_frequency",
+     [](const Moment& m) { return m.phase; }},
+    {"intrinsic_viscosity", "1", "S:E/(2 mu V E:E) with the stresslet S (6.7) and the rate of strain E of the flow: 5/2 of a rigid sphere",
+     [](const Moment& m) { return m.intrinsic_viscosity; }},
+    {"migration_velocity", "length/time", "speed of the centroid in the x2 x3 plane, positive towards the axis of the tube",
+     [](const Moment& m) { return m.velocity.tail<2>().norm() * (m.centre.tail<2>().dot(m.velocity.tail<2>()) > 0 ? -1 : 1); }},
+    {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)",
+     [](const Moment& m) { return m.pressure_drop; }},
+    {"gap", "length", "smallest distance between particle and wall", [](const Moment& m) { return m.gap; }},
+    {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)",
+     [](const Moment& m) { return m.tube.flux; }},
+    {"force_imbalance", "1",
+     "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: should vanish (2.14)",
+     [](const Moment& m) { return m.tube.force; }},
+    {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity",
+     [](const Moment& m) { return m.tube.cap_velocity; }},
+    {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance vanishes",
+     [](const Moment& m) { return m.tube.pressure_by_flux; }},
+    {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance",
+     [](const Moment& m) { return m.tube.pressure_by_force; }},
+    {"drag_x1", "force", "force on the particle, component 1", [](const Moment& m) { return m.drag[0]; }},
+    {"drag_x2", "force", "force on the particle, component 2", [](const Moment& m) { return m.drag[1]; }},
+    {"drag_x3", "force", "force on the particle, component 3", [](const Moment& m) { return m.drag[2]; }},
+    {"torque_x1", "force length", "torque on the particle about its centre, component 1", [](const Moment& m) { return m.torque[0]; }},
+    {"torque_x2", "force length", "torque on the particle about its centre, component 2", [](const Moment& m) { return m.torque[1]; }},
+    {"torque_x3", "force length", "torque on the particle about its centre, component 3", [](const Moment& m) { return m.torque[2]; }},
+    {"drag_error", "1", "|F - F_exact|/|F_exact|, where the exact force is known and not zero",
+     [](const Moment& m) { return m.drag_error; }},
+    {"drag_error_of_traction", "1", "the same, of the integral of the traction alone",
+     [](const Moment& m) { return m.drag_error_of_traction; }},
+    {"torque_error", "1", "|T - T_exact|/|T_exact|, where the exact torque is known and not zero",
+     [](const Moment& m) { return m.torque_error; }},
+    {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n (6.3), where that is known",
+     [](const Moment& m) { return m.pressure_error; }},
+    {"normal_l2_error", "1", "L2 norm of n_h - n over that of n (6.3), where that is known",
+     [](const Moment& m) { return m.normal_error; }},
+    {"kernel_evaluations", "1", "of the layer operator, all rules together", [](const Moment& m) { return m.kernel_evaluations; }},
+};
+
+}  // namespace
+
+std::span<const Series> all_series() { return table; }
+
+std::vector<Series> series(std::initializer_list<std::string_view> names) {
+  std::vector<Series> found;
+  for (const std::string_view name : names) {
+    const auto* const one = std::ranges::find(table, name, &Series::name);
+    if (one == std::end(table)) throw std::logic_error("no series " + std::string(name));
+    found.push_back(*one);
+  }
+  return found;
+}
+
+std::vector<Column> columns(std::span<const Series> of) {
+  std::vector<Column> all;
+  for (const Series& one : of) all.push_back({std::string(one.name), one.unit, one.description});
   return all;
 }
 
-std::vector<Column> named(const std::vector<Column>& all, std::initializer_list<std::string_view> names) {
-  std::vector<Column> found;
-  for (const std::string_view name : names) found.push_back(*std::ranges::find(all, name, &Column::name));
-  return found;
+std::vector<double> row(std::span<const Series> of, const Moment& moment) {
+  std::vector<double> values;
+  for (const Series& one : of) {
+    values.push_back(one.value(moment));
+    if (std::isnan(values.back())) throw RunFailure("the series " + std::string(one.name) + " is not a number");
+  }
+  return values;
+}
+
+double angle_in(const FlowPlane& plane, const Vec3& y) {
+  const Vec3 at = plane.components(y);
+  return std::atan2(-at[2], at[0]) * 180 / std::numbers::pi;
+}
+
+spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane) {
+  constexpr int intervals = 4;
+  spline::Site best;
+  double most = -2;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const surface::ElementPoints element(space, x, e);
+    for (int k = 0; k < (intervals + 1) * (intervals + 1); ++k) {
+      const double s = k % (intervals + 1) / double(intervals), t = k / (intervals + 1) / double(intervals);
+      const double ahead = plane.components(surface::place(element.patch(), s, t) - from).normalized()[0];
+      if (ahead > most + 1e-12) best = {e, s, t}, most = ahead;
+    }
+  }
+  const surface::ElementPoints element(space, x, best.element);
+  for (int iteration = 0; iteration < 6; ++iteration) {  // Newton's method, within the element
+    const surface::Jet at = surface::jet(element.patch(), best.s, best.t);
+    const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
+    const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
+    if (std::abs(determinant) < 1e-9 * ds.norm() * dt.norm()) break;  // a pole
+    best.s = std::clamp(best.s - (y[1] * dt[2] - y[2] * dt[1]) / determinant, 0., 1.);
+    best.t = std::clamp(best.t - (ds[1] * y[2] - ds[2] * y[1]) / determinant, 0., 1.);
+  }
+  return best;
+}
+
+double intrinsic_viscosity(const Mat3& stresslet, const Mat3& gradient, double viscosity, double volume) {
+  const Mat3 strain = (gradient + gradient.transpose()) / 2;
+  return stresslet.cwiseProduct(strain).sum() / (2 * viscosity * volume * strain.squaredNorm());
+}
+
+bool strains(const Scene& scene) {
+  if (scene.tube.present) return false;
+  const stokes::AmbientFlow flow(scene.flow);
+  const Mat3 gradient = flow.gradient(Vec3::Zero());
+  return flow.affine() && (gradient + gradient.transpose()).norm() > 1e-10 * gradient.norm();
 }
 
 double entry(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name) {
@@ -124,14 +280,22 @@ Whole whole(const Scene& scene, const Body& body, const coupling::Capsule& capsu
           surface::shape_velocity(shape, scene.tube.present) / unit_speed(scene, body)};
 }
 
-/// Ranks share the elements.
-surface::Deformation deformation(const surface::Geometry& geometry, const Net& x, const surface::Measures& measures, const coupling::Ranks& ranks) {
-  std::array<surface::Range, surface::Geometry::n_extremes> extremes = geometry.extremes(x, measures.centroid, own_elements(geometry, ranks));
+}  // namespace
+
+surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& of_flow, const Net& x, surface::Measures measures,
+                                 const coupling::Ranks& ranks) {
+  const FlowPlane plane = of_flow.holds_flow ? of_flow : plane_normal_to(surface::principal_axes(measures).directions.col(1));
+  const std::vector<int> own = own_elements(geometry, ranks);
+  std::array<surface::Range, surface::Geometry::n_extremes> extremes = geometry.extremes(x, measures.centroid, own);
+  if (!plane.fixed()) {
+    extremes[0] = surface::section_distances(surface::Patches(geometry.bezier(), plane.turned(x), own), plane.components(measures.centroid));
+    measures.second_moments = plane.axes * measures.second_moments * plane.axes.transpose();
+  }
   const size_t n = 2 * extremes.size();
   std::vector<double> ends(n * static_cast<size_t>(ranks.size()), 0.);  // of all ranks, one after another
   for (size_t k = 0; k < extremes.size(); ++k) {
-    double* const own = &ends[n * static_cast<size_t>(ranks.rank()) + 2 * k];
-    own[0] = extremes[k].smallest, own[1] = extremes[k].largest;
+    double* const mine = &ends[n * static_cast<size_t>(ranks.rank()) + 2 * k];
+    mine[0] = extremes[k].smallest, mine[1] = extremes[k].largest;
   }
   ranks.add(ends);
   for (size_t k = 0; k < ends.size(); k += 2) {
@@ -141,45 +305,36 @@ surface::Deformation deformation(const surface::Geometry& geometry, const Net& x
   return surface::Geometry::deformation(measures, extremes);
 }
 
-}  // namespace
-
-std::vector<double> row(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state,
-                        const motion::StepReport& report, double wall_seconds, const coupling::Ranks& ranks) {
+Moment moment(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state, const motion::StepReport& report,
+              const coupling::Ranks& ranks) {
   const auto [measures, tension, energy, normal_velocity, shape_velocity] = whole(scene, body, capsule, state, ranks);
-  const surface::Deformation shape = deformation(capsule.geometry(), state.x, measures, ranks);
-  const Mat3 stresslet = capsule.stresslet(state.x, state.history.front());
-  const coupling::Work& work = capsule.work();
-  return {state.time,
-          report.step,
-          shape.taylor_inertia,
-          shape.taylor_surface,
-          shape.inclination,
-          measures.volume,
-          capsule.volume_error(measures.volume),
-          measures.area,
-          energy,
-          tension.smallest,
-          tension.compressed_area,
-          stresslet(0, 0),
-          stresslet(1, 1),
-          stresslet(2, 2),
-          stresslet(0, 1),
-          stresslet(0, 2),
-          stresslet(1, 2),
-          shape.lengths[0],
-          shape.lengths[1],
-          shape.lengths[2],
-          normal_velocity,
-          shape_velocity,
-          static_cast<double>(body.space.n_points),
-          report.error,
-          static_cast<double>(report.rejected),
-          static_cast<double>(report.iterations),
-          static_cast<double>(work.evaluations),
-          static_cast<double>(work.assemblies),
-          static_cast<double>(work.solver_iterations),
-          static_cast<double>(work.velocity_iterations),
-          wall_seconds};
+  Moment now;
+  now.time = state.time;
+  now.step = report;
+  now.n_points = body.space.n_points;
+  now.measures = measures;
+  now.shape = deformation(capsule.geometry(), body.plane, state.x, measures, ranks);
+  now.axes = surface::principal_axes(measures);
+  now.volume_error = capsule.volume_error(measures.volume);
+  now.refit_error = body.refit_error;
+  now.energy = energy;
+  now.tension = tension;
+  now.normal_velocity = normal_velocity;
+  now.shape_velocity = shape_velocity;
+  now.stresslet = capsule.stresslet(state.x, state.history.front());
+  if (body.flow.affine())
+    now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body.flow.gradient(measures.centroid), scene.flow.viscosity, measures.volume);
+  now.centre = measures.centroid;
+  now.work = capsule.work();
+  return now;
+}
+
+void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, Moment& now) {
+  const FlowPlane& plane = body.plane;
+  now.velocity = surface::centroid_velocity(geometry.bezier(), x, v);
+  const bool elastic = scene.membrane.law != "surface tension";
+  now.treading = surface::tank_treading(geometry.bezier(), plane.turned(x), plane.turned(v), elastic ? &body.unstressed : nullptr,
+                                        plane.components(now.centre), plane.components(now.velocity));
 }
 
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state,
@@ -187,7 +342,7 @@ double normal_velocity(const Scene& scene, const Body& body, const surface::Geom
   if (state.history.empty()) return 0;
   double largest = 0;
   Vec3 frame = Vec3::Zero();
-  if (scene.tube.present) frame[0] = surface::centroid_velocity(geometry, state.x, state.history.front())[0];
+  if (scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), state.x, state.history.front())[0];
   const surface::BezierMap& map = geometry.bezier();
   constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
   double points[most], velocities[most];

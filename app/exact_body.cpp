@@ -20,6 +20,13 @@ double ExactBody::pressure(const Vec3& x) const {
 
 Vec3 ExactBody::normal(const Vec3& x) const { return axes * ellipsoid.normal(local(x)); }
 
+bool ExactBody::presses() const {
+  const Vec3& a = ellipsoid.semi_axes;
+  bool result = velocity.norm() > 0;
+  for (int k = 0; k < 3; ++k) result = result || (angular_velocity[k] != 0 && a[(k + 1) % 3] != a[(k + 2) % 3]);
+  return result;
+}
+
 std::optional<ExactBody> exact_body(const Scene& scene, const coupling::RigidMotion& motion) {
   const surface::ParticleShape& shape = scene.particle.shape;
   if (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid") return {};

@@ -24,6 +24,9 @@ struct ExactBody {
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
+  /// Whether there is any pressure: a body that only turns about axes of revolution makes none.
+  bool presses() const;
+
  private:
   Vec3 local(const Vec3& x) const { return axes.transpose() * (x - centre); }
 };

@@ -13,51 +13,33 @@ namespace tanktread {
 
 namespace {
 
-std::vector<Column> rigid_columns() {
-  std::vector<Column> all = named(columns(), {"time", "time_step", "inclination"});
-  all.insert(all.end(), {{"center_x1", "length", "centre of the body, component 1"},
-                         {"center_x2", "length", "centre of the body, component 2"},
-                         {"center_x3", "length", "centre of the body, component 3"},
-                         {"velocity_x1", "length/time", "of the centre, component 1"},
-                         {"velocity_x2", "length/time", "of the centre, component 2"},
-                         {"velocity_x3", "length/time", "of the centre, component 3"},
-                         {"angular_velocity_x1", "1/time", "component 1"},
-                         {"angular_velocity_x2", "1/time", "component 2"},
-                         {"angular_velocity_x3", "1/time", "component 3"},
-                         {"quaternion_0", "1", "scalar part of the turn from the initial place"},
-                         {"quaternion_1", "1", "vector part, component 1"},
-                         {"quaternion_2", "1", "vector part, component 2"},
-                         {"quaternion_3", "1", "vector part, component 3"}});
-  std::ranges::copy(
-      named(columns(), {"stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "length_x1",
-                        "length_x2", "length_x3", "n_control_points", "step_error", "rejected_steps", "evaluations", "wall_seconds"}),
-      std::back_inserter(all));
-  return all;
-}
-
-/// Further ones in a tube.
-std::vector<Column> rigid_tube_columns() {
-  std::vector<Column> all = named(tube_columns(), {"migration_velocity", "disturbed_pressure_drop", "gap"});
-  std::ranges::copy(named(columns(), {"solver_iterations"}), std::back_inserter(all));
+std::vector<Series> free_series(const Scene& scene) {
+  std::vector<Series> all =
+      series({"time", "time_step", "inclination", "center_x1", "center_x2", "center_x3", "velocity_x1", "velocity_x2", "velocity_x3",
+              "angular_velocity_x1", "angular_velocity_x2", "angular_velocity_x3", "quaternion_0", "quaternion_1", "quaternion_2", "quaternion_3",
+              "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "length_x1", "length_x2",
+              "length_x3", "n_control_points", "step_error", "rejected_steps", "evaluations", "wall_seconds"});
+  if (scene.tube.present)
+    std::ranges::copy(series({"migration_velocity", "disturbed_pressure_drop", "gap", "solver_iterations"}), std::back_inserter(all));
+  std::ranges::copy(series({"tank_treading_velocity", "tank_treading_frequency", "phase", "axis_1", "axis_2", "axis_3", "axis_1_x1", "axis_1_x2",
+                            "axis_1_x3"}),
+                    std::back_inserter(all));
+  if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
   return all;
 }
 
 }  // namespace
 
-std::vector<Column> free_columns(const Scene& scene) {
-  std::vector<Column> all = rigid_columns();
-  if (scene.tube.present) std::ranges::copy(rigid_tube_columns(), std::back_inserter(all));
-  return all;
-}
+std::vector<Column> free_columns(const Scene& scene) { return columns(free_series(scene)); }
 
 namespace {
 
 class Free : public Moving {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
+      : scene_(scene), ranks_(ranks), body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
         resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()),
-        columns_(free_columns(scene)) {
+        series_(free_series(scene)), columns_(tanktread::columns(series_)) {
     const Vec3& centre = scene.particle.shape.center;
     if (tube_)
       free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers);
@@ -75,6 +57,7 @@ class Free : public Moving {
     before_.assemblies -= again.assemblies;
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
+    turning_ = resumed.standing.turning;
   }
   bool adapt(motion::State&, Standing&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
@@ -90,32 +73,29 @@ class Free : public Moving {
     return work;
   }
 
+  Turning turning() const override { return turning_; }
+
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    const surface::Deformation shape = geometry_.deformation(free_->surface(state.x));
+    const Net x = free_->surface(state.x);
     const coupling::RigidMotion motion = free_->motion(state.x);
-    const Mat3 s = free_->stresslet(state.x);
-    const Net& x = state.x;
-    const Vec3 &v = motion.velocity, &w = motion.angular_velocity;
-    std::vector<double> row = {
-            state.time,
-            report.step,
-            shape.inclination,
-            x(0, 0), x(0, 1), x(0, 2),
-            v[0], v[1], v[2],
-            w[0], w[1], w[2],
-            x(2, 0), x(1, 0), x(1, 1), x(1, 2),
-            s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2),
-            shape.lengths[0], shape.lengths[1], shape.lengths[2],
-            static_cast<double>(body_.space.n_points),
-            report.error,
-            static_cast<double>(report.rejected),
-            static_cast<double>(work().evaluations),
-            wall_seconds};
-    if (!tube_) return row;
-    const Eigen::Vector2d across(x(0, 1), x(0, 2)), moves = v.tail<2>();
-    const double sense = across.dot(moves) > 0 ? -1 : 1;
-    row.insert(row.end(), {sense * moves.norm(), free_->pressure_drop(x), tube_->gap(), static_cast<double>(work().solver_iterations)});
-    return row;
+    Moment now;
+    now.time = state.time;
+    now.step = report;
+    now.wall_seconds = wall_seconds;
+    now.n_points = body_.space.n_points;
+    now.measures = geometry_.measures(x);
+    now.shape = deformation(geometry_, body_.plane, x, now.measures, ranks_);
+    now.axes = surface::principal_axes(now.measures);
+    now.stresslet = free_->stresslet(state.x);
+    now.centre = coupling::centre_of(state.x);
+    now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
+    now.quaternion << state.x(2, 0), state.x.row(1).transpose();
+    if (body_.flow.affine())
+      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body_.flow.gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
+    if (tube_) now.pressure_drop = free_->pressure_drop(state.x), now.gap = tube_->gap();
+    add_turning(state.x, report.step, now);
+    now.work = work();
+    return tanktread::row(series_, now);
   }
 
   Portrait portrait(const motion::State& state) override {
@@ -127,17 +107,32 @@ class Free : public Moving {
   }
 
  private:
+  /// Tank-treading and phase of a body that turns as one: (6.6) is its angular velocity about the normal of the plane.
+  void add_turning(const Net& place, double step, Moment& now) {
+    const FlowPlane& plane = body_.plane;
+    const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
+    const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);
+    now.treading.velocity = surface::tank_treading(geometry_.bezier(), plane.turned(x), plane.turned(v), nullptr, centre, moves).velocity;
+    now.treading.frequency = plane.components(now.angular_velocity)[1];
+    turning_.advance(step, now.treading.frequency, angle_in(plane, coupling::rotation_of(place) * plane.axes.row(0).transpose()));
+    now.phase = turning_.degrees;
+  }
+
   long iterations() const {
     const auto* in_tube = dynamic_cast<const coupling::FreeBodyInTube*>(free_.get());
     return resistance_.solver_iterations() + (in_tube ? in_tube->solver_iterations() : 0);
   }
 
+  const Scene& scene_;
+  const coupling::Ranks& ranks_;
   Body body_;
   surface::Geometry geometry_;
   std::unique_ptr<coupling::Tube> tube_;
   coupling::Resistance resistance_;
   std::unique_ptr<coupling::RigidParticle> free_;
+  std::vector<Series> series_;
   std::vector<Column> columns_;
+  Turning turning_;
   coupling::Work before_;  // of earlier parts of a resumed run
 };
 

@@ -12,6 +12,7 @@
 #include "app/provenance.hpp"
 #include "app/results.hpp"
 #include "app/scene.hpp"
+#include "app/series_manual.hpp"
 #include "app/signals.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
@@ -30,7 +31,7 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 
 struct Arguments {
   std::vector<std::string> decks, settings;
   std::string output, resume;
-  bool overwrite = false, check = false, reference = false, quiet = false;
+  bool overwrite = false, check = false, reference = false, reference_series = false, quiet = false;
 };
 
 void state(CLI::App& app, Arguments& arguments) {
@@ -45,6 +46,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
   app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
+  app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
@@ -78,6 +80,10 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
 int run(const Arguments& arguments, bool speaks) {
   if (arguments.reference) {
     if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene{});
+    return done;
+  }
+  if (arguments.reference_series) {
+    if (speaks) std::cout << series_manual();
     return done;
   }
   const bool resume = !arguments.resume.empty();

@@ -42,6 +42,7 @@ class Moving {
   virtual void undo_adapt(const Net&) {}                                         ///< goes back to the mesh before, in this shape, for a last picture
   virtual std::vector<Warning> remarks() { return {}; }                          ///< for the user, who is to hear of each kind once
   virtual coupling::Work work() const = 0;
+  virtual Turning turning() const = 0;                                           ///< as of the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual const std::vector<Column>& columns() const = 0;
   virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;

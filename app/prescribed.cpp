@@ -7,6 +7,7 @@
 #include <iterator>
 #include <optional>
 
+#include "app/numbers.hpp"
 #include "app/results.hpp"
 #include "app/signals.hpp"
 #include "app/tube.hpp"
@@ -31,13 +32,17 @@ Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const Net& u, 
   return body.residual_work(u, f, z);
 }
 
+coupling::RigidMotion prescribed_motion(const Scene& scene) {
+  return {scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
+}
+
 double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
 
 }  // namespace
 
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
   const Vec3& centre = scene.particle.shape.center;
-  const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
+  const coupling::RigidMotion motion = prescribed_motion(scene);
   Net u = coupling::rigid_velocity(body.rest, motion, centre);
   if (body.flow.affine())
     for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) -= body.flow.velocity(body.rest.row(a).transpose()).transpose();
@@ -69,60 +74,46 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
   return s;
 }
 
-const std::vector<Column>& prescribed_columns() {
-  static const std::vector<Column> all = [] {
-    std::vector<Column> list = {{"time", "time", "the problem is steady"},
-                                {"drag_x1", "force", "force on the particle, component 1"},
-                                {"drag_x2", "force", "force on the particle, component 2"},
-                                {"drag_x3", "force", "force on the particle, component 3"},
-                                {"torque_x1", "force length", "torque on the particle about its centre, component 1"},
-                                {"torque_x2", "force length", "torque on the particle about its centre, component 2"},
-                                {"torque_x3", "force length", "torque on the particle about its centre, component 3"},
-                                {"drag_error", "1", "|F - F_exact|/|F_exact|"},
-                                {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"},
-                                {"torque_error", "1", "|T - T_exact|/|T_exact|"},
-                                {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n"},
-                                {"normal_l2_error", "1", "L2 norm of n_h - n over that of n"},
-                                {"solver_iterations", "1", "iterations of the linear solver for the traction"},
-                                {"kernel_evaluations", "1", "of the layer operator, all rules together"}};
-    std::ranges::copy(named(tube_columns(), {"disturbed_pressure_drop", "gap"}), std::back_inserter(list));
-    std::ranges::copy(named(columns(), {"stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "volume",
-                                        "area", "n_control_points", "wall_seconds"}),
-                      std::back_inserter(list));
-    return list;
-  }();
+namespace {
+
+/// Errors are those that an exact solution tells: relative ones of a force or torque that it has.
+std::vector<Series> prescribed_series(const Scene& scene) {
+  std::vector<Series> all = series({"time", "drag_x1", "drag_x2", "drag_x3", "torque_x1", "torque_x2", "torque_x3"});
+  const auto add = [&all](bool has, std::initializer_list<std::string_view> names) {
+    if (has) std::ranges::copy(series(names), std::back_inserter(all));
+  };
+  const auto exact = scene.tube.present ? std::nullopt : exact_body(scene, prescribed_motion(scene));
+  const bool pushed = exact && exact->force().norm() > 0, turned = exact && exact->torque().norm() > 0;
+  add(pushed, {"drag_error", "drag_error_of_traction"});
+  add(turned, {"torque_error"});
+  add(exact && exact->presses(), {"pressure_l2_error"});
+  add(exact.has_value(), {"normal_l2_error"});
+  add(true, {"solver_iterations", "kernel_evaluations"});
+  add(scene.tube.present, {"disturbed_pressure_drop", "gap"});
+  add(true, {"stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "volume", "area", "n_control_points",
+             "wall_seconds"});
   return all;
 }
 
-namespace {
-
-/// The columns that this body has, and their values side by side.
-struct Row {
-  std::vector<Column> columns;
-  std::vector<double> values;
-};
-
-Row row(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
-        const stokes::Evaluations& kernel, double seconds) {
-  const surface::Measures measures = surface::measures(body.space, body.rest);
-  const Mat3 stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
-  const Vec3 &f = s.force, &t = s.torque;
-  const double values[] = {0, f[0], f[1], f[2], t[0], t[1], t[2], s.error, s.integral_error, s.torque_error, s.surface.pressure, s.surface.normal,
-                           static_cast<double>(s.iterations), static_cast<double>(kernel.total()), s.pressure_drop, s.gap,
-                           stresslet(0, 0), stresslet(1, 1), stresslet(2, 2), stresslet(0, 1), stresslet(0, 2), stresslet(1, 2),
-                           measures.volume, measures.area, static_cast<double>(body.space.n_points), seconds};
-  Row row;
-  for (size_t k = 0; k < std::size(values); ++k) {
-    if (std::isnan(values[k])) continue;
-    row.columns.push_back(prescribed_columns()[k]);
-    row.values.push_back(values[k]);
-  }
-  return row;
+Moment moment(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
+              const stokes::Evaluations& kernel, double seconds) {
+  Moment now;
+  now.wall_seconds = seconds;
+  now.n_points = body.space.n_points;
+  now.work.solver_iterations = s.iterations;
+  now.kernel_evaluations = static_cast<double>(kernel.total());
+  now.measures = surface::measures(body.space, body.rest);
+  now.stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
+  now.drag = s.force, now.torque = s.torque;
+  now.drag_error = s.error, now.drag_error_of_traction = s.integral_error, now.torque_error = s.torque_error;
+  now.pressure_error = s.surface.pressure, now.normal_error = s.surface.normal;
+  now.pressure_drop = s.pressure_drop, now.gap = s.gap;
+  return now;
 }
 
 Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) {
-  const coupling::RigidMotion motion{scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
-  return {body.rest, [&body, &s, exact = body.wall ? std::nullopt : exact_body(scene, motion)](const auto& nodes, output::NodeRange range) {
+  const auto exact = body.wall ? std::nullopt : exact_body(scene, prescribed_motion(scene));
+  return {body.rest, [&body, &s, exact](const auto& nodes, output::NodeRange range) {
             const Net f = nodes.values(s.density, range), n = nodes.normals(body.rest, range), x = nodes.values(body.rest, range);
             const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
             std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
@@ -136,6 +127,8 @@ Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) 
 }
 
 }  // namespace
+
+std::vector<Column> prescribed_columns(const Scene& scene) { return columns(prescribed_series(scene)); }
 
 output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
   const bool free = scene.particle.motion == "free";
@@ -152,6 +145,7 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
                                                              : "integrals of the traction"},
           {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},
           {"assembled", formatted("%.1f MB on %d rank%s", 72e-6 * body.space.n_points * body.space.n_points, ranks, ranks > 1 ? "s" : "")},
+          {"numbers", numbers_text(numbers(scene, body))},
           {"symmetry", "none used"}};
   lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
   return lines;
@@ -175,11 +169,12 @@ int resist(const Scene& scene, const RunRequest& request) {
   stop_where_told();
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
-  const Row only = row(scene, body, resistance, solution, kernel, seconds);
+  const std::vector<Series> all = prescribed_series(scene);
+  const std::vector<double> only = row(all, moment(scene, body, resistance, solution, kernel, seconds));
 
   clock.emplace(phases, "output");
-  Results results(scene, request, body, surface::BezierMap(body.space), only.columns, ranks);
-  results.record(only.values);
+  Results results(scene, request, body, surface::BezierMap(body.space), columns(all), ranks);
+  results.record(only);
   motion::State state;
   state.x = body.rest;
   results.save(state, {}, portrait(scene, body, solution), state.time);

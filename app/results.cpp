@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/duct_picture.hpp"
+#include "app/numbers.hpp"
 #include "app/provenance.hpp"
 #include "app/together.hpp"
 #include "base/errors.hpp"
@@ -309,6 +310,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.counts = account.counts;
   summary.seconds = with_earlier(phases, account.earlier);
   summary.plan = account.plan;
+  summary.numbers = numbers(scene_, *body_);
   summary.warnings = warnings_;
   output::write_summary(directory_ / "summary.yaml", summary);
   if (durable() == output::Durable::yes)

@@ -216,6 +216,7 @@ class Run {
   /// What a step that is done leaves for a checkpoint.
   void settle() {
     standing_.work = particle_->work();
+    standing_.turning = particle_->turning();
     const stokes::Evaluations now = coupling::of_all(particle_->kernel_evaluations(), ranks_);
     standing_.kernel = {earlier_kernel_.far + now.far, earlier_kernel_.near + now.near, earlier_kernel_.self + now.self};
     standing_.warnings = warnings_.memory();
@@ -370,7 +371,7 @@ class Run {
 
 std::vector<std::string> check_expectations(const Scene& scene) {
   const bool prescribed = scene.particle.motion == "prescribed";
-  const std::vector<Column> series = prescribed                       ? prescribed_columns()
+  const std::vector<Column> series = prescribed                       ? prescribed_columns(scene)
                                      : scene.particle.motion == "free" ? free_columns(scene)
                                                                        : deforming_columns(scene);
   std::vector<std::string> names;

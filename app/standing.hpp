@@ -1,6 +1,7 @@
 #pragma once
 // Where a run stands beside its state, and how a checkpoint keeps it.
 
+#include "app/turning.hpp"
 #include "app/warnings.hpp"
 #include "coupling/capsule.hpp"
 #include "output/checkpoint.hpp"
@@ -17,6 +18,7 @@ struct Standing {
   int refinements = 0, coarsenings = 0;
   stokes::Evaluations kernel;       ///< of all ranks
   Warnings::Memory warnings;
+  Turning turning;                  ///< of the particle
   output::Entries<double> seconds;  ///< of the first rank, by phase
 };
 

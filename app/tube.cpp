@@ -7,7 +7,6 @@
 #include "deck/words.hpp"
 #include "surface/clearance.hpp"
 #include "surface/geometry.hpp"
-#include "surface/transport.hpp"
 
 namespace tanktread {
 
@@ -62,51 +61,17 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
-const std::vector<Column>& tube_columns() {
-  static const std::vector<Column> all = {
-      {"centroid_x1", "length", "centroid, component 1: what the frame has travelled"},
-      {"centroid_x2", "length", "centroid, component 2"},
-      {"centroid_x3", "length", "centroid, component 3"},
-      {"velocity_x1", "length/time", "of the centroid along the tube"},
-      {"velocity_x2", "length/time", "of the centroid, component 2"},
-      {"velocity_x3", "length/time", "of the centroid, component 3"},
-      {"migration_velocity", "length/time", "speed of the centroid in the x2 x3 plane, positive towards the axis"},
-      {"tank_treading_velocity", "length/time",
-       "mean tangential velocity relative to the centroid on the curve that the plane x2 = centroid cuts out (6.5); positive where the side of "
-       "larger x3 moves on"},
-      {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)"},
-      {"gap", "length", "smallest distance between particle and wall"},
-      {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish"},
-      {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: should vanish"},
-      {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity"},
-      {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance vanishes"},
-      {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance"},
-  };
-  return all;
+std::vector<Series> tube_series() {
+  return series({"disturbed_pressure_drop", "gap", "disturbance_flux", "force_imbalance", "cap_velocity", "pressure_drop_by_flux",
+                 "pressure_drop_by_force"});
 }
 
-std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state) {
+void add_tube(coupling::Capsule& capsule, const Net& x, const Net& v, Moment& now) {
   coupling::Tube& tube = *capsule.tube();
-  const Net v = capsule.fluid_velocity(state.x, state.history.front());  // the slope carries what is left of the scheme's iteration, over the step
-  const Vec3 c = capsule.geometry().measures(state.x).centroid, u = surface::centroid_velocity(capsule.geometry(), state.x, v);
-  const Eigen::Vector2d across = c.tail<2>(), moves = u.tail<2>();
-  const coupling::Tube::Response response = capsule.response(state.x);
-  const coupling::Tube::Checks checks = tube.checks(capsule.load(state.x), v, response);
-  return {c[0],
-          c[1],
-          c[2],
-          u[0],
-          u[1],
-          u[2],
-          across.dot(moves) > 0 ? -moves.norm() : moves.norm(),
-          surface::tank_treading_velocity(body.space, state.x, v, c, u),
-          response.pressure_drop,
-          tube.gap(),
-          checks.flux,
-          checks.force,
-          checks.cap_velocity,
-          checks.pressure_by_flux,
-          checks.pressure_by_force};
+  const coupling::Tube::Response response = capsule.response(x);
+  now.tube = tube.checks(capsule.load(x), v, response);
+  now.pressure_drop = response.pressure_drop;
+  now.gap = tube.gap();
 }
 
 output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks) {

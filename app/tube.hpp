@@ -19,9 +19,9 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
 /// The tube as the particle meets it; nothing without one.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// Further series of a deformable particle in a tube, and their values. Collective.
-const std::vector<Column>& tube_columns();
-std::vector<double> tube_row(const Body& body, coupling::Capsule& capsule, const motion::State& state);
+/// Further series of a deformable particle in a tube, and what they are taken from: the particle at x, with the velocity v. Collective.
+std::vector<Series> tube_series();
+void add_tube(coupling::Capsule& capsule, const Net& x, const Net& v, Moment& now);
 
 /// Lines of the plan.
 output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks);

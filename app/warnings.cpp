@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/diagnostics.hpp"
 #include "base/formatted.hpp"
 
 namespace tanktread {
@@ -103,7 +104,9 @@ std::string Warnings::fold(const Signs& signs) const {
   const std::string cure = scene_.membrane.load == "strong" && elastic(scene_)           ? "set Membrane/load to weak"
                            : scene_.interface_motion() == "material" && !elastic(scene_) ? "set Interface/motion to relaxed"
                                                                                          : finer_mesh(scene_);
-  return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure;
+  const bool drawn = !elastic(scene_) && strains(scene_);
+  return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure +
+         (drawn ? "; or there is no steady shape: above a critical capillary number the flow draws the drop out until it breaks" : "");
 }
 
 std::string Warnings::stretch(const Signs& signs) const {

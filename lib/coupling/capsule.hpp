@@ -103,7 +103,13 @@ class Capsule : public Dynamics {
   /// The fluids' velocity on the surface at x: `velocity`, unless control points slide.
   Net fluid_velocity(const Net& x, const Net& near = {});
 
-  /// Particle stresslet S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
+  /// The same at the latest place that was asked about, if that is within `distance` (in `norm`) of x: for a row of the series, at no cost.
+  Net fluid_velocity_about(const Net& x, double distance) {
+    const bool about = latest_.x.rows() == x.rows() && norm(x - latest_.x) <= distance;
+    return fluid_velocity(about ? latest_.x : x);
+  }
+
+  /// Particle stresslet (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
   /// The fluids' velocity v is `slope`, that of the control points, or is evaluated where it matters and they slide along an interface.
   /// Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(const Net& x, const Net& slope);

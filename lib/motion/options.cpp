@@ -19,7 +19,7 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("minimum step", minimum_step, deck::positive(), "time",
               "a controlled step that would be shorter ends the run; if not given, 1e-9 over the rate of the flow");
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
-              "the run ends when the series `shape_velocity` (6.6) falls below it; if not given, only at the final time. Where the "
+              "the run ends when the series `shape_velocity` (6.8) falls below it; if not given, only at the final time. Where the "
               "membrane treads, 2e-4 is reached at the default tolerance, with 216 elements as with 864");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1", "end of the sub-iteration of `crank-nicolson` (4.1)");
   section.key("nonlinear solver", nonlinear_solver, deck::Choice{"plain", "anderson", "newton-krylov"},

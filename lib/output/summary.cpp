@@ -54,7 +54,7 @@ std::string yaml(const Summary& summary) {
     text += "    error: " + scalar(one.error) + "\n";
     text += "    passed: " + scalar(one.passed) + "\n";
   }
-  text += map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan);
+  text += map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan) + map("numbers", summary.numbers);
   text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";
   for (const std::string& one : summary.warnings) text += "  - " + scalar(one) + "\n";
   return text;

@@ -28,6 +28,7 @@ struct Summary {
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
   Entries<double> seconds;    ///< by phase
   Entries<std::string> plan;  ///< what the run chose to compute, one line each
+  Entries<double> numbers;    ///< derived and dimensionless ones of the scene
   std::vector<std::string> warnings;  ///< edges of the method that the run came near to, a sentence each
 };
 

@@ -9,7 +9,7 @@
 
 #include <Eigen/LU>
 
-#include "spline/bernstein.hpp"
+#include "surface/sampling.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -110,34 +110,11 @@ struct Crossing {
   double distance;
 };
 
-constexpr int cells = 6;  ///< sampling intervals an element and direction
-
-/// Places of the sampling grid, [t][s].
-void sample(const Patch& patch, Vec3 (&x)[cells + 1][cells + 1]) {
-  const int p = patch.degree;
-  double at[cells + 1][spline::max_degree + 1];
-  for (int i = 0; i <= cells; ++i) spline::bernstein(p, double(i) / cells, at[i]);
-  for (int c = 0; c < 3; ++c) {
-    double along_s[spline::max_degree + 1][cells + 1];
-    for (int j = 0; j <= p; ++j)
-      for (int i = 0; i <= cells; ++i) {
-        along_s[j][i] = 0;
-        for (int k = 0; k <= p; ++k) along_s[j][i] += at[i][k] * patch.coordinate(c, j * (p + 1) + k);
-      }
-    for (int j = 0; j <= cells; ++j)
-      for (int i = 0; i <= cells; ++i) {
-        x[j][i][c] = 0;
-        for (int k = 0; k <= p; ++k) x[j][i][c] += at[j][k] * along_s[k][i];
-      }
-  }
-}
-
 /// Where the plane x2 = centre_2 cuts the lines of a sampling grid, by linear interpolation.
 void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
   result.clear();
   double above[cells + 1][cells + 1];
-  Vec3 y[cells + 1][cells + 1];
-  sample(patch, y);
+  Grid y = sample(patch);
   for (int j = 0; j <= cells; ++j) {
     for (int i = 0; i <= cells; ++i) {
       y[j][i] -= centre;

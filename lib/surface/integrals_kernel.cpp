@@ -72,6 +72,7 @@ template <int p>
 struct Of {
   static constexpr int n = quadrature::gauss_points_for_degree(3 * p - 1);
   static constexpr int n_moments = quadrature::gauss_points_for_degree(5 * p - 1);
+  static constexpr int n_transport = quadrature::gauss_points_for_degree(4 * p - 1);
 
   static void volume(const Lanes& points, double (&result)[lanes]) {
     static const Table<p, n> table;
@@ -131,6 +132,33 @@ struct Of {
     for (int c = 0; c < 3; ++c) store(first[c] / 4, result.first[c]);
     for (int k = 0; k < 6; ++k) store(second[k] / 5, result.second[k]);
   }
+
+  static void transport(const Lanes& points, const Lanes& velocities, Transport& result) {
+    static const Table<p, n_transport> table;
+    Lane v[n_transport][n_transport][3], volume_sum{}, flux_sum{}, first[3]{}, carried[3]{};
+    each_node<p, n_transport, true>(table, velocities, [&](int qs, int qt, const Lane(&at)[3], const Lane(&)[3], const Lane(&)[3]) {
+      for (int c = 0; c < 3; ++c) v[qs][qt][c] = at[c];
+    });
+    each_node<p, n_transport, true>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
+      Lane normal[3];
+      cross(a1, a2, normal);
+      const double weight = table.weight[qs] * table.weight[qt];
+      const Lane outward = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
+      volume_sum += outward;
+      const Lane flux = weight * (v[qs][qt][0] * normal[0] + v[qs][qt][1] * normal[1] + v[qs][qt][2] * normal[2]);
+      flux_sum += flux;
+      for (int c = 0; c < 3; ++c) {
+        first[c] += outward * x[c];
+        carried[c] += flux * x[c];
+      }
+    });
+    store(volume_sum / 3, result.volume);
+    store(flux_sum, result.flux);
+    for (int c = 0; c < 3; ++c) {
+      store(first[c] / 4, result.first[c]);
+      store(carried[c], result.carried[c]);
+    }
+  }
 };
 
 /// Calls `use` with the degree as a compile-time constant.
@@ -163,6 +191,10 @@ void volume_gradient(int degree, const Lanes& x, Lanes& gradient) {
 
 void moments(int degree, const Lanes& x, Moments& result) {
   with_degree(degree, [&](auto p) { Of<p>::moments(x, result); });
+}
+
+void transport(int degree, const Lanes& x, const Lanes& v, Transport& result) {
+  with_degree(degree, [&](auto p) { Of<p>::transport(x, v, result); });
 }
 
 }  // namespace tanktread::surface::kernel

@@ -26,4 +26,11 @@ struct Moments {
 };
 void moments(int degree, const Lanes& x, Moments& result);
 
+/// What a velocity v carries out of each element: int v.n dG and int x_i v.n dG; and its volume and int x_i over the interior, as above. Exact,
+/// (4p - 1)/2 + 1 Gauss points a direction.
+struct Transport {
+  double volume[lanes], first[3][lanes], flux[lanes], carried[3][lanes];
+};
+void transport(int degree, const Lanes& x, const Lanes& v, Transport& result);
+
 }  // namespace tanktread::surface::kernel

@@ -3,100 +3,130 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Geometry>
 
+#include "spline/bernstein.hpp"
+#include "surface/integrals_kernel.hpp"
 #include "surface/patch.hpp"
+#include "surface/sampling.hpp"
 
 namespace tanktread::surface {
 
 namespace {
 
-constexpr int intervals = 6;  // of an element, a direction
-
-/// Volume and first moment about the origin.
-Eigen::Vector4d moments(const Geometry& geometry, const Net& x) {
-  const Measures m = geometry.measures(x);
-  Eigen::Vector4d result;
-  result << m.volume, m.volume * m.centroid;
-  return result;
-}
-
-/// A corner of the grid: place, velocity, height over the plane.
+/// A corner of the grid: place, velocity, unstressed place (if there is one), height over the plane.
 struct Corner {
-  Vec3 x, v;
+  Vec3 x, v, unstressed;
   double height;
 };
 
-/// Circulation and length of the curve so far.
+/// The curve so far: circulation and length; the weight of its points (6.6), and their mean angular velocity times it.
 struct Circuit {
-  double circulation = 0, length = 0;
+  Vec3 centre, of_centre;
+  bool elastic;
+  double circulation = 0, length = 0, weight = 0, turned = 0;
+  bool onwards = false, backwards = false;  // whether a piece moves along the curve, or against it
 
   /// The piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
   void cut(const Corner& a, const Corner& b, const Corner& c) {
+    const bool above[3] = {a.height > 0, b.height > 0, c.height > 0};
+    if (above[0] == above[1] && above[1] == above[2]) return;
     const std::array<const Corner*, 3> corners = {&a, &b, &c};
-    std::array<Vec3, 2> x, v;
-    int n = 0;
+    std::array<Vec3, 2> x, v, unstressed;
+    size_t n = 0;
     for (size_t k = 0; k < 3; ++k) {
       const Corner &from = *corners[k], &to = *corners[(k + 1) % 3];
       if ((from.height > 0) == (to.height > 0)) continue;
       const double share = from.height / (from.height - to.height);
-      x[static_cast<size_t>(n)] = from.x + share * (to.x - from.x);
-      v[static_cast<size_t>(n++)] = from.v + share * (to.v - from.v);
+      x[n] = from.x + share * (to.x - from.x);
+      v[n] = from.v + share * (to.v - from.v) - of_centre;
+      unstressed[n++] = from.unstressed + share * (to.unstressed - from.unstressed);
     }
-    if (n != 2) return;
     const Vec3 normal = (b.x - a.x).cross(c.x - a.x), along = x[1] - x[0];
+    if (along.norm() < 1e-9 * (b.x - a.x).norm()) return;  // at a corner: rounding has its direction
     const double sense = along.dot(Vec3::UnitY().cross(normal)) > 0 ? 1 : -1;
-    circulation += sense * along.dot(v[0] + v[1]) / 2;
+    const double treads = sense * along.dot(v[0] + v[1]) / 2;
+    circulation += treads;
     length += along.norm();
+    (treads > 0 ? onwards : backwards) = true;
+    const double passed = elastic ? (unstressed[1] - unstressed[0]).norm() : along.squaredNorm() / std::abs(treads);
+    const Vec3 y = (x[0] + x[1]) / 2 - centre, moves = (v[0] + v[1]) / 2;
+    weight += passed;
+    turned += passed * (y[2] * moves[0] - y[0] * moves[2]) / (y[0] * y[0] + y[2] * y[2]);
+  }
+
+  Treading treading() const {
+    if (!(length > 0)) return {};
+    const bool turns = weight > 0 && std::isfinite(weight) && (elastic || onwards != backwards);
+    return {circulation / length, turns ? turned / weight : 0};
   }
 };
 
-/// Whether the plane x2 = height can meet the element: it lies in the hull of its control points, if none of its functions is negative; a
-/// quarter of the hull's size stands for those that are.
-bool may_meet(const spline::Element& element, const Net& x, double height) {
-  double low = 1e300, high = -1e300;
-  for (const int a : element.points) {
-    low = std::min(low, x(a, 1));
-    high = std::max(high, x(a, 1));
+/// The Bezier points of one element of a net.
+class Element {
+ public:
+  Element(const BezierMap& map, const Net& net, int element) : degree_(map.degree(element)) { map.points(element, net, points_); }
+  Patch patch() const { return {degree_, points_}; }
+
+ private:
+  int degree_;
+  double points_[3 * (spline::max_degree + 1) * (spline::max_degree + 1)];
+};
+
+/// The Bezier points of eight elements of one degree; a short group repeats its last.
+kernel::Lanes in_lanes(const BezierMap& map, const Net& net, std::span<const int> group) {
+  kernel::Lanes lanes;
+  for (size_t l = 0; l < kernel::lanes; ++l) {
+    const Element element(map, net, group[std::min(l, group.size() - 1)]);
+    for (int k = 0; k < 3 * element.patch().n_bezier(); ++k)
+      lanes.value[static_cast<size_t>(k) * kernel::lanes + l] = element.patch().points[k];
   }
-  const double slack = (high - low) / 4;
-  return low - slack <= height && height <= high + slack;
+  return lanes;
+}
+
+/// Whether the plane x2 = height can meet the element, which lies in the hull of its Bezier points.
+bool may_meet(const Patch& patch, double height) {
+  const auto [low, high] = std::minmax_element(patch.points + patch.n_bezier(), patch.points + 2 * patch.n_bezier());
+  return *low <= height && height <= *high;
 }
 
 }  // namespace
 
-/// Volume and first moment are polynomials of degree three and four in the net, for which this difference is the derivative.
-Vec3 centroid_velocity(const Geometry& geometry, const Net& x, const Net& v) {
+Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
   const Eigen::RowVector3d mean = x.colwise().mean();
-  const Net y = x.rowwise() - mean;
-  const double speed = v.norm();
-  if (!(speed > 0)) return Vec3::Zero();
-  const double e = 0.1 * y.norm() / speed;
-  const auto at = [&](double s) { return moments(geometry, y + s * e * v); };
-  const Eigen::Vector4d rate = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * e), now = at(0);
-  return (rate.tail<3>() - rate[0] / now[0] * now.tail<3>()) / now[0];
+  const Net y = x.rowwise() - mean;  // about its own mean, as integrals by the divergence theorem lose digits where the origin is far away
+  double volume = 0, flux = 0;
+  Vec3 first = Vec3::Zero(), carried = Vec3::Zero();
+  for (const Block& block : map.blocks().blocks)
+    for (size_t begin = 0; begin < block.elements.size(); begin += kernel::lanes) {
+      const std::span group = std::span(block.elements).subspan(begin, std::min<size_t>(kernel::lanes, block.elements.size() - begin));
+      kernel::Transport part;
+      kernel::transport(block.degree, in_lanes(map, y, group), in_lanes(map, v, group), part);
+      for (size_t l = 0; l < group.size(); ++l) {
+        volume += part.volume[l], flux += part.flux[l];
+        for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], carried[c] += part.carried[c][l];
+      }
+    }
+  return (carried - flux / volume * first) / volume;
 }
 
-double tank_treading_velocity(const spline::Space& space, const Net& x, const Net& v, const Vec3& centre, const Vec3& of_centre) {
-  Circuit circuit;
-  std::array<std::array<Corner, intervals + 1>, intervals + 1> grid;
-  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
-    if (!may_meet(space.elements[static_cast<size_t>(e)], x, centre[1])) continue;
-    const ElementPoints places(space, x, e), velocities(space, v, e);
-    for (size_t j = 0; j <= intervals; ++j)
-      for (size_t i = 0; i <= intervals; ++i) {
-        const double s = static_cast<double>(i) / intervals, t = static_cast<double>(j) / intervals;
-        const Vec3 at = place(places.patch(), s, t);
-        grid[j][i] = {at, place(velocities.patch(), s, t) - of_centre, at[1] - centre[1]};
-      }
-    for (size_t j = 0; j < intervals; ++j)
-      for (size_t i = 0; i < intervals; ++i) {
-        circuit.cut(grid[j][i], grid[j][i + 1], grid[j + 1][i + 1]);
-        circuit.cut(grid[j][i], grid[j + 1][i + 1], grid[j + 1][i]);
+Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
+  Circuit circuit{centre, of_centre, unstressed != nullptr};
+  for (int e = 0; e < map.n_elements(); ++e) {
+    const Element places(map, x, e);
+    if (!may_meet(places.patch(), centre[1])) continue;
+    const Grid at = sample(places.patch()), moves = sample(Element(map, v, e).patch());
+    const Grid before = unstressed ? sample(Element(map, *unstressed, e).patch()) : at;
+    const auto corner = [&](size_t j, size_t i) { return Corner{at[j][i], moves[j][i], before[j][i], at[j][i][1] - centre[1]}; };
+    for (size_t j = 0; j < cells; ++j)
+      for (size_t i = 0; i < cells; ++i) {
+        circuit.cut(corner(j, i), corner(j, i + 1), corner(j + 1, i + 1));
+        circuit.cut(corner(j, i), corner(j + 1, i + 1), corner(j + 1, i));
       }
   }
-  return circuit.length > 0 ? circuit.circulation / circuit.length : 0;
+  return circuit.treading();
 }
 
 }  // namespace tanktread::surface

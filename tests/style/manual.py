@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""inputs/REFERENCE.md is what the program prints of itself.
+"""inputs/REFERENCE.md and inputs/SERIES.md are what the program prints of itself.
 
 Usage: manual.py <source directory> <tanktread>
 """
@@ -9,8 +9,12 @@ import subprocess
 import sys
 
 source, program = pathlib.Path(sys.argv[1]), sys.argv[2]
-printed = subprocess.run([program, "--reference"], check=True, capture_output=True, text=True).stdout
-stored = (source / "inputs/REFERENCE.md").read_text()
-if printed != stored:
-    sys.stdout.writelines(difflib.unified_diff(stored.splitlines(True), printed.splitlines(True), "inputs/REFERENCE.md", "--reference"))
-    sys.exit("\nThe manual is stale: tanktread --reference > inputs/REFERENCE.md")
+stale = []
+for flag, name in ("--reference", "inputs/REFERENCE.md"), ("--reference-series", "inputs/SERIES.md"):
+    printed = subprocess.run([program, flag], check=True, capture_output=True, text=True).stdout
+    stored = (source / name).read_text()
+    if printed != stored:
+        sys.stdout.writelines(difflib.unified_diff(stored.splitlines(True), printed.splitlines(True), name, flag))
+        stale.append(f"The manual is stale: tanktread {flag} > {name}")
+if stale:
+    sys.exit("\n" + "\n".join(stale))

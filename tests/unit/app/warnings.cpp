@@ -80,6 +80,13 @@ TEST(Warnings, TellOfAnElementThatFoldsWithTheCureOfTheScene) {
   EXPECT_TRUE(names(Told({"Membrane/law=surface tension", "Interface/motion=material"}).first(signs), "Interface/motion"));
 }
 
+TEST(Warnings, TellOfADropThatTheFlowMayDrawOutWithoutEnd) {
+  Signs signs = at(0.1, 0);
+  signs.jacobian_ratio = 0.01;
+  EXPECT_TRUE(names(Told({"Flow/type=uniaxial extension", "Membrane/law=surface tension"}).first(signs), "no steady shape"));
+  EXPECT_FALSE(names(Told({"Flow/type=uniaxial extension"}).first(signs), "no steady shape"));
+}
+
 TEST(Warnings, TellOfVolumeGapsAndSlimElements) {
   Signs lost = at(0.1, 0), slim = lost, narrow = lost;
   lost.volume_error = -0.01;

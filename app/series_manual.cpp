@@ -1,0 +1,129 @@
+#include "app/series_manual.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "app/diagnostics.hpp"
+#include "app/duct_picture.hpp"
+#include "app/moving.hpp"
+#include "app/numbers.hpp"
+#include "app/prescribed.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// A field of the snapshots, or an entry of the summary.
+struct Entry {
+  const char *name, *unit, *of, *description;
+};
+
+constexpr Entry fields[] = {
+    {"Points", "length", "all", "places of the surface"},
+    {"Normals", "1", "all", "unit normals, out of the particle"},
+    {"load", "force/length^2", "capsule, drop",
+     "load of the fluids on the membrane, per unstressed area (3.7) or per present area (3.6), as Membrane/load measure says"},
+    {"traction", "force/length^2", "all", "the load per present area; of a rigid body the traction of the fluid on it"},
+    {"displacement", "length", "capsule, drop", "x - X from the unstressed shape"},
+    {"velocity", "length/time", "capsule, drop, free body", "of the fluids on the surface; of a free body its own"},
+    {"smallest tension", "force/length", "capsule, drop", "smaller principal tension (3.2)"},
+    {"largest tension", "force/length", "capsule, drop", "larger principal tension (3.2)"},
+    {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
+    {"pressure", "force/length^2", "prescribed body",
+     "p = -t.n of the traction t on the body, its mean over the surface as of the exact solution"},
+    {"pressure error", "force/length^2", "prescribed body", "p - p_exact, where the exact solution is known"},
+};
+
+constexpr Entry entries[] = {
+    {"status", "", "all", "why the run ended: `done`, `steady`, `stopped: ` by what, `failed: ` and the reason"},
+    {"final", "", "all", "last value of every series; of a prescribed body also the vectors `drag` and `torque`"},
+    {"expect", "", "all", "of every Expect: name, value found, value expected, error, whether it passed"},
+    {"counts", "1", "all", "work of the whole run"},
+    {"counts/steps", "1", "capsule, drop, free body", "steps"},
+    {"counts/refinements", "1", "capsule, drop, free body", "changes of the mesh that cut elements"},
+    {"counts/coarsenings", "1", "capsule, drop, free body", "changes of the mesh that merged elements"},
+    {"counts/evaluations", "1", "capsule, drop, free body", "velocity evaluations (4.2)"},
+    {"counts/assemblies", "1", "capsule, drop, free body", "assemblies of the frozen layer operator (4.3)"},
+    {"counts/tangents", "1", "capsule, drop, free body", "tangents of the membrane"},
+    {"counts/linear_solves", "1", "capsule, drop, free body", "linear solves of the implicit step; of a free body for its motion"},
+    {"counts/solver_iterations", "1", "all", "iterations of these; of a prescribed body of the solve for the traction"},
+    {"counts/solver_iterations_in_all", "1", "prescribed body", "with those of the solves that correct the forces (2.11)"},
+    {"counts/velocity_iterations", "1", "capsule, drop, free body", "iterations of the systems that velocities come from"},
+    {"counts/velocity_solves", "1", "capsule, drop, free body", "solves of these systems"},
+    {"counts/most_velocity_iterations", "1", "capsule, drop, free body", "iterations of one of them, at most"},
+    {"counts/kernel_evaluations_far", "1", "all", "evaluations of the kernels G and T (2.1), of all ranks: by far rules"},
+    {"counts/kernel_evaluations_near", "1", "all", "by near rules"},
+    {"counts/kernel_evaluations_self", "1", "all", "on the element of the target"},
+    {"counts/unknowns", "1", "prescribed body", "unknowns of the traction"},
+    {"seconds", "s", "all", "wall time of the first rank by phase, which add up to the run's"},
+    {"plan", "", "all", "what the run chose to compute, a line each"},
+    {"numbers", "", "all", "derived and dimensionless numbers of the scene, below"},
+    {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
+};
+
+bool has(const std::vector<Column>& columns, std::string_view name) {
+  return std::ranges::find(columns, name, &Column::name) != columns.end();
+}
+
+/// Which particles have a series, as the decks below say.
+std::string owners(std::string_view name) {
+  Scene free, tube, exact;
+  free.particle.shape.radius = tube.particle.shape.radius = 1;
+  tube.tube.present = true;
+  exact.flow.type = "quiescent";
+  exact.particle.shape.shape = "spheroid";
+  exact.particle.shape.semi_axes = Vec3(2, 1, 1);
+  exact.particle.velocity = exact.particle.angular_velocity = Vec3(1, 1, 1);
+  std::string list;
+  for (const auto& [kind, columns] : {std::pair("capsule, drop", &deforming_columns), std::pair("free body", &free_columns),
+                                      std::pair("prescribed body", &prescribed_columns)}) {
+    const bool alone = has(columns(columns == &prescribed_columns ? exact : free), name), inside = has(columns(tube), name);
+    if (!alone && !inside) continue;
+    list += (list.empty() ? "" : ", ") + std::string(kind) + (alone ? "" : " in a tube");
+  }
+  return list;
+}
+
+std::string line(std::string_view name, std::string_view unit, std::string_view of, std::string_view description) {
+  std::string text = "| `" + std::string(name) + "` | " + std::string(unit);
+  if (!of.empty()) text += " | " + std::string(of);
+  text += " | " + std::string(description) + " |\n";
+  for (size_t at = text.find("|v.n|"); at != text.npos; at = text.find("|v.n|", at)) text.replace(at, 5, "\\|v.n\\|");
+  return text;
+}
+
+template <class List>
+std::string table(const char* heading, const List& list) {
+  std::string text = std::string("\n| ") + heading + " | unit | of | what it is |\n|---|---|---|---|\n";
+  for (const Entry& one : list) text += line(one.name, one.unit, one.of, one.description);
+  return text;
+}
+
+}  // namespace
+
+std::string series_manual() {
+  surface::TubeOptions circle;
+  circle.radius = 1;
+  std::string text =
+      "# What comes out\n\nPrinted by `tanktread --reference-series`. Units are those of the deck; equation numbers are those of "
+      "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, a value a finished step and one for the start; "
+      "`Expect` takes all of "
+      "these names. D, inclination and tank-treading are measured in the plane of the flow, which the plan names: x1 x3 but for a `linear` "
+      "flow "
+      "in another plane, whose two directions then stand for x1 and x3.\n\n| series | unit | of | what it is |\n|---|---|---|---|\n";
+  for (const Series& one : all_series()) text += line(one.name, one.unit, owners(one.name), one.description);
+  text += "\n## Fields\n\n`/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the picture.\n" + table("field", fields);
+  text += "\n## The empty tube\n\n`duct.h5`, of a run in a tube.\n\n| array | unit | what it is |\n|---|---|---|\n";
+  for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))
+    text += line(one.name, one.unit, "", one.description);
+  text += "\n## Summary\n\n`summary.yaml`.\n" + table("entry", entries);
+  text +=
+      "\n## Numbers\n\n`numbers` of the summary and of the plan, where they have a meaning.\n\n| number | unit | what it is "
+      "|\n|---|---|---|\n";
+  for (const Number& one : all_numbers()) text += line(one.name, one.unit, "", one.description);
+  return text;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,85 @@
+#include "app/diagnostics.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "app/flow_plane.hpp"
+#include "app/turning.hpp"
+#include "base/errors.hpp"
+
+namespace tanktread {
+namespace {
+
+TEST(Series, AreStatedOnce) {
+  std::set<std::string_view> names;
+  for (const Series& one : all_series()) EXPECT_TRUE(names.insert(one.name).second) << one.name;
+}
+
+TEST(Series, ThatAreNotANumberEndTheRun) {
+  Moment now;
+  const auto two = series({"time", "drag_error"});
+  EXPECT_EQ(row(two, now), (std::vector<double>{0, 0}));
+  now.drag_error = std::numeric_limits<double>::quiet_NaN();
+  try {
+    row(two, now);
+    FAIL();
+  } catch (const RunFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("drag_error"), std::string::npos);
+  }
+}
+
+stokes::FlowOptions linear(std::initializer_list<double> rows) {
+  stokes::FlowOptions flow;
+  flow.type = "linear";
+  flow.gradient = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.begin());
+  return flow;
+}
+
+TEST(FlowPlanes, AreX1X3OfFlowsThatAreBuiltIn) {
+  for (const char* type : {"simple shear", "uniaxial extension", "quiescent"}) {
+    stokes::FlowOptions flow;
+    flow.type = type;
+    EXPECT_TRUE(flow_plane(flow).fixed()) << type;
+  }
+  EXPECT_TRUE(flow_plane(linear({0, 0, 1, 0, 0, 0, 0, 0, 0})).fixed());
+}
+
+TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
+  EXPECT_EQ(flow_plane(linear({0, 1, 0, 0, 0, 0, 0, 0, 0})).description(), "in the plane x1 x2");
+  EXPECT_EQ(flow_plane(linear({0, 0, 0, 0, 0, 1, 0, 0, 0})).description(), "in the plane x2 x3");
+  EXPECT_EQ(flow_plane(linear({1, 0.3, 0, 0.2, -1, 0, 0, 0, 0})).description(), "in the plane x1 x2");
+  // Any turn of a shear turns its plane: the vorticity stays along the normal.
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  stokes::FlowOptions flow = linear({0, 0, 1, 0, 0, 0, 0, 0, 0});
+  flow.gradient = turn * *flow.gradient * turn.transpose();
+  const FlowPlane plane = flow_plane(flow);
+  EXPECT_TRUE(plane.holds_flow);
+  EXPECT_NEAR(std::abs(plane.components(turn.col(1))[1]), 1, 1e-12);
+  EXPECT_LT((plane.axes * plane.axes.transpose() - Mat3::Identity()).norm(), 1e-14);
+}
+
+TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
+  const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
+  EXPECT_FALSE(plane.holds_flow);
+  EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // about the vorticity
+}
+
+TEST(Turnings, CountPastWholeTurns) {
+  Turning turning;
+  double angle = 0;
+  for (int k = 1; k <= 40; ++k) {
+    angle += 100;  // a step of more than a quarter turn
+    turning.advance(1, 100 * std::numbers::pi / 180, std::remainder(angle, 360));
+    EXPECT_NEAR(turning.degrees, angle, 1e-9);
+  }
+  turning.advance(0.5, 100 * std::numbers::pi / 180, {});
+  EXPECT_NEAR(turning.degrees, angle + 50, 1e-9);
+}
+
+}  // namespace
+}  // namespace tanktread
