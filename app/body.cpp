@@ -1,7 +1,9 @@
 #include "app/body.hpp"
 
+#include "app/initial_shape.hpp"
 #include "app/numbers.hpp"
 #include "app/prescribed.hpp"
+#include "app/results.hpp"
 #include "app/tube.hpp"
 #include "base/formatted.hpp"
 #include "coupling/frozen_operator.hpp"
@@ -49,6 +51,12 @@ Body body(const Scene& scene) {
     lay_out(scene, spline::cube(scene.surface.elements_per_side.value(), levels), b);
     b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
   }
+  const auto before = run_before(scene);
+  if (before && scene.adaptation.enabled) {
+    lay_out(scene, stored_mesh(b.mesh, *before), b);
+    b.rest = before->arrays.at("initial");
+  }
+  b.initial = initial_shape(scene, b, before ? &*before : nullptr);
   b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
   b.duct = duct(scene);
   b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
@@ -57,8 +65,9 @@ Body body(const Scene& scene) {
   b.modulus = scene.modulus();
   b.law = law(scene.membrane, b.modulus);
   b.wall = wall(scene, b);
-  b.symmetry = symmetry(scene, b, b.rest);
-  b.volume = surface::measures(b.space, b.rest).volume;
+  b.symmetry = symmetry(scene, b, b.initial);
+  const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
+  b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
   return b;
 }
 
@@ -79,7 +88,7 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
   parameters.viscosity_ratio = scene.particle.viscosity_ratio;
-  parameters.bending = {scene.membrane.bending_modulus, scene.membrane.bending_reference == "unstressed"};
+  parameters.bending = {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed"};
   parameters.radius = body.radius;
   parameters.law = body.law;
   parameters.strong_load = scene.membrane.load == "strong";
@@ -95,13 +104,17 @@ std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body,
   return std::make_unique<coupling::Capsule>(body.space, body.unstressed, body.rest, body.flow, parameters, ranks, phases, std::move(tube));
 }
 
+std::string unbounded_flow(const Scene& scene) {
+  return scene.flow.type + (scene.flow.history ? ", changing in time" : "") + ", unbounded: no wall unknowns, no pressure drop";
+}
+
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (scene.particle.rigid()) return rigid_plan(scene, body, ranks);
   const double points = body.space.n_points;
   const int n_evaluated = static_cast<int>(body.symmetry.fundamental().size());
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
   const bool implicit = scene.time.assembles() || scene.time.scheme == "auto";
-  output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
+  output::Entries<std::string> fluid = {{"flow", unbounded_flow(scene)}};
   if (body.wall) fluid = tube_plan(scene, body, ranks);
   output::Entries<std::string> lines = {
       {"surface", formatted("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),

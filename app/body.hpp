@@ -23,13 +23,14 @@ struct Body {
   spline::TMesh mesh;  ///< empty for one from a file
   spline::Space space;
   std::shared_ptr<const spline::Space> plain;  ///< with the same control points and poles as they are, for poles by the Bezier transform
-  Net rest;        ///< control net of the resting shape, where the run starts
+  Net rest;        ///< control net of the resting shape
+  Net initial;     ///< of the shape that the run starts with
   Net unstressed;  ///< smaller by the pre-inflation
   stokes::AmbientFlow flow;
   FlowPlane plane;     ///< that D and tank-treading are measured in
   membrane::Law law;
   double radius = 1;   ///< R_C
-  double volume = 0;   ///< V0, of the resting shape on the first mesh, whatever mesh the run goes on with
+  double volume = 0;   ///< V0, of the resting shape, or the initial one, on the first mesh, whatever mesh the run goes on with
   double refit_error = 0;  ///< sum of what changes of the mesh have moved the present and the unstressed surface by, over R_C
   double modulus = 1;  ///< G_s, or sigma of an interface
   surface::Symmetry symmetry;                       ///< of all this, and of the shapes that it takes
@@ -53,6 +54,9 @@ stokes::Measure load_measure(const Scene& scene);
 /// The coupled system that the scene needs, and no more, in a tube if there is one.
 std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube);
+
+/// The line of the plan about a flow without a tube.
+std::string unbounded_flow(const Scene& scene);
 
 /// What the run has chosen: blocks, unknowns, memory, kernel evaluations, and what the scene made superfluous.
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);

@@ -54,12 +54,13 @@ class Deforming : public Moving {
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
   const Body& body() const override { return *body_; }
-  Net start() const override { return body_->rest; }
+  Net start() const override { return body_->initial; }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
   void resume(Resumed& resumed) override {
-    if (resumed.body || symmetry(scene_, *body_, resumed.state.x).order() != body_->symmetry.order())
-      settle(resumed.body ? std::move(resumed.body) : std::move(body_), resumed.state.x);
+    const bool another = resumed.volume != body_->volume || symmetry(scene_, *body_, resumed.state.x).order() != body_->symmetry.order();
+    body_->volume = resumed.volume;
+    if (resumed.body || another) settle(resumed.body ? std::move(resumed.body) : std::move(body_), resumed.state.x);
     if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
     capsule_->work() = resumed.standing.work;
     turning_ = resumed.standing.turning;
@@ -68,7 +69,7 @@ class Deforming : public Moving {
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, Standing& standing) override {
     before_.reset();
-    if (holds_centre_) hold_centre(body_->flow, capsule_->geometry(), scene_.particle.shape.center, state);
+    if (holds_centre_) hold_centre(capsule_->flow(), capsule_->geometry(), scene_.particle.shape.center, state);
     if (!scene_.adaptation.enabled || standing.step % scene_.adaptation.interval != 0) return false;
     const auto clock = phases_.time("adaptation");
     Adapted change = adapted(scene_, *body_, state, capsule_->load(state.x), capsule_->measure() == stokes::Measure::reference);

@@ -52,7 +52,8 @@ constexpr Series table[] = {
     {"length_x2", "length", "extent along x2", [](const Moment& m) { return m.shape.lengths[1]; }},
     {"length_x3", "length", "extent along x3", [](const Moment& m) { return m.shape.lengths[2]; }},
     {"normal_velocity", "1",
-     "largest |v.n| over rate x R_C (in a tube over the mean velocity, in the particle's frame): zero when the shape is steady",
+     "largest |v.n| over rate x R_C (in a tube over the mean velocity; there and in parabolic flow in the particle's frame): "
+     "zero when the shape is steady",
      [](const Moment& m) { return m.normal_velocity; }},
     {"shape_velocity", "1", "what smooth changes of shape have of it, root mean square (6.8): `Time/steady tolerance` is held against this",
      [](const Moment& m) { return m.shape_velocity; }},
@@ -342,7 +343,7 @@ double normal_velocity(const Scene& scene, const Body& body, const surface::Geom
   if (state.history.empty()) return 0;
   double largest = 0;
   Vec3 frame = Vec3::Zero();
-  if (scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), state.x, state.history.front())[0];
+  if (!body.flow.affine() || scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), state.x, state.history.front())[0];
   const surface::BezierMap& map = geometry.bezier();
   constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
   double points[most], velocities[most];

@@ -8,6 +8,7 @@ namespace tanktread {
 bool holds_centre(const Scene& scene) {
   if (scene.particle.drift) return *scene.particle.drift == "held";
   if (scene.tube.present) return false;
+  if (scene.flow.type == "parabolic") return false;
   const stokes::AmbientFlow flow(scene.flow);
   const Vec3& center = scene.particle.shape.center;
   if (!flow.velocity(center).isZero(0)) return false;

@@ -31,6 +31,7 @@ std::optional<ExactBody> exact_body(const Scene& scene, const coupling::RigidMot
   const surface::ParticleShape& shape = scene.particle.shape;
   if (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid") return {};
   const stokes::AmbientFlow flow(scene.flow);
+  if (!flow.affine()) return {};
   const Mat3 l = flow.gradient(shape.center);
   if ((l + l.transpose()).norm() > 1e-14 * l.norm()) return {};
   const Mat3 axes = shape.rotation();

@@ -68,7 +68,7 @@ class Free : public Moving {
     coupling::Work work = before_;
     work.evaluations += free_->evaluations();
     work.assemblies += 1;
-    work.solves += tube_ ? free_->evaluations() : 11;
+    work.solves += tube_ ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
     work.solver_iterations += iterations();
     return work;
   }

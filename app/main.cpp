@@ -64,8 +64,8 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// A file that a deck names: what the run that goes on has kept of it, from where the program was started, or beside a deck; as it is named where
-/// there is none.
+/// A file or directory that a deck names: what the run that goes on has kept of it, from where the program was started, or beside a deck; as it is
+/// named where there is none.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
@@ -73,7 +73,7 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   places.push_back(path);
   for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
   for (const auto& place : places)
-    if (std::error_code error; std::filesystem::is_regular_file(place, error)) return place.string();
+    if (std::error_code error; std::filesystem::exists(place, error)) return place.string();
   return name;
 }
 
@@ -101,6 +101,11 @@ int run(const Arguments& arguments, bool speaks) {
   if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
   if (auto& file = scene.particle.shape.file) file = found(*file, kept_surface, arguments);
   scene.particle.shape.read();
+  auto& initial = scene.particle.shape.initial;
+  if (resume && initial && (initial->file || initial->run)) initial.reset();  // which may be gone; the checkpoint has what became of it
+  if (initial)
+    for (auto* name : {&initial->file, &initial->run})
+      if (*name) *name = found(**name, {}, arguments);
   scene.check();
   for (const std::string& sentence : check_expectations(scene))
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;

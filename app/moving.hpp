@@ -22,6 +22,7 @@ struct Resumed {
   motion::State state;
   Standing standing;
   std::unique_ptr<Body> body;
+  double volume = 0;  ///< V0
 };
 
 /// The particle at one moment, as a picture shows it.

@@ -38,10 +38,10 @@ constexpr Number table[] = {
     {"surface_tension", "force/length", "sigma",
      [](const Scene& s, const Body&) { return s.particle.rigid() || elastic(s) ? none : s.modulus(); }},
     {"bending_modulus", "force length", "E_b",
-     [](const Scene& s, const Body&) { return elastic(s) && s.membrane.bending_modulus > 0 ? s.membrane.bending_modulus : none; }},
+     [](const Scene& s, const Body&) { return elastic(s) && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
     {"bending_number", "1", "E_b/(G_s R_C^2)",
      [](const Scene& s, const Body& b) {
-       return elastic(s) && s.membrane.bending_modulus > 0 ? s.membrane.bending_modulus / (s.modulus() * b.radius * b.radius) : none;
+       return elastic(s) && s.bending_modulus() > 0 ? s.bending_modulus() / (s.modulus() * b.radius * b.radius) : none;
      }},
     {"relaxation_time", "time", "mu R_C/G_s, of a drop mu R_C/sigma",
      [](const Scene& s, const Body& b) { return s.particle.rigid() ? none : s.flow.viscosity * b.radius / s.modulus(); }},

@@ -132,13 +132,15 @@ std::vector<Column> prescribed_columns(const Scene& scene) { return columns(pres
 
 output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
   const bool free = scene.particle.motion == "free";
-  output::Entries<std::string> fluid = {{"flow", scene.flow.type + ", unbounded: no wall unknowns, no pressure drop"}};
+  output::Entries<std::string> fluid = {{"flow", unbounded_flow(scene)}};
   if (body.wall) fluid = tube_plan(scene, body, ranks);
   output::Entries<std::string> lines =
          {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
           {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * body.space.n_points)},
           {"particle", free && body.wall ? "rigid and free, no membrane: its motion is solved for with the traction, at each place"
-                       : free ? "rigid and free, no membrane: six rigid motions and five strains, solved once, are all that it can meet"
+                       : free ? "rigid and free, no membrane: six rigid motions" +
+                                    std::string(body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
+                                    ", solved once, are all that it can meet"
                             : "rigid, its motion prescribed: no membrane, nothing moves in time"},
           {"forces", free                                   ? "none"
                      : scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves"

@@ -44,18 +44,24 @@ void store(const spline::TMesh& mesh, output::Checkpoint& checkpoint) {
       Eigen::Map<const Eigen::VectorXi>(mesh.spacing.data(), static_cast<Eigen::Index>(mesh.spacing.size())).cast<double>();
 }
 
-/// The body on the stored mesh; none where the checkpoint holds no mesh.
-std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint) {
-  const auto edges = checkpoint.arrays.find("mesh edges");
-  if (edges == checkpoint.arrays.end()) return {};
-  auto body = std::make_unique<Body>(first);
-  const Eigen::MatrixXd &spacing = checkpoint.arrays.at("mesh spacing"), &bits = edges->second;
-  if (static_cast<size_t>(bits.size()) != body->mesh.edges.size())
+}  // namespace
+
+spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint) {
+  const Eigen::MatrixXd &spacing = checkpoint.arrays.at("mesh spacing"), &bits = checkpoint.arrays.at("mesh edges");
+  if (static_cast<size_t>(bits.size()) != mesh.edges.size())
     throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run goes on from a mesh that is refined.");
-  spline::TMesh mesh = body->mesh;
   for (Eigen::Index i = 0; i < bits.size(); ++i) mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
   for (Eigen::Index i = 0; i < spacing.size(); ++i) mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
-  lay_out(scene, std::move(mesh), *body);
+  return mesh;
+}
+
+namespace {
+
+/// The body on the stored mesh; none where the checkpoint holds no mesh.
+std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint) {
+  if (!checkpoint.arrays.contains("mesh edges")) return {};
+  auto body = std::make_unique<Body>(first);
+  lay_out(scene, stored_mesh(first.mesh, checkpoint), *body);
   body->unstressed = checkpoint.arrays.at("unstressed");
   body->rest = checkpoint.arrays.at("initial");
   body->volume = checkpoint.numbers.at("initial volume");
@@ -68,7 +74,8 @@ UserError another_version(const std::filesystem::path& directory) {
 }
 
 Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
-  return {output::stored_state(checkpoint), stored_standing(checkpoint), stored_body(scene, first, checkpoint)};
+  return {output::stored_state(checkpoint), stored_standing(checkpoint), stored_body(scene, first, checkpoint),
+          checkpoint.numbers.at("initial volume")};
 } catch (const std::out_of_range&) {
   throw another_version(directory);
 }

@@ -46,6 +46,9 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 /// Throws UserError where the directory holds results that the request does not allow to delete, or another run writes to it. Collective.
 void check_vacant(const RunRequest& request);
 
+/// The mesh whose edges a checkpoint holds, on the lattice of `mesh`. Throws UserError where that is another one.
+spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint);
+
 /// The files of a run (README.md, Results). Every rank evaluates its own nodes of a picture, and the first one writes all files; every call is made
 /// by all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
 ///

@@ -118,8 +118,18 @@ void check_motion(const Scene& scene) {
     throw UserError("Particle/viscosity ratio and " + motion + " contradict each other: there is no fluid in a rigid particle.");
   if (scene.adaptation.enabled)
     throw UserError("Adaptation/enabled and " + motion + " contradict each other: the mesh of a rigid particle stays as it is.");
+  if (particle.shape.initial)
+    throw UserError("Particle/initial shape and " + motion + " contradict each other: a rigid particle has the shape that it has.");
   if (scene.time.steady_tolerance)
     throw UserError("Time/steady tolerance and " + motion + " contradict each other: it ends runs of a particle that deforms.");
+}
+
+void check_flow(const Scene& scene) {
+  scene.flow.check();
+  if (scene.flow.history && scene.particle.motion == "prescribed")
+    throw UserError("Flow/history and Particle/motion `prescribed` contradict each other: it is a steady problem.");
+  if (scene.flow.type == "parabolic" && scene.particle.drift == "held")
+    throw UserError("Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
 }
 
 void check_tube(const Scene& scene) {
@@ -147,7 +157,7 @@ void check_adaptation(const Scene& scene) {
 }  // namespace
 
 void Scene::check() const {
-  flow.check();
+  check_flow(*this);
   check_tube(*this);
   particle.shape.check();
   surface.check();
@@ -197,6 +207,8 @@ double Scene::modulus() const {
   if (particle.rigid()) return 0;
   return tube.present ? membrane.modulus(flow.viscosity, speed(), 1.0) : membrane.modulus(flow.viscosity, flow.rate(), radius());
 }
+
+double Scene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
 
 bool Scene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
 

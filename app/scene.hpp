@@ -61,6 +61,7 @@ struct Scene {
   double rate() const;               ///< speed over radius; of the membrane at rest, modulus/(viscosity x radius), where nothing else moves
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
+  double bending_modulus() const;    ///< E_b, units force x length
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law
   bool lands_on_snapshots() const;   ///< whether steps are shortened to end there
   double snapshot_interval() const;  ///< simulated time between snapshots

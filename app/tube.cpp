@@ -18,7 +18,7 @@ void check_fit(const Scene& scene, const Body& body, const surface::Outline& out
   if (from_axis <= 0)
     throw UserError(
         formatted("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
-  const surface::Clearance nearest = surface::clearance(surface::Patches(surface::BezierMap(body.space), body.rest), outline);
+  const surface::Clearance nearest = surface::clearance(surface::Patches(surface::BezierMap(body.space), body.initial), outline);
   const std::string where = formatted("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
   if (nearest.gap <= 0)
     throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",

@@ -35,7 +35,7 @@ std::string finer_mesh(const Scene& scene) {
 double stiffness(const Scene& scene, double h) {
   const double k = wave_number(h), g = scene.modulus(), mu = mean_viscosity(scene);
   const double in_plane = std::max(1 + scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
-  return std::max(in_plane, scene.membrane.bending_modulus * k * k * k / (4 * mu));
+  return std::max(in_plane, scene.bending_modulus() * k * k * k / (4 * mu));
 }
 
 bool Warnings::fresh(const Warning& warning) {
@@ -74,7 +74,7 @@ std::string Warnings::choice() const {
 std::string Warnings::compression(const Signs& signs) {
   if (!elastic(scene_)) return {};
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
-  const double bending = scene_.membrane.bending_modulus;
+  const double bending = scene_.bending_modulus();
   const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
   const bool resolved = fastest < mesh / 2;  // a wave that the mesh carries is no failure of the method
   const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));

@@ -22,7 +22,7 @@ class Evolution {
     body = tanktread::body(scene);
     capsule = tanktread::capsule(scene, body, ranks_, phases_, nullptr);
     scheme_ = motion::integrator(scene.time);
-    state.x = body.rest;
+    state.x = body.initial;
     state.history = {capsule->velocity(state.x)};
     state.step = motion::first_step(*capsule, state, scene.time);
   }

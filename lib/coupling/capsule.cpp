@@ -49,8 +49,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_symmetry(symmetry);
   layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
+  if (by_sites()) sites_ = collocation_matrix(space);
   if (tube_) {
-    sites_ = collocation_matrix(space);
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
   }
@@ -75,7 +75,12 @@ void Capsule::own(const surface::Share& share) {
   own_elements_ = folded_ ? std::move(found.element) : share.elements;
 }
 
-/// Control values of v_inf without a tube: exact, for the flow is affine and the basis sums to one.
+/// What was evaluated stands as long as the flow is the same.
+void Capsule::at(double time, double start) {
+  if (flow_.at(time, start)) latest_ = {};
+}
+
+/// Control values of an affine v_inf: exact, for the basis sums to one.
 Net Capsule::ambient(const Net& x) const {
   Net v(x.rows(), 3);
   for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = flow_.velocity(x.row(i).transpose()).transpose();
@@ -211,9 +216,9 @@ Net Capsule::load_velocity(const Net& x, const Net& f) {
     layer_.apply(x, f, measure(), own_points_, u);
   }
   layer_.shared() ? add(u) : replicate(u);
-  if (tube_) {
+  if (by_sites()) {
     u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
-    if (schur()) {
+    if (tube_ && schur()) {
       Tube::Response response = tube_->respond(f);
       u += response.velocity;
       if (!double_layer_) latest_.response = std::move(response);

@@ -84,6 +84,8 @@ class Capsule : public Dynamics {
   /// Of the latest place nothing is evaluated again. A system starts from `near`, a velocity near the answer, where there is one.
   Net velocity(const Net& x) override { return velocity(x, {}); }
   Net velocity(const Net& x, const Net& near);
+  void at(double time, double start) override;
+  double next_kink(double time) const override { return flow_.next_kink(time); }
   void freeze(const Net& x) override;
   double frozen_bytes() const override;
   void linearise(const Net& x) override;
@@ -117,6 +119,7 @@ class Capsule : public Dynamics {
   double volume_error(const Net& x) const { return volume_error(geometry_.volume(x)); }  ///< V/V0 - 1
   double volume_error(double volume) const { return volume / volume0_ - 1; }
   Tube* tube() { return tube_.get(); }      ///< nothing without one
+  const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
 
   /// What the tube answers to load and velocity at x; the tube is left placed there.
   Tube::Response response(const Net& x);
@@ -129,6 +132,7 @@ class Capsule : public Dynamics {
   Work& work() { return work_; }
 
  private:
+  bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   Net present_velocity(const Net& x, const Net& near);
   Net load_there(const Net& x, Net* other);
@@ -175,9 +179,9 @@ class Capsule : public Dynamics {
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_;
   std::unique_ptr<Tube> tube_;
-  Eigen::SparseMatrix<double> sites_;   // R, in a tube
+  Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube
   double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
-  std::vector<Mat3> gradients_;         // of the flow in a tube at the sites, as linearised
+  std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised
   double volume0_ = 0;
   Work work_;
   struct Latest {

@@ -42,7 +42,7 @@ void Capsule::linearise(const Net& x) {
   ++work_.tangents;
   tangent_.update(x, own_elements_);
   if (interface_) interface_->linearise(x, flux_vector(x));
-  if (tube_) gradients_ = flow_.gradients(sites_ * x);
+  if (by_sites()) gradients_ = flow_.gradients(sites_ * x);
 }
 
 /// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
@@ -56,8 +56,9 @@ Net Capsule::energy_part(const Net& delta) {
   else
     nodal_.apply(f, u);
   replicate(u);
-  if (tube_) {
-    u = tube_->frozen_response(f) - u / parameters_.viscosity;
+  if (by_sites()) {
+    u /= -parameters_.viscosity;
+    if (tube_) u += tube_->frozen_response(f);
     const Net at_sites = sites_ * delta;
     for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
     return solved(collocation_, std::move(u));

@@ -7,16 +7,15 @@ namespace tanktread::coupling {
 
 FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                                const SolverOptions& solvers)
-    : RigidParticle(body.surface(), centre, radius),
+    : RigidParticle(body.surface(), centre, radius, flow),
       body_(body),
-      flow_(flow),
       viscosity_(viscosity),
       krylov_(solvers.krylov, solvers.belos),
       tolerance_(solvers.tolerance),
       unknowns_(Eigen::VectorXd::Zero(body.surface().size() + 6)) {}
 
 /// Everything in the body's axes. Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
-const FreeBodyInTube::Solution& FreeBodyInTube::at(const Net& place) const {
+const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Mat3 turn = rotation_of(place);
   body_.place(surface(place), turn);

@@ -1,6 +1,7 @@
 #pragma once
 // A rigid surface in a fluid: the force density that gives a velocity on it.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,9 @@ class Resistance {
 
   /// Control values, in the body's axes, of the flow at the present place, interpolated at the collocation points.
   Net ambient(const stokes::AmbientFlow& flow) const;
+
+  /// Control values of a field on `surface`, interpolated at the collocation points: `values` at points, a row each.
+  Net interpolated(const std::function<Net(const Net& x)>& values) const { return collocation_.solve(values(sites_ * surface_)); }
 
   /// Control values of f for velocities at control values u. Throws RunFailure, with the residuals, when the solver stops short.
   Net force_density(const Net& u);

@@ -23,6 +23,17 @@ Mat3 unit_strain(int k) {
   return e;
 }
 
+constexpr int affine_modes = 11, quadratic_modes = 18;
+
+/// The fields y_b y_c e_i, b <= c.
+struct UnitQuadratic {
+  int i, b, c;
+};
+UnitQuadratic unit_quadratic(int k) {
+  constexpr int first[] = {0, 0, 0, 1, 1, 2}, second[] = {0, 1, 2, 1, 2, 2};
+  return {k / 6, first[k % 6], second[k % 6]};
+}
+
 Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
   Eigen::Matrix<double, 5, 1> c;
   c << e(0, 0), e(0, 0) + e(1, 1), e(0, 1), e(0, 2), e(1, 2);
@@ -43,16 +54,25 @@ Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& ce
   return u;
 }
 
-RigidModes::RigidModes(Resistance& body, const Vec3& centre) {
-  const Net& surface = body.surface();
-  for (int k = 0; k < 11; ++k) {
+RigidModes::RigidModes(Resistance& body, const Vec3& centre, bool quadratic) : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
+  const Net from_centre = body.surface().rowwise() - centre.transpose();
+  const auto field = [&](int k) -> Net {
     RigidMotion motion;
     if (k < 3) motion.velocity = Vec3::Unit(k);
     if (k >= 3 && k < 6) motion.angular_velocity = Vec3::Unit(k - 3);
-    const Net u = k < 6 ? rigid_velocity(surface, motion, centre) : Net((surface.rowwise() - centre.transpose()) * unit_strain(k - 6));
-    density.push_back(body.force_density(u));
+    if (k < 6) return rigid_velocity(body.surface(), motion, centre);
+    if (k < affine_modes) return from_centre * unit_strain(k - 6);
+    const UnitQuadratic q = unit_quadratic(k - affine_modes);
+    return body.interpolated([&](const Net& x) -> Net {
+      Net u = Net::Zero(x.rows(), 3);
+      u.col(q.i) = (x.col(q.b).array() - centre[q.b]) * (x.col(q.c).array() - centre[q.c]);
+      return u;
+    });
+  };
+  for (int k = 0; k < response.cols(); ++k) {
+    density.push_back(body.force_density(field(k)));
     response.col(k) << body.force(density.back()), body.torque(density.back(), centre);
-    stresslet[static_cast<size_t>(k)] = body.stresslet(density.back(), centre);
+    stresslet.push_back(body.stresslet(density.back(), centre));
   }
 }
 
@@ -68,21 +88,29 @@ Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
 Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
 
 FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow)
-    : RigidParticle(body.surface(), centre, radius), flow_(flow), modes_(body, centre) {
-  drift_ = modes_.response.leftCols<6>().partialPivLu().solve(modes_.response.rightCols<5>());
+    : RigidParticle(body.surface(), centre, radius, flow), modes_(body, centre, !flow.affine()) {
+  drift_ = modes_.response.leftCols<6>().partialPivLu().solve(modes_.response.rightCols(modes_.response.cols() - 6));
 }
 
 /// Amplitudes of the modes in the body's axes: what the body moves by relative to the flow, and the strain that it resists.
-Eigen::Matrix<double, 11, 1> FreeBody::amplitudes(const Net& place) const {
+Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
-  Eigen::Matrix<double, 11, 1> a;
-  a.tail<5>() = -strain_components(0.5 * (l + l.transpose()));
-  a.head<6>() = -drift_ * a.tail<5>();
+  Eigen::VectorXd a(modes_.response.cols());
+  a.segment<5>(6) = -strain_components(0.5 * (l + l.transpose()));
+  if (!flow_.affine()) {
+    const Vec3 d = turn.transpose() * flow_.direction();
+    const Mat3 h = turn.transpose() * flow_.curvature() * turn;
+    for (int k = 0; k < quadratic_modes; ++k) {
+      const auto [i, b, c] = unit_quadratic(k);
+      a[affine_modes + k] = -(b == c ? 1 : 2) * d[i] * h(b, c);
+    }
+  }
+  a.head<6>() = -drift_ * a.tail(a.size() - 6);
   return a;
 }
 
 RigidMotion FreeBody::motion(const Net& place) const {
-  const Eigen::Matrix<double, 11, 1> a = amplitudes(place);
+  const Eigen::VectorXd a = amplitudes(place);
   const Mat3 turn = rotation_of(place);
   const Vec3 centre = centre_of(place);
   return {flow_.velocity(centre) + turn * a.segment<3>(0), angular_velocity(flow_.gradient(centre)) + turn * a.segment<3>(3)};
@@ -113,16 +141,16 @@ Net RigidParticle::surface(const Net& place) const {
 }
 
 Net FreeBody::force_density(const Net& place) const {
-  const Eigen::Matrix<double, 11, 1> a = amplitudes(place);
+  const Eigen::VectorXd a = amplitudes(place);
   Net f = Net::Zero(surface_.rows(), 3);
-  for (int k = 0; k < 11; ++k) f += a[k] * modes_.density[static_cast<size_t>(k)];
+  for (Eigen::Index k = 0; k < a.size(); ++k) f += a[k] * modes_.density[static_cast<size_t>(k)];
   return f * rotation_of(place).transpose();
 }
 
 Mat3 FreeBody::stresslet(const Net& place) const {
-  const Eigen::Matrix<double, 11, 1> a = amplitudes(place);
+  const Eigen::VectorXd a = amplitudes(place);
   Mat3 s = Mat3::Zero();
-  for (int k = 0; k < 11; ++k) s -= a[k] * modes_.stresslet[static_cast<size_t>(k)];
+  for (Eigen::Index k = 0; k < a.size(); ++k) s -= a[k] * modes_.stresslet[static_cast<size_t>(k)];
   const Mat3 turn = rotation_of(place);
   return turn * s * turn.transpose();
 }

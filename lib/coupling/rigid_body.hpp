@@ -1,7 +1,6 @@
 #pragma once
 // A rigid body that no force and no torque acts on, carried by an affine flow or in a tube.
 
-#include <array>
 #include <vector>
 
 #include "base/types.hpp"
@@ -19,14 +18,15 @@ struct RigidMotion {
 /// Control values of U + Omega x (x - centre) on the surface with control net `surface`: exact, for the basis sums to one.
 Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& centre);
 
-/// Resistance to the six rigid motions and the five strains of unit size, in the axes that the body has in `surface`. Whatever an affine
-/// flow does to the body is a combination of these eleven solutions.
+/// Resistance to the six rigid motions, the five strains of unit size and, where `quadratic`, the fields y_j y_k e_i with y = x - centre, in the axes
+/// that the body has in `surface`. Whatever an affine flow does to the body is a combination of the first eleven solutions, whatever a flow (2.20)
+/// does one of all twenty-nine.
 struct RigidModes {
-  RigidModes(Resistance& body, const Vec3& centre);
+  RigidModes(Resistance& body, const Vec3& centre, bool quadratic);
 
-  std::vector<Net> density;               ///< force densities on the fluid: three translations, three rotations, five strains
-  Eigen::Matrix<double, 6, 11> response;  ///< force and torque of each
-  std::array<Mat3, 11> stresslet;         ///< of each
+  std::vector<Net> density;                     ///< force densities on the fluid: translations, rotations, strains, quadratic fields
+  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque of each
+  std::vector<Mat3> stresslet;                  ///< of each
 };
 
 /// Where a rigid body is, as a net of three rows: the centre; the vector and, first in its row, the scalar part of the quaternion that turns the
@@ -39,8 +39,11 @@ Mat3 rotation_of(const Net& place);
 class RigidParticle : public Dynamics {
  public:
   /// `surface`: control net of the body at its initial place; `radius`: R_C.
-  RigidParticle(const Net& surface, const Vec3& centre, double radius) : surface_(surface), centre_(centre), radius_(radius) {}
+  RigidParticle(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow)
+      : surface_(surface), centre_(centre), radius_(radius), flow_(flow) {}
 
+  void at(double time, double start) override { flow_.at(time, start); }
+  double next_kink(double time) const override { return flow_.next_kink(time); }
   Net velocity(const Net& place) override;
   void freeze(const Net&) override {}
   void linearise(const Net&) override {}
@@ -62,13 +65,14 @@ class RigidParticle : public Dynamics {
   Net surface_;
   Vec3 centre_;
   double radius_;
+  stokes::AmbientFlow flow_;  // at the time told last
 
  private:
   long evaluations_ = 0;
 };
 
-/// A free body in an affine flow:  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf/2 + Omega', where (U', Omega') makes force
-/// and torque vanish in the strain of the flow. A few small matrices a call.
+/// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega', where (U', Omega')
+/// makes force and torque vanish in what else the flow is about x_c. A few small matrices a call.
 class FreeBody : public RigidParticle {
  public:
   FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow);
@@ -78,11 +82,10 @@ class FreeBody : public RigidParticle {
   Mat3 stresslet(const Net& place) const override;
 
  private:
-  Eigen::Matrix<double, 11, 1> amplitudes(const Net& place) const;
+  Eigen::VectorXd amplitudes(const Net& place) const;
 
-  stokes::AmbientFlow flow_;
   RigidModes modes_;
-  Eigen::Matrix<double, 6, 5> drift_;  ///< rigid motion relative to the flow, for each strain
+  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion relative to the flow, for each strain and quadratic field
 };
 
 /// A free body in a tube: at each place the traction and the rigid motion are solved for together,
@@ -97,10 +100,13 @@ class FreeBodyInTube : public RigidParticle {
   FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const SolverOptions& solvers);
 
-  RigidMotion motion(const Net& place) const override { return at(place).motion; }
-  Net force_density(const Net& place) const override { return at(place).density; }
-  Mat3 stresslet(const Net& place) const override { return at(place).stresslet; }
-  double pressure_drop(const Net& place) const override { return at(place).pressure_drop; }
+  void at(double time, double start) override {
+    if (flow_.at(time, start)) place_ = {};
+  }
+  RigidMotion motion(const Net& place) const override { return solution(place).motion; }
+  Net force_density(const Net& place) const override { return solution(place).density; }
+  Mat3 stresslet(const Net& place) const override { return solution(place).stresslet; }
+  double pressure_drop(const Net& place) const override { return solution(place).pressure_drop; }
   long solver_iterations() const { return iterations_; }
 
  private:
@@ -110,10 +116,9 @@ class FreeBodyInTube : public RigidParticle {
     Mat3 stresslet;
     double pressure_drop = 0;
   };
-  const Solution& at(const Net& place) const;
+  const Solution& solution(const Net& place) const;
 
   Resistance& body_;
-  stokes::AmbientFlow flow_;
   double viscosity_;
   Krylov krylov_;
   double tolerance_;

@@ -31,7 +31,10 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const stokes::AmbientFlow& flow) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
-  return surface::symmetry(space, nets, [&](const surface::Image& image) { return keeps(flow, image, *nets[0]); });
+  const std::vector<stokes::AmbientFlow> flows = flow.directions();
+  return surface::symmetry(space, nets, [&](const surface::Image& image) {
+    return std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
+  });
 }
 
 }  // namespace tanktread::coupling

@@ -38,24 +38,28 @@ double checked(const std::string& path, const Teuchos::ParameterEntry& entry, co
 template <int rows, int columns>
 constexpr const char* count = rows * columns == 2 ? "two" : rows * columns == 3 ? "three" : "nine";
 
-template <int rows, int columns>
-Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& each,
-                                                   std::string_view unit) {
+/// `one number or more`, with the rule of each.
+std::string values_text(const std::string& wording, const Rule& each) { return wording + (each.text == any().text ? "" : ", each " + each.text); }
+
+/// Of any count other than zero where `size` is 0; `wording`: what they must be.
+std::vector<double> checked_numbers(const std::string& path, const Teuchos::ParameterEntry& entry, std::size_t size, const std::string& wording,
+                                    const Rule& each, std::string_view unit) {
   const auto numbers = as_numbers(entry);
-  const bool fits = numbers && numbers->size() == static_cast<std::size_t>(rows * columns);
+  const bool fits = numbers && (size == 0 ? !numbers->empty() : numbers->size() == size);
   bool good = fits;
   if (fits)
     for (const double number : *numbers) good = good && std::isfinite(number) && each.holds(number);
   if (good && !std::all_of(numbers->begin(), numbers->end(), computable))
     refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
-  if (!good) {
-    const std::string wording = std::string(count<rows, columns>) + " numbers in brackets";
-    refuse(path, each.text == any().text ? wording : wording + ", each " + each.text, unit, description(entry));
-  }
-  Eigen::Matrix<double, rows, columns> out;
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) out(i, j) = (*numbers)[static_cast<std::size_t>(columns * i + j)];
-  return out;
+  if (!good) refuse(path, values_text(wording + " in brackets", each), unit, description(entry));
+  return *numbers;
+}
+
+template <int rows, int columns>
+Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& each,
+                                                   std::string_view unit) {
+  const auto numbers = checked_numbers(path, entry, rows * columns, std::string(count<rows, columns>) + " numbers", each, unit);
+  return Eigen::Map<const Eigen::Matrix<double, rows, columns, columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>>(numbers.data());
 }
 
 template <int rows, int columns>
@@ -106,7 +110,7 @@ void state_array(List& list, std::string_view name, Field& field, const Rule& ea
   const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
     return checked_array<rows, columns>(path, entry, each, unit);
   };
-  const std::string values = std::string(count<rows, columns>) + " numbers" + (each.text == any().text ? "" : ", each " + each.text);
+  const std::string values = values_text(std::string(count<rows, columns>) + " numbers", each);
   state<Eigen::Matrix<double, rows, columns>>(list, name, field, values, unit, meaning, read, array_text<rows, columns>);
 }
 
@@ -167,6 +171,20 @@ void Section::key(std::string_view name, Mat3& field, const Rule& each, std::str
 
 void Section::key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
   state_array<3, 3>(*state_->list, name, field, each, unit, meaning);
+}
+
+void Section::key(std::string_view name, std::optional<std::vector<double>>& field, const Rule& each, std::string_view unit,
+                  std::string_view meaning) {
+  const std::string wording = "one number or more";
+  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+    return checked_numbers(path, entry, 0, wording, each, unit);
+  };
+  const auto write = [](const std::vector<double>& numbers) {
+    std::string text;
+    for (const double number : numbers) text += (text.empty() ? "[" : ", ") + real_text(number);
+    return text + "]";
+  };
+  state<std::vector<double>>(*state_->list, name, field, values_text(wording, each), unit, meaning, read, write);
 }
 
 void Section::key(std::string_view name, bool& field, std::string_view meaning) {

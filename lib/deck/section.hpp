@@ -56,6 +56,8 @@ class Section {
   void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit,
            std::string_view meaning);  ///< nine numbers, row by row
   void key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
+  void key(std::string_view name, std::optional<std::vector<double>>& field, const Rule& each, std::string_view unit,
+           std::string_view meaning);  ///< one number or more
 
   /// A list inside this one, stated by `options.declare(Section&)`.
   template <class Options>

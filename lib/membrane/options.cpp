@@ -23,14 +23,20 @@ void Options::declare(deck::Section& section) {
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
               "the weak load per area of the unstressed surface (3.7), or of the current one (3.6), the paper's and a drop's");
+  if (!section.given("bending number")) bending_modulus = 0;
   section.key("bending modulus", bending_modulus, deck::not_negative(), "force x length", "E_b of Helfrich's energy; 0: no resistance to bending");
+  section.key("bending number", bending_number, deck::not_negative(), "1",
+              "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
   section.key("bending reference", bending_reference, deck::Choice{"unstressed", "flat"},
               "curvature at which no bending moment acts: that of the unstressed surface, or none");
 }
 
 void Options::check() const {
-  if (bending_modulus > 0 && load == "strong")
-    throw UserError("Membrane/bending modulus and Membrane/load `strong` contradict each other: bending exists in the weak form only.");
+  if (bending_modulus && bending_number)
+    throw UserError("Membrane/bending modulus and Membrane/bending number contradict each other: give one of them.");
+  if (bending(1, 1) > 0 && load == "strong")
+    throw UserError(std::string("Membrane/bending ") + (bending_number ? "number" : "modulus") +
+                    " and Membrane/load `strong` contradict each other: bending exists in the weak form only.");
   if (capillary_number && shear_modulus)
     throw UserError("Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
   if (capillary_number && surface_tension)
@@ -55,6 +61,10 @@ double Options::modulus(double viscosity, double rate, double radius) const {
     throw UserError("Membrane/capillary number needs a flow with a gradient: give Membrane/" +
                     std::string(law == "surface tension" ? "surface tension" : "shear modulus") + " instead.");
   return viscosity * rate * radius / capillary_number.value();
+}
+
+double Options::bending(double modulus, double radius) const {
+  return bending_number ? *bending_number * modulus * radius * radius : bending_modulus.value_or(0);
 }
 
 void DirectSolverOptions::declare(deck::Section& section) {

@@ -23,7 +23,8 @@ struct Options {
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< the weak load per area of the unstressed surface (3.7) or of the current one (3.6)
-  double bending_modulus = 0;              ///< E_b, force x length; 0: none
+  std::optional<double> bending_modulus;   ///< E_b, force x length; 0 if neither is given: none
+  std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or over sigma R_C^2
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
 
   void declare(deck::Section& section);
@@ -33,6 +34,9 @@ struct Options {
 
   /// G_s, or sigma of a surface tension, from whichever key was given; `viscosity` mu, `rate` of the flow, `radius` R_C.
   double modulus(double viscosity, double rate, double radius) const;
+
+  /// E_b, from whichever key was given; `modulus` G_s or sigma, `radius` R_C.
+  double bending(double modulus, double radius) const;
 };
 
 /// The direct solver of the sparse systems (mass matrices, collocation matrix): keys of `Solvers/*`.

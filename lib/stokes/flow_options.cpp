@@ -12,10 +12,10 @@ namespace tanktread::stokes {
 void FlowOptions::declare(deck::Section& section) {
   section.key(
       "type", type,
-      deck::Choice{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "duct"},
+      deck::Choice{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"},
       "ambient flow: `simple shear` is rate (x3, 0, 0), `planar hyperbolic` rate (x1, 0, -x3), `uniaxial extension` rate "
-      "(-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, `uniform` by `velocity`, `duct` along x1 "
-      "through the section of the Tube, with `mean velocity`");
+      "(-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, `uniform` by `velocity`, `parabolic` along x1 "
+      "with `profile`, `maximum velocity` and `half width`, without a wall, `duct` along x1 through the section of the Tube, with `mean velocity`");
   section.key("shear rate", shear_rate, deck::positive(), "1/time", "rate of the flow; for `linear` it stays 1, the gradient says all");
   section.key("viscosity", viscosity, deck::positive(), "stress x time", "of the outer fluid");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
@@ -25,6 +25,17 @@ void FlowOptions::declare(deck::Section& section) {
   if (type == "duct") mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
               "of the `duct` flow: flow rate over area of the section; 1 if not given");
+  if (type == "parabolic") profile = "round", maximum_velocity = 1;
+  section.key("profile", profile, deck::Choice{"round", "plane"},
+              "of the `parabolic` flow: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2), or (1 - x3^2/half width^2); `round` if not given");
+  section.key("maximum velocity", maximum_velocity, deck::positive(), "length/time", "of the `parabolic` flow, on its axis; 1 if not given");
+  section.key("half width", half_width, deck::positive(), "length",
+              "of the `parabolic` flow: distance from the axis or mid-plane at which its velocity vanishes");
+  if (section.given("history") || section.documenting()) {
+    history.emplace();
+    section.section("history", *history, "how the flow changes in time; without this list it does not");
+    if (section.documenting()) history.reset();
+  }
 }
 
 void FlowOptions::check() const {
@@ -37,8 +48,19 @@ void FlowOptions::check() const {
   belongs("gradient", gradient.has_value(), "linear");
   belongs("velocity", velocity.has_value(), "uniform");
   belongs("mean velocity", mean_velocity.has_value(), "duct");
-  if (type == "duct" && shear_rate != 1.0)
-    throw UserError("Flow/shear rate and Flow/type `duct` contradict each other: give Flow/mean velocity.");
+  belongs("profile", profile.has_value(), "parabolic");
+  belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
+  belongs("half width", half_width.has_value(), "parabolic");
+  const bool own_speed = type == "duct" || type == "parabolic";
+  if (own_speed && shear_rate != 1.0)
+    throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: give Flow/" + (type == "duct" ? "mean" : "maximum") +
+                    " velocity.");
+  if (history) {
+    if (type == "quiescent") throw UserError("Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has nothing to change.");
+    if (type == "duct" && history->angles)
+      throw UserError("Flow/history/angles and Flow/type `duct` contradict each other: the flow is along the tube.");
+    history->check();
+  }
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
     throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
                     ".");
@@ -49,6 +71,7 @@ void FlowOptions::check() const {
 double FlowOptions::rate() const {
   if (type == "quiescent" || type == "uniform" || type == "duct") return 0.0;
   if (type == "linear") return Eigen::JacobiSVD<Mat3>(gradient.value()).singularValues()[0];
+  if (type == "parabolic") return *maximum_velocity / half_width.value();
   return shear_rate;
 }
 

@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
+#include "deck/words.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::surface {
@@ -82,6 +84,36 @@ void ParticleShape::declare(deck::Section& section) {
   section.key("center", center, deck::any(), "length", "centroid of the resting shape");
   section.key("orientation", orientation, deck::any(), "degrees",
               "rotation vector (axis times angle) that turns the particle's own axes into place");
+  if (section.given("initial shape") || section.documenting()) {
+    initial.emplace();
+    section.section("initial shape", *initial, "the shape that the run starts with; without this list the resting one");
+    if (section.documenting()) initial.reset();
+  }
+}
+
+void InitialShape::declare(deck::Section& section) {
+  section.key("stretch", stretch, deck::positive(), "1", "three factors along the particle's own x1, x2, x3, of the resting shape about its center");
+  section.key("map", map, deck::any(), "1", "nine numbers row by row, by which the resting shape is mapped about its center, in the axes of space");
+  section.key("file", file, deck::Choice{},
+              "name of a Bezier-extraction text (.iga) on the particle's own mesh, looked for as Particle/file; its surface is taken where it is");
+  section.key("run", run, deck::Choice{},
+              "results of another run on the same mesh, the directory for its newest checkpoint, or one of its snapshots: its shape is taken where "
+              "it is, and its mesh, where that adapts; looked for as Particle/file");
+  section.key("volume", volume, deck::Choice{"resting", "own"},
+              "that the particle has and keeps: that of the `resting` shape, to which the initial one is scaled, or the initial shape's `own`");
+}
+
+void InitialShape::check() const {
+  if (map.has_value() + stretch.has_value() + file.has_value() + run.has_value() != 1)
+    throw UserError("Particle/initial shape needs one of the keys stretch, map, file and run, and no other of them.");
+  if (map && !(map->determinant() > 0))
+    throw UserError("Particle/initial shape/map must have a positive determinant, or the surface is turned inside out; it is " +
+                    deck::number_text(map->determinant()) + ".");
+}
+
+std::optional<Mat3> InitialShape::affine(const Mat3& rotation) const {
+  if (stretch) return Mat3(rotation * stretch->asDiagonal() * rotation.transpose());
+  return map;
 }
 
 void ParticleShape::read() {
@@ -89,6 +121,7 @@ void ParticleShape::read() {
 }
 
 void ParticleShape::check() const {
+  if (initial) initial->check();
   const bool round = shape == "sphere" || shape == "red cell";
   if (shape != "file" && file)
     throw UserError("Particle/file and Particle/shape `" + shape + "` contradict each other: it belongs to `file`.");
@@ -109,6 +142,11 @@ void ParticleShape::check() const {
     if (a[0] != a[1] && a[1] != a[2] && a[0] != a[2])
       throw UserError("Particle/semi-axes of a `spheroid` must hold two equal lengths; three different ones are an `ellipsoid`.");
   }
+}
+
+bool ParticleShape::same_rest(const ParticleShape& other) const {
+  const auto rest = [](const ParticleShape& s) { return std::tie(s.shape, s.radius, s.semi_axes, s.file, s.center, s.orientation); };
+  return rest(*this) == rest(other);
 }
 
 Mat3 ParticleShape::rotation() const {

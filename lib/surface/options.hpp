@@ -31,6 +31,7 @@ struct MeshOptions {
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
 
+  bool operator==(const MeshOptions&) const = default;
   bool polar() const { return mesh == "polar"; }
   spline::PolarMesh polar_mesh() const;
   int axis() const { return pole_axis.value()[1] - '1'; }
@@ -40,7 +41,24 @@ struct MeshOptions {
   double n_elements() const;
 };
 
-/// The resting shape of the particle: keys of `Particle/*`.
+/// The shape that a run starts with where that is not the resting one: `Particle/initial shape` of the deck.
+struct InitialShape {
+  std::optional<Mat3> map;          ///< from the resting shape, about its centre
+  std::optional<Vec3> stretch;      ///< the same, factors along the particle's own axes
+  std::optional<std::string> file;  ///< Bezier-extraction text on the particle's own mesh
+  std::optional<std::string> run;   ///< results of another run, or one of its snapshots
+  std::string volume = "resting";   ///< or own
+
+  void declare(deck::Section& section);
+
+  /// One sentence (UserError) unless one of the four is given, and right.
+  void check() const;
+
+  /// `map` in space, be it given as `stretch` along the axes that are the columns of `rotation`; none where the shape is read.
+  std::optional<Mat3> affine(const Mat3& rotation) const;
+};
+
+/// The resting shape of the particle, and the one to start with: keys of `Particle/*`.
 struct ParticleShape {
   std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell, file
   std::optional<double> radius;     ///< of the sphere, or of the disc of a red cell; set for these two, empty otherwise
@@ -48,6 +66,7 @@ struct ParticleShape {
   std::optional<std::string> file;  ///< of the shape `file`: Bezier-extraction text; the spline space is the file's
   Vec3 center = Vec3::Zero();       ///< of the resting shape
   Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees, from the particle's own axes to those of space
+  std::optional<InitialShape> initial;  ///< none: the resting shape
 
   void declare(deck::Section& section);
 
@@ -56,6 +75,9 @@ struct ParticleShape {
 
   /// What is in the file, as it stands there; none for the other shapes.
   std::shared_ptr<const spline::SplineSurface> imported;
+
+  /// Whether the keys of the resting shape are the same.
+  bool same_rest(const ParticleShape& other) const;
 
   /// Columns: the particle's own axes in space.
   Mat3 rotation() const;

@@ -44,7 +44,10 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
        {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
         "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
         "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n", "  Surface: {mesh: polar}\n",
-        "  Surface: {mesh: polar, azimuthal elements: 8, pole axis: x2, poles: c1}\n", "  Time: {fixed step: 0.01, scheme: bs3}\n"}) {
+        "  Surface: {mesh: polar, azimuthal elements: 8, pole axis: x2, poles: c1}\n", "  Time: {fixed step: 0.01, scheme: bs3}\n",
+        "  Flow: {type: parabolic, half width: 3}\n  Membrane: {bending number: 0.01}\n",
+        "  Flow: {history: {times: [0, 1.5, 1.5], amplitudes: [1, 1, 0], angles: [0, 30, 30]}}\n",
+        "  Flow: {history: {type: sine, frequency: 2}}\n"}) {
     Scene first, second;
     deck::Document once = deck::read_text(std::string("Tanktread:\n") + lists);
     once.declare(first);
@@ -90,6 +93,13 @@ TEST(Moduli, FollowFromTheCapillaryNumber) {
   EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [2, 0, 0, 0, 0, 0, 0, 0, -2]}\n").flow.rate(), 2.0);
 }
 
+TEST(Moduli, FollowFromTheRateOfAParabolicFlowAndFromTheBendingNumber) {
+  const Scene s = scene("  Flow: {type: parabolic, half width: 8, maximum velocity: 2}\n  Particle: {radius: 4}\n"
+                        "  Membrane: {capillary number: 0.5, bending number: 0.1}\n");
+  EXPECT_DOUBLE_EQ(s.modulus(), 2);            // rate 2/8 times radius over Ca
+  EXPECT_DOUBLE_EQ(s.bending_modulus(), 3.2);  // 0.1 G_s R_C^2
+}
+
 TEST(EquivalentRadii, AreThoseOfTheSphereOfEqualVolume) {
   EXPECT_DOUBLE_EQ(scene("  Particle: {shape: ellipsoid, semi-axes: [1, 2, 4]}\n").radius(), 2.0);
   EXPECT_DOUBLE_EQ(scene("  Particle: {shape: spheroid, semi-axes: [8, 8, 1]}\n").radius(), 4.0);
@@ -108,6 +118,32 @@ TEST(Orientations, TurnTheAxesOfTheParticle) {
   const Scene s = scene("  Particle: {shape: spheroid, semi-axes: [2, 2, 1], orientation: [0, -45, 0]}\n");
   EXPECT_TRUE(s.particle.shape.rotation().col(0).isApprox(Vec3(1, 0, 1).normalized(), 1e-15)) << "along the direction of extension";
   EXPECT_TRUE(scene("").particle.shape.rotation().isIdentity(0));
+}
+
+TEST(Contradictions, OfFlowsAreOneSentenceEach) {
+  EXPECT_EQ(refusal("  Flow: {type: parabolic}\n"), "Flow/type `parabolic` needs Flow/half width.");
+  EXPECT_EQ(refusal("  Flow: {half width: 2}\n"), "Flow/half width belongs to Flow/type `parabolic`, but Flow/type is `simple shear`.");
+  EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2, shear rate: 3}\n"),
+            "Flow/shear rate and Flow/type `parabolic` contradict each other: give Flow/maximum velocity.");
+  EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2}\n  Particle: {drift: held}\n"),
+            "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [0, 1]}}\n"),
+            "Flow/history/type `table` needs Flow/history/amplitudes or Flow/history/angles.");
+  EXPECT_EQ(refusal("  Flow: {history: {amplitudes: [0, 1]}}\n"), "Flow/history/type `table` needs Flow/history/times.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2, 1], amplitudes: [0, 1, 2]}}\n"),
+            "Flow/history/times must be in order, the earliest first.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2], amplitudes: [0, 1, 2]}}\n"),
+            "Flow/history/amplitudes must hold as many numbers as Flow/history/times, 2, but holds 3.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [-1, 2], amplitudes: [0, 1]}}\n").find("Flow/history/times must be one number or more"), 0u);
+  EXPECT_EQ(refusal("  Flow: {history: {type: sine}}\n"), "Flow/history/type `sine` needs Flow/history/frequency.");
+  EXPECT_EQ(refusal("  Flow: {history: {type: sine, frequency: 1, times: [1]}}\n"),
+            "Flow/history/times belongs to the type `table`, but is given with Flow/history/type `sine`.");
+  EXPECT_EQ(refusal("  Flow: {history: {type: sine, frequency: 1}}\n  Particle: {motion: prescribed}\n"),
+            "Flow/history and Particle/motion `prescribed` contradict each other: it is a steady problem.");
+  EXPECT_EQ(refusal("  Flow: {type: quiescent, history: {type: sine, frequency: 1}}\n  Membrane: {shear modulus: 1}\n"),
+            "Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has nothing to change.");
+  EXPECT_EQ(refusal("  Membrane: {bending modulus: 0, bending number: 0.1}\n"),
+            "Membrane/bending modulus and Membrane/bending number contradict each other: give one of them.");
 }
 
 TEST(Contradictions, AreOneSentenceEach) {

@@ -81,6 +81,43 @@ TEST(FreeBody, SpheroidTurnsAsJefferyFound) {
   }
 }
 
+stokes::FlowOptions parabolic() {
+  stokes::FlowOptions flow;
+  flow.type = "parabolic", flow.profile = "round", flow.maximum_velocity = 2, flow.half_width = 1.6;
+  return flow;
+}
+
+TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
+  const Fixture f(Vec3::Constant(0.8));
+  const stokes::AmbientFlow flow(parabolic());
+  const FreeBody body(*f.resistance, f.shape.center, 0.8, flow);
+  const RigidMotion motion = body.motion(f.turned(0.7, Vec3(1, 2, 3)));
+  const Vec3 c = f.shape.center, laplacian(2 * flow.curvature().trace(), 0, 0);
+  const Mat3 l = flow.gradient(c);
+  EXPECT_LT((motion.velocity - flow.velocity(c) - 0.64 / 6 * laplacian).norm() / motion.velocity.norm(), 2e-5);  // the mesh of six elements a side
+  EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-5);
+}
+
+// At one place the modes must give what a solve there gives, which FreeBodyInTube does without a tube just as well.
+TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
+  Fixture f(Vec3(0.7, 0.9, 1.2));
+  stokes::FlowOptions options = parabolic();
+  options.history.emplace();
+  options.history->times = {0, 2}, options.history->amplitudes = {1, 3}, options.history->angles = {0, 60}, options.history->axis = "x3";
+  const stokes::AmbientFlow flow(options);
+  FreeBody modes(*f.resistance, f.shape.center, 0.9, flow);
+  FreeBodyInTube solve(*f.resistance, f.shape.center, 0.9, flow, viscosity, {});
+  const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  for (const double time : {0.0, 1.0}) {
+    modes.at(time, 0);
+    solve.at(time, 0);
+    const RigidMotion one = modes.motion(place), other = solve.motion(place);
+    EXPECT_LT((one.velocity - other.velocity).norm(), 1e-6 * other.velocity.norm());  // solves to 1e-8; a quadratic field turns between its sites
+    EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 1e-6 * other.angular_velocity.norm());
+    EXPECT_LT((modes.stresslet(place) - solve.stresslet(place)).norm(), 1e-5 * solve.stresslet(place).norm());
+  }
+}
+
 TEST(FreeBody, IsFreeOfForceAndTorque) {
   const Fixture f(Vec3(0.7, 0.9, 1.2));
   const Net f0 = f.body->force_density(placed(f.shape.center));

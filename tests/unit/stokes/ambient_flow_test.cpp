@@ -1,5 +1,8 @@
 #include "stokes/ambient_flow.hpp"
 
+#include <limits>
+#include <string>
+
 #include <gtest/gtest.h>
 
 namespace tanktread::stokes {
@@ -42,6 +45,79 @@ TEST(AmbientFlow, TakesTheRateOfALinearFlowFromItsGradient) {
   (*linear.gradient)(0, 2) = 3;  // simple shear at rate 3
   EXPECT_NEAR(AmbientFlow(linear).rate(), 3, 1e-14);
   EXPECT_EQ(AmbientFlow(flow("quiescent")).rate(), 0);
+}
+
+FlowOptions parabolic(const char* profile) {
+  FlowOptions options = flow("parabolic", 1);
+  options.profile = profile, options.maximum_velocity = 3, options.half_width = 2;
+  return options;
+}
+
+TEST(AmbientFlow, ParabolicIsOneOverItsHalfWidthAndHasTheGradientOfItsVelocity) {
+  for (const char* profile : {"round", "plane"}) {
+    const AmbientFlow f(parabolic(profile));
+    const bool round = profile == std::string("round");
+    EXPECT_FALSE(f.affine());
+    EXPECT_EQ(f.rate(), 1.5);
+    EXPECT_EQ(f.velocity(Vec3(7, 0, 0)), Vec3(3, 0, 0));
+    EXPECT_LT(f.velocity(Vec3(0, 0, -2)).norm(), 1e-15);
+    EXPECT_NEAR(f.velocity(Vec3(0, 2, 0))[0], round ? 0 : 3, 1e-15);
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 step = 1e-3 * Vec3::Unit(k);  // central differences of a quadratic are exact
+      EXPECT_LT(((f.velocity(x + step) - f.velocity(x - step)) / 2e-3 - f.gradient(x).col(k)).norm(), 1e-12);
+    }
+    const Net points = (Net(2, 3) << x.transpose(), -2 * x.transpose()).finished();
+    EXPECT_EQ(f.velocities(points).row(0), f.velocity(x).transpose());
+    EXPECT_EQ(f.gradients(points)[1], f.gradient(-2 * x));
+  }
+}
+
+FlowHistory stopped() {
+  FlowHistory history;
+  history.times = {1, 2, 2}, history.amplitudes = {1, 3, 0}, history.angles = {0, 90, 90}, history.axis = "x2";
+  return history;
+}
+
+TEST(FlowHistory, OfATableIsStraightBetweenItsTimesAndJumpsWhereTwoAreEqual) {
+  const FlowHistory history = stopped();
+  EXPECT_EQ(history.at(0, 0).amplitude, 1);
+  EXPECT_EQ(history.at(1.5, 1).amplitude, 2);
+  EXPECT_EQ(history.at(2, 1.5).amplitude, 3);  // where a step ends
+  EXPECT_EQ(history.at(2, 2).amplitude, 0);    // where one begins
+  EXPECT_EQ(history.at(9, 2).amplitude, 0);
+  EXPECT_LT((history.at(2, 1).turn * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-15);
+  EXPECT_EQ(history.next_kink(0), 1);
+  EXPECT_EQ(history.next_kink(1), 2);
+  EXPECT_EQ(history.next_kink(2), std::numeric_limits<double>::infinity());
+}
+
+TEST(FlowHistory, MakesAnyFlowTheSameOneTurnedAndMoreOrLess) {
+  FlowOptions uniform = flow("uniform"), roll = flow("four-roll");
+  uniform.velocity = Vec3(1, 2, 3);
+  roll.roll_parameter = 0.6;
+  for (FlowOptions options : {uniform, roll, flow("simple shear"), parabolic("plane")}) {
+    const AmbientFlow steady(options);
+    options.history = stopped();
+    AmbientFlow f(options);
+    EXPECT_EQ(f.velocity(x), steady.velocity(x)) << "amplitude 1 as long as no time is told";
+    EXPECT_TRUE(f.at(1.5, 1.0));
+    EXPECT_FALSE(f.at(1.5, 1.2)) << "the same flow as before";
+    const Mat3 turn = stopped().turn(45);
+    EXPECT_LT((f.velocity(x) - 2 * turn * steady.velocity(turn.transpose() * x)).norm(), 1e-14) << options.type;
+    EXPECT_LT((f.gradient(x) - 2 * turn * steady.gradient(turn.transpose() * x) * turn.transpose()).norm(), 1e-14) << options.type;
+    EXPECT_TRUE(f.at(2, 2));
+    EXPECT_EQ(f.velocity(x).norm(), 0);
+    EXPECT_EQ(f.affine(), steady.affine());
+    EXPECT_EQ(f.rate(), steady.rate());
+  }
+}
+
+TEST(FlowHistory, OfASineHasItsMeanItsAmplitudeAndItsPhase) {
+  FlowHistory history;
+  history.type = "sine", history.mean = 0.5, history.amplitude = 2, history.frequency = 0.25, history.phase = 90;
+  EXPECT_NEAR(history.at(0, 0).amplitude, 2.5, 1e-15);
+  EXPECT_NEAR(history.at(1, 0).amplitude, 0.5, 1e-15);
+  EXPECT_NEAR(history.at(2, 0).amplitude, -1.5, 1e-15);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "surface/geometry.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {

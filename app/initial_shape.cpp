@@ -1,0 +1,86 @@
+#include "app/initial_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/document.hpp"
+#include "spline/iga.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+const std::string key = "Particle/initial shape/";
+
+/// The image of a surface about a middle: to the bit the same one where the map is the identity.
+Net image(const Net& net, const Vec3& middle, const Mat3& map) {
+  return net + (net.rowwise() - middle.transpose()) * (map - Mat3::Identity()).transpose();
+}
+
+bool same_space(const spline::Space& one, const spline::Space& other) {
+  const auto same = [](const spline::Element& a, const spline::Element& b) {
+    return a.points == b.points && a.degree == b.degree && (a.extraction - b.extraction).cwiseAbs().maxCoeff() < 1e-6;  // digits of a file
+  };
+  return one.n_points == other.n_points && std::ranges::equal(one.elements, other.elements, same);
+}
+
+Net net_of_file(const spline::Space& space, const std::string& name) {
+  const spline::SplineSurface surface = spline::read_iga(name);
+  if (!same_space(surface.space, space))
+    throw UserError(key + formatted("file: %s holds another spline space of %d control points; it must be the particle's, of %d.", name.c_str(),
+                                    surface.space.n_points, space.n_points));
+  return surface.net;
+}
+
+/// Whatever the particle is made of may change from run to run, but not its mesh; nor, where that was adapted, the resting shape on it.
+void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
+  Scene before;
+  deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
+  deck.declare(before);
+  const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
+  if (!(before.surface == scene.surface)) refuse("Surface");
+  const motion::AdaptationOptions &then = before.adaptation, &now = scene.adaptation;
+  if (then.enabled != now.enabled || (now.enabled && then.levels != now.levels)) refuse("Adaptation/enabled and Adaptation/levels");
+  if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
+}
+
+}  // namespace
+
+std::optional<output::Checkpoint> run_before(const Scene& scene) try {
+  const auto& initial = scene.particle.shape.initial;
+  if (!initial || !initial->run) return {};
+  output::Checkpoint run;
+  if (std::filesystem::is_directory(*initial->run)) {
+    auto saved = output::newest_checkpoint(*initial->run);
+    if (!saved) throw UserError(key + "run: there is no checkpoint in " + *initial->run + ".");
+    run = std::move(saved->checkpoint);
+  } else {
+    run = output::read_checkpoint(*initial->run);
+  }
+  check_surface(scene, run, *initial->run);
+  return run;
+} catch (const std::runtime_error& error) {
+  if (dynamic_cast<const UserError*>(&error)) throw;
+  throw UserError(key + "run: " + error.what());
+}
+
+Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before) {
+  const surface::ParticleShape& shape = scene.particle.shape;
+  if (!shape.initial) return body.rest;
+  const surface::InitialShape& initial = *shape.initial;
+  const bool own = initial.volume == "own";
+  if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
+  const Net x = before ? Net(before->arrays.at("x")) : net_of_file(body.space, initial.file.value());
+  if (x.rows() != body.space.n_points)
+    throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
+                                    body.space.n_points));
+  const surface::Measures measures = surface::measures(body.space, x);
+  const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);
+  return image(x, measures.centroid, scale * Mat3::Identity());
+}
+
+}  // namespace tanktread

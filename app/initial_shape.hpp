@@ -1,0 +1,19 @@
+#pragma once
+// The shape that a run starts with where it is not the resting one: Particle/initial shape.
+
+#include <optional>
+
+#include "app/body.hpp"
+#include "app/scene.hpp"
+#include "output/checkpoint.hpp"
+
+namespace tanktread {
+
+/// The end of the run that the deck starts from; nothing where it names none. Throws UserError where there is none, or its surface is another one.
+std::optional<output::Checkpoint> run_before(const Scene& scene);
+
+/// Control net of the initial shape on the body's mesh; the resting one where the deck has no other. `before`: run_before, or nothing. Throws
+/// UserError where a file holds another surface.
+Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before);
+
+}  // namespace tanktread

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+# A run starts from the end of another one, or from a file, and goes on without them.
+import pathlib
+import shutil
+
+from harness import check, close, deck, main, run, series
+
+FIRST = """
+Tanktread:
+  Flow: { type: planar hyperbolic }
+  Membrane: { law: Skalak, capillary number: 0.3 }
+  Surface: { elements per side: 4, extraordinary points: catmull-clark }
+  Time: { scheme: bs3, final time: %s }
+  Output: { surface text: true }
+  Adaptation: { enabled: %s, interval: 1, surface tolerance: 1.0e-4 }
+"""
+THEN = """
+Tanktread:
+  Flow: { type: quiescent }
+  Particle: { initial shape: { %s } }
+  Membrane: { law: Skalak, shear modulus: 1 }
+  Surface: { elements per side: 4, extraordinary points: catmull-clark }
+  Time: { scheme: bs3, final time: 0.05 }
+"""
+ADAPTS = "  Adaptation: { enabled: true, interval: 1, surface tolerance: 1.0e-4 }\n"
+
+
+def _same_start(then, first):
+    """not a test"""
+    for name in ("taylor_inertia", "inclination", "area", "volume"):
+        close(series(then, name)[0], series(first, name)[-1], 1e-9, name)
+    check(series(then, "n_control_points")[0] == series(first, "n_control_points")[-1], "control points")
+    check(series(then, "taylor_inertia")[-1] < series(then, "taylor_inertia")[0], "it relaxes")
+
+
+def a_run_starts_from_the_end_of_another_and_goes_on_without_it():
+    run(deck(FIRST % ("0.1", "false")), "--output", "first", "--quiet")
+    newest = max(str(path) for path in pathlib.Path("first").glob("snapshot_*.hdf"))
+    for shape in ("run: first", f"run: {newest}", "file: first/surface.iga"):
+        run(deck(THEN % shape), "--output", "then", "--quiet")
+        _same_start("then", "first")
+        shutil.rmtree("then")
+    run(deck(THEN % "run: first"), "--output", "then", "--quiet", "--set", "Time/final time=0.02")
+    shutil.rmtree("first")
+    run("--resume", "then", "--quiet", "--set", "Time/final time=0.05")
+    close(series("then", "time")[-1], 0.05, 0, "time")
+
+
+def a_volume_of_its_own_is_kept_and_found_again():
+    run(deck(THEN % "stretch: [1.2, 0.9, 0.8], volume: own"), "--output", "own", "--quiet", "--set", "Time/final time=0.02")
+    run("--resume", "own", "--quiet", "--set", "Time/final time=0.05")
+    volume = series("own", "volume")
+    close(volume[0], 4.18879 * 1.2 * 0.9 * 0.8, 1e-3, "volume")  # the fit on 98 control points
+    check(abs(volume / volume[0] - 1).max() < 1e-13, volume)
+    close(series("own", "volume_error")[-1], 0, 1e-13, "volume_error")
+
+
+def another_run_s_mesh_is_taken_where_it_was_adapted():
+    run(deck(FIRST % ("0.5", "true")), "--output", "first", "--quiet")
+    check(series("first", "n_control_points")[-1] > 98, "the first run refines")
+    run(deck(THEN % "run: first" + ADAPTS), "--output", "then", "--quiet")
+    _same_start("then", "first")
+
+
+def another_mesh_is_refused_in_one_sentence():
+    run(deck(FIRST % ("0.01", "false")), "--output", "first", "--quiet")
+    for shape, *more in (("run: first", "Surface/elements per side=5"), ("file: first/surface.iga", "Surface/elements per side=5"),
+                         ("run: first", "Adaptation/enabled=true")):
+        result = run(deck(THEN % shape), "--set", *more, "--check", code=2)
+        check(result.stderr.strip().count("\n") == 0 and "Particle/initial shape/" in result.stderr, result.stderr)
+
+
+main()
