@@ -18,6 +18,7 @@
 #include "base/errors.hpp"
 #include "coupling/agreement.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/solver_trial.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
@@ -31,20 +32,28 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 
 struct Arguments {
   std::vector<std::string> decks, settings;
   std::string output, resume;
-  bool overwrite = false, check = false, reference = false, reference_series = false, quiet = false;
+  bool overwrite = false, check = false, reference = false, reference_series = false, quiet = false, no_expect = false;
 };
 
 void state(CLI::App& app, Arguments& arguments) {
-  app.footer("Exit codes: 0 done, and every Expect met; 1 an Expect was missed; 2 a mistake in the deck or here; 3 the run failed; "
-             "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it. Open MPI's mpirun answers any code but 0 with a "
-             "page of its own and a wait of seconds: `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
+  app.footer(
+      "An Expect binds the deck that states it: where an overlay or --set on top changes a key that results depend on, and does not state that\n"
+      "Expect again, a miss is reported and does not fail the run.\n"
+      "Exit codes: 0 done, and every Expect that binds met; 1 one was missed; 2 a mistake in the deck or here; 3 the run failed; "
+      "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it. Open MPI's mpirun answers any code but 0 with a "
+      "page of its own and a wait of seconds: `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
+  const auto directory = [](const std::string& name) {
+    return name.starts_with('-') ? "must be followed by a directory, but " + name + " is an option (a directory of that name is ./" + name + ")" : "";
+  };
   app.add_option("--output", arguments.output,
-                 "where results go (default: results/<deck name>, followed by what is laid over it: _<overlay name>, _<key>=<value>)");
+                 "where results go (default: results/<deck name>, followed by what is laid over it: _<overlay name>, _<key>=<value>)")
+      ->check(directory, "");
   app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
   app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
-  app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory");
+  app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory")->check(directory, "");
+  app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
   app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
@@ -95,7 +104,7 @@ int run(const Arguments& arguments, bool speaks) {
 
   const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
   Scene scene, before;
-  deck::Document deck = deck::read(arguments.decks, arguments.settings, stored);
+  deck::Document deck = deck::read(arguments.decks, arguments.settings, stored, arguments.no_expect ? "--no-expect" : "");
   deck.declare(scene);
   if (resume) check_changes(stored, deck, before);
   if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
@@ -107,6 +116,7 @@ int run(const Arguments& arguments, bool speaks) {
     for (auto* name : {&initial->file, &initial->run})
       if (*name) *name = found(**name, {}, arguments);
   scene.check();
+  coupling::try_solvers(scene.solvers, scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
 

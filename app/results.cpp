@@ -299,7 +299,7 @@ int Results::close(const Account& account, const Phases& phases) {
   return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
-/// Writes the summary; returns what was expected and missed, in one line.
+/// Writes the summary; warns of what was missed and does not bind; returns what was missed and does, in one line.
 std::string Results::finish(const Account& account, const Phases& phases) {
   output::Summary summary;
   summary.status = account.status;
@@ -310,8 +310,13 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   }
   std::string missed;
   for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table)) {
-    summary.expect.push_back({verdict.name, verdict.value, verdict.expected, verdict.error, verdict.passed});
-    if (!verdict.passed) missed += (missed.empty() ? "missed Expect/" : "; Expect/") + verdict.name + ": " + verdict.reason;
+    summary.expect.push_back({verdict.name, verdict.value, verdict.expected, verdict.error, verdict.passed, verdict.not_binding});
+    if (verdict.passed) continue;
+    const std::string found = verdict.name + ": " + verdict.reason;
+    if (verdict.not_binding.empty())
+      missed += (missed.empty() ? "missed Expect/" : "; Expect/") + found;
+    else
+      warn("Expect/" + found + "; this does not fail the run: " + verdict.not_binding);
   }
   for (const auto& [name, value] : account.vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
   summary.counts = account.counts;

@@ -1,7 +1,10 @@
 #include "app/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <Teuchos_ParameterList.hpp>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -41,7 +44,10 @@ void Scene::declare(deck::Section& root) {
   else if (root.given("Surface"))
     throw UserError("Surface and Particle/shape `file` contradict each other: the spline space is the file's.");
   tube.present = root.given("Tube");
-  if (tube.present || root.documenting()) root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
+  if (tube.present || root.documenting())
+    root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
+  else
+    root.mention("Tube");
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
@@ -58,6 +64,15 @@ namespace {
 
 constexpr double most_bytes = 64e9;  // of the assembled operators of one surface, on all ranks together
 constexpr double doubles = 72;       // bytes of three rows and columns of one
+constexpr double most_vector_bytes = 4e9;  // of an iterative solver, on one rank
+
+/// Control points of the particle, and of the wall of its tube.
+double points(const Scene& scene) {
+  const auto& imported = scene.particle.shape.imported;
+  return imported ? imported->space.n_points : scene.surface.n_points();
+}
+
+double wall_points(const Scene& scene) { return scene.tube.azimuthal_elements * (scene.tube.axial_elements + 3.0); }
 
 /// Bytes a pair of control points of what the particle's layers are assembled in: rows of doubles, and frozen operators of six entries of 16 bits.
 /// `auto` assembles nothing that is too large.
@@ -89,20 +104,37 @@ void check_bytes(const std::string& keys, const std::string& must, double n_poin
 
 void check_size(const Scene& scene) {
   const double bytes = bytes_a_pair(scene), most = std::floor(std::sqrt(most_bytes / bytes));
-  const std::string points = formatted("give at most %.0f control points", most);
-  if (const auto& imported = scene.particle.shape.imported)
-    check_bytes("Particle/file", points, imported->space.n_points, bytes);
+  const std::string few = formatted("give at most %.0f control points", most);
+  if (scene.particle.shape.imported)
+    check_bytes("Particle/file", few, points(scene), bytes);
   else if (scene.surface.polar())
-    check_bytes("Surface/azimuthal elements and Surface/meridional elements", points, scene.surface.n_points(), bytes);
+    check_bytes("Surface/azimuthal elements and Surface/meridional elements", few, points(scene), bytes);
   else
     check_bytes("Surface/elements per side",
                 formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
-                scene.surface.n_points(), bytes);
+                points(scene), bytes);
   if (!scene.tube.present) return;
   const double of_wall = doubles * (1 + coupling::Ranks().size());  // rows on all ranks together, and the factors on each
   check_bytes("Tube/azimuthal elements and Tube/axial elements",
               formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / of_wall))),
-              scene.tube.azimuthal_elements * (scene.tube.axial_elements + 3.0), of_wall);
+              wall_points(scene), of_wall);
+}
+
+/// Vectors that every rank keeps for the iterative solver, and the matrix of their products.
+void check_vectors(const Scene& scene) {
+  const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
+  double vectors = 1;
+  std::string keys;
+  for (const char* key : {"Num Blocks", "Block Size", "Num Recycled Blocks", "Deflation Blocks", "Adaptive Block Size"}) {
+    const auto& list = scene.solvers.belos;
+    if (!list || !list->isType<int>(key)) continue;
+    vectors *= std::max(1, list->get<int>(key));
+    keys += (keys.empty() ? "Solvers/Belos/" : " and Solvers/Belos/") + std::string(key);
+  }
+  const double most = std::floor((std::sqrt(unknowns * unknowns + 4 * most_vector_bytes / 8) - unknowns) / 2);
+  if (vectors > most)
+    throw UserError(keys + formatted(" may ask for at most %.0f vectors, which with %.0f unknowns take %.0f GB on each rank, but %.0f are asked for.",
+                                     most, unknowns, most_vector_bytes / 1e9, vectors));
 }
 
 void check_motion(const Scene& scene) {
@@ -164,6 +196,8 @@ void Scene::check() const {
   check_motion(*this);
   check_viscosity_ratio(*this);
   if (!particle.rigid()) membrane.check();
+  if (std::isnan(time.final_time) && particle.motion != "prescribed")
+    throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");
@@ -188,6 +222,7 @@ void Scene::check() const {
                     " contradict each other: it is for particles that deform in a flow whose gradient is the same everywhere.");
   check_adaptation(*this);
   check_size(*this);
+  check_vectors(*this);
 }
 
 std::string Scene::interface_motion() const {

@@ -123,6 +123,32 @@ class Test : public NOX::StatusTest::Generic {
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
+/// A copy of which nothing is marked as looked at.
+Teuchos::ParameterList unread_copy(const Teuchos::ParameterList& list) {
+  Teuchos::ParameterList copy(list.name());
+  for (const auto& item : list) {
+    Teuchos::ParameterEntry fresh;
+    fresh.setAnyValue(item.second.getAny(false));
+    if (item.second.isList())
+      copy.sublist(item.first) = unread_copy(list.sublist(item.first));
+    else
+      copy.setEntry(item.first, fresh);
+  }
+  return copy;
+}
+
+/// The path in `list` of a parameter of `given` that nobody has looked at; empty: none.
+std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::ParameterList& list) {
+  for (const auto& item : given) {
+    if (!item.second.isList()) {
+      if (!list.getEntry(item.first).isUsed()) return item.first;
+    } else if (const std::string inner = unread_path(given.sublist(item.first), list.sublist(item.first)); !inner.empty()) {
+      return item.first + "/" + inner;
+    }
+  }
+  return {};
+}
+
 Teuchos::ParameterList defaults(const std::string& method) {
   Teuchos::ParameterList list("NOX");
   const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // a step that fails is tried again, shorter
@@ -143,21 +169,24 @@ Teuchos::ParameterList defaults(const std::string& method) {
 }  // namespace
 
 struct FixedPoint::Impl {
-  Teuchos::ParameterList list;
+  Teuchos::ParameterList given, list;
+  Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
   Krylov krylov{"GMRES", nullptr};
 };
 
 FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list) : impl_(std::make_unique<Impl>()) {
   impl_->list = defaults(method);
-  if (list) impl_->list.setParameters(*list);
+  if (list) impl_->list.setParameters(impl_->given = unread_copy(*list));
 }
 
 FixedPoint::~FixedPoint() = default;
 
+std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_->given, *impl_->last) : std::string(); }
+
 NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x) const {
   const System system{g, norm, impl_->krylov};
   const auto group = Teuchos::rcp(new Group(system, x));
-  const auto list = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
+  const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
   auto& anderson = list->sublist("Anderson Parameters");
   if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   try {

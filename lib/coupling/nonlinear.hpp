@@ -35,6 +35,9 @@ class FixedPoint {
   /// Throws UserError where NOX refuses the list.
   NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x) const;
 
+  /// The path of a parameter of the given list that the last solve has not looked at; empty: none.
+  std::string unread() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,10 +1,13 @@
 #include "deck/document.hpp"
 
+#include <algorithm>
+
 #include <Teuchos_ParameterList.hpp>
 
 #include "deck/record.hpp"
 #include "deck/source.hpp"
 #include "deck/value.hpp"
+#include "deck/words.hpp"
 #include "deck/yaml.hpp"
 
 namespace tanktread::deck {
@@ -49,12 +52,79 @@ std::map<std::string, std::string> Document::values() const {
 
 std::string Document::reference() const { return markdown_text(held_->root); }
 
-Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored) {
-  auto merged = std::make_shared<Teuchos::ParameterList>(root_name);
-  if (!stored.empty()) overlay(*merged, *yaml_list(stored, "The stored deck"));
-  for (const std::string& file : files) overlay(*merged, *file_list(file));
-  for (const std::string& setting : settings) overlay(*merged, *setting_list(setting));
-  return Document(merged);
+namespace {
+
+const Teuchos::ParameterList* sublist(const Teuchos::ParameterList* list, const std::string& name) {
+  return list && list->isSublist(name) ? &list->sublist(name) : nullptr;
+}
+
+/// Keys that `over` gives another value than `base` does, or that it adds.
+void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterList& over, const std::string& path,
+                 std::vector<std::string>& changes) {
+  for (const auto& item : over) {
+    const std::string here = path + item.first;
+    if (here == "Output" || here == "Expect") continue;
+    const Teuchos::ParameterEntry* before = base ? base->getEntryPtr(item.first) : nullptr;
+    if (item.second.isList())
+      add_changes(sublist(base, item.first), over.sublist(item.first), here + "/", changes);
+    else if (!before || !same_value(*before, item.second))
+      changes.push_back(here);
+  }
+}
+
+/// Lists laid over each other, and for each expectation the keys that were changed since it was stated.
+struct Layers {
+  std::shared_ptr<Teuchos::ParameterList> merged = std::make_shared<Teuchos::ParameterList>(root_name);
+  std::map<std::string, std::vector<std::string>> changed;
+
+  void add(const Teuchos::ParameterList& over) {
+    const Teuchos::ParameterList* stated = sublist(&over, "Expect");
+    std::vector<std::string> changes;
+    add_changes(merged.get(), over, "", changes);
+    for (auto& [name, keys] : changed) keys.insert(keys.end(), changes.begin(), changes.end());
+    if (stated)
+      for (const auto& item : *stated) {
+        changed[item.first].clear();
+        if (sublist(sublist(merged.get(), "Expect"), item.first))
+          merged->sublist("Expect").sublist(item.first).remove("not binding", false);
+      }
+    overlay(*merged, over);
+  }
+
+  /// Whether the expectation's own time comes before the end of the run, which then may be any.
+  bool before_end(const Teuchos::ParameterList& expectation) const {
+    const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
+    const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;
+    return at && end && as_number(*at) <= as_number(*end);
+  }
+
+  void excuse(const std::string& all) {
+    for (auto& [name, keys] : changed) {
+      if (!sublist(sublist(merged.get(), "Expect"), name)) continue;
+      Teuchos::ParameterList& expectation = merged->sublist("Expect").sublist(name);
+      if (before_end(expectation)) std::erase(keys, "Time/final time");
+      std::ranges::sort(keys);
+      keys.erase(std::ranges::unique(keys).begin(), keys.end());
+      if (!all.empty())
+        expectation.set("not binding", all);
+      else if (!keys.empty() && !expectation.isParameter("not binding"))
+        expectation.set("not binding", "the deck was changed: " + joined(keys, " and "));
+    }
+  }
+};
+
+}  // namespace
+
+Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored,
+              const std::string& excuse) {
+  Layers layers;
+  if (!stored.empty()) layers.add(*yaml_list(stored, "The stored deck"));
+  for (const std::string& file : files) layers.add(*file_list(file));
+  Teuchos::ParameterList set;
+  for (const std::string& setting : settings) overlay(set, *setting_list(setting));
+  layers.add(set);
+  layers.excuse(excuse);
+  return Document(layers.merged);
 }
 
 Document read_text(const std::string& yaml, const std::string& origin) { return Document(yaml_list(yaml, origin)); }

@@ -47,7 +47,12 @@ class Document {
 
 /// The deck in `files` (YAML, or XML by extension), later ones over earlier ones key by key, then each `Section/key=value` of `settings`.
 /// `stored` (YAML text, of a checkpoint) lies under all of them; it may be empty. Throws UserError.
-Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored = {});
+///
+/// An expectation binds what it was stated for: where a later file, or the settings together, give another value to a key that results depend on
+/// (all but those of Output and Expect, and Time/final time where it comes after the expectation's `at`), and do not state a key of Expect/<name>
+/// again, `not binding` of that expectation names the keys. `excuse`, if it is not empty, is `not binding` of all.
+Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored = {},
+              const std::string& excuse = {});
 
 /// A deck from its YAML text; `origin` names it in messages.
 Document read_text(const std::string& yaml, const std::string& origin = "the deck");

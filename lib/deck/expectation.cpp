@@ -19,6 +19,10 @@ void Expectation::declare(Section& section) {
   section.key("kind", kind, Choice{"absolute", "relative"}, "whether the tolerance is for the error, or for the error over the value");
   section.key("at", at, not_negative(), "time", "when; the last moment if not given");
   section.key("source", source, Choice{}, "where the value comes from");
+  section.key(
+      "not binding", not_binding, Choice{},
+      "why a miss is reported without failing the run; the program says so itself where a later deck or --set changes a key that results "
+      "depend on, and does not state this expectation anew");
   if (kind == "relative" && value == 0.0) throw UserError(section.path("kind") + " `relative` and the value 0 contradict each other.");
 }
 
@@ -51,7 +55,7 @@ void check_series(const std::vector<Expectation>& expectations, const std::vecto
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end) {
   std::vector<std::string> sentences;
   for (const Expectation& e : expectations)
-    if (e.at && *e.at > end + slack(*e.at))
+    if (e.not_binding.empty() && e.at && *e.at > end + slack(*e.at))
       sentences.push_back("Expect/" + e.name + " will be missed: it is for the time " + number_text(*e.at) + ", and the run ends at " +
                           number_text(end));
   return sentences;
@@ -75,7 +79,8 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
 namespace {
 
 Verdict verdict(const Expectation& e, const SeriesTable& series) {
-  Verdict out{e.name, std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {}};
+  Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
+              e.not_binding};
   const auto values = series.find(e.series), times = series.find("time");
   if (values == series.end() || values->second.empty()) {
     out.reason = "the results hold no series " + e.series;

@@ -19,6 +19,7 @@ struct Expectation {
   std::string kind = "absolute";  ///< absolute, relative
   std::optional<double> at;       ///< time; empty: the last one
   std::string source;             ///< where the value comes from
+  std::string not_binding;        ///< why a miss is reported only; empty: it fails the run
 
   void declare(Section& section);
 };
@@ -32,7 +33,7 @@ struct Expectations {
 /// Throws UserError, with the name that was probably meant, where one is of a series that is not among `names`.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
-/// A sentence for each expectation at a time after `end`, which a run that ends there misses.
+/// A sentence for each binding expectation at a time after `end`, which a run that ends there misses.
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
 
 /// What became of one expectation.
@@ -42,7 +43,8 @@ struct Verdict {
   double expected = 0;
   double error = 0;  ///< |value - expected|, over |expected| when the kind is relative
   bool passed = false;
-  std::string reason;  ///< why nothing could be looked at, or how far it is off; empty when passed
+  std::string reason;       ///< why nothing could be looked at, or how far it is off; empty when passed
+  std::string not_binding;  ///< the expectation's
 };
 
 /// Series by name, rows in order of time, with the series `time` among them.

@@ -6,6 +6,7 @@
 #include <Teuchos_ParameterList.hpp>
 
 #include "base/errors.hpp"
+#include "deck/synonyms.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
 
@@ -17,6 +18,7 @@ std::vector<std::string> names_in(const List& list) {
   std::vector<std::string> names;
   for (const Entry& entry : list.entries) names.push_back(entry.key);
   for (const auto& inner : list.lists) names.push_back(inner->name);
+  names.insert(names.end(), list.mentioned.begin(), list.mentioned.end());
   return names;
 }
 
@@ -31,10 +33,14 @@ std::string elsewhere(const List& list, const std::string& key) {
 
 [[noreturn]] void refuse(const List& list, const List& root, const std::string& key) {
   const std::vector<std::string> names = names_in(list);
+  const std::string path = list.path_of(key), what = path + " is not a key of the deck", missing = missing_feature(path);
+  if (!missing.empty()) throw UserError(what + ": " + missing + ".");
   std::string meant = guess(key, names);
   if (!meant.empty()) meant = list.path_of(meant);
+  if (meant.empty()) meant = synonym(key);
+  const std::string last = meant.substr(meant.rfind('/') + 1);
+  if (std::ranges::find(names, last) != names.end()) meant = list.path_of(last);
   if (meant.empty()) meant = elsewhere(root, key);
-  const std::string what = list.path_of(key) + " is not a key of the deck";
   if (!meant.empty()) throw UserError(what + "; was " + meant + " meant?");
   throw UserError(what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".");
 }

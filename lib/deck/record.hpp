@@ -27,6 +27,7 @@ struct List {
   const Teuchos::ParameterList* given = nullptr;  ///< what the user gave for it, or nothing
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
+  std::vector<std::string> mentioned;  ///< names of lists that may stand here, but do not
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< set when the list belongs to another library
   bool open = false;                                ///< the user chooses the names of its lists
 

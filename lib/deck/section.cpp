@@ -227,6 +227,8 @@ void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterL
   field = list.foreign = std::move(merged);
 }
 
+void Section::mention(std::string_view list) { state_->list->mentioned.emplace_back(list); }
+
 void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use) {
   List& list = *state_->list;
   list.open = true;

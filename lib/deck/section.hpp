@@ -69,6 +69,9 @@ class Section {
   /// A list handed to another library as it is (Belos, Amesos2, NOX); `field` keeps what the deck gives over its defaults.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
 
+  /// Names a list that this one may hold, and does not, in messages on names that it does not hold.
+  void mention(std::string_view list);
+
   /// Lists whose names the user chooses (Expect/<name>): `use` is called with each name and its section.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
 

@@ -87,6 +87,15 @@ std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& ent
   return std::nullopt;
 }
 
+bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b) {
+  const auto numbers = [](const auto& entry) -> std::optional<std::vector<double>> {
+    const auto number = as_number(entry);
+    return number ? std::vector<double>{*number} : as_numbers(entry);
+  };
+  if (numbers(a)) return numbers(a) == numbers(b);
+  return a.isList() == b.isList() && (a.isList() || yaml_value(a) == yaml_value(b));
+}
+
 std::string description(const Teuchos::ParameterEntry& entry) {
   if (entry.isList()) return Teuchos::getValue<Teuchos::ParameterList>(entry).numParams() > 0 ? "a list of keys" : "nothing";
   if (const auto text = as_text(entry)) return in_quotes(shortened(*text, 80)) + " (text)";

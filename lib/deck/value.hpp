@@ -19,6 +19,9 @@ std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< a row, or rows of a table one after the other
 
+/// Whether both stand for the same value; whole numbers are numbers, too.
+bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b);
+
 /// What was given, for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
 std::string description(const Teuchos::ParameterEntry& entry);
 

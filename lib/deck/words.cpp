@@ -55,10 +55,12 @@ std::string shortened(const std::string& text, std::size_t most) {
   return text.substr(0, end) + "...";
 }
 
-std::string alternatives(const std::vector<std::string>& words) {
+std::string alternatives(const std::vector<std::string>& words) { return joined(words, " or "); }
+
+std::string joined(const std::vector<std::string>& words, const std::string& last_link) {
   std::string out;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) out += i + 1 == words.size() ? " or " : ", ";
+    if (i > 0) out += i + 1 == words.size() ? last_link : ", ";
     out += words[i];
   }
   return out;

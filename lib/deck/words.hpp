@@ -24,8 +24,9 @@ std::string trimmed(const std::string& text);
 /// The text itself, or its beginning and `...`, at most `most` bytes together.
 std::string shortened(const std::string& text, std::size_t most);
 
-/// `a, b or c`.
+/// `a, b or c`, or with another last link.
 std::string alternatives(const std::vector<std::string>& words);
+std::string joined(const std::vector<std::string>& words, const std::string& last_link);
 
 /// The candidate that was most probably meant, or nothing: the smallest edit distance (insert, delete, replace, swap of neighbours),
 /// no more than a third of the length, upper and lower case alike.

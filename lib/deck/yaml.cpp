@@ -13,6 +13,7 @@
 
 #include "base/errors.hpp"
 #include "deck/source.hpp"
+#include "deck/synonyms.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
 
@@ -118,7 +119,9 @@ class Walk {
       for (std::size_t i = 0; i < (row ? item.size() : 1); ++i) {
         out.push_back(row ? item[i] : item);
         if (!out.back().IsScalar() || ++nodes_ > most_nodes)
-          refuse(sequence, path + " is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only");
+          refuse(sequence, !missing_feature(path).empty()
+                               ? path + " is not a key of the deck: " + missing_feature(path)
+                               : path + " is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only");
       }
     }
     return out;

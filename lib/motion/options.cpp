@@ -1,5 +1,7 @@
 #include "motion/options.hpp"
 
+#include <limits>
+
 #include "base/errors.hpp"
 #include "deck/section.hpp"
 #include "deck/words.hpp"
@@ -10,7 +12,9 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
               "`auto`: `bs3`, `tr-bdf2` or `rkc2` by the measured stiffness; `tr-bdf2`: implicit, L-stable, order 2; `bdf3`: implicit, multistep, "
               "order 3; `bs3`: explicit, order 3; `rkc2`: explicit, stabilised, order 2, nothing assembled; `crank-nicolson`: the paper's (4.1)");
-  section.key("final time", final_time, deck::positive(), "time", "the run ends here");
+  std::optional<double> end;
+  section.key("final time", end, deck::positive(), "time", "the run ends here; required, but for a `prescribed` motion");
+  final_time = end.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("tolerance", tolerance, deck::between(1e-13, 1.0), "1",
               "error allowed in a step: root mean square displacement of the control points over R_C");
   section.key("initial step", initial_step, deck::positive(), "time", "the first step; if not given, the scheme finds one");

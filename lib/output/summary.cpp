@@ -53,6 +53,7 @@ std::string yaml(const Summary& summary) {
     text += "    expected: " + scalar(one.expected) + "\n";
     text += "    error: " + scalar(one.error) + "\n";
     text += "    passed: " + scalar(one.passed) + "\n";
+    if (!one.not_binding.empty()) text += "    not binding: " + scalar(one.not_binding) + "\n";
   }
   text += map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan) + map("numbers", summary.numbers);
   text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";

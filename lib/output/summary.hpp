@@ -15,6 +15,7 @@ struct Expected {
   double expected = 0;  ///< the deck's
   double error = 0;     ///< absolute, or relative where the deck says so
   bool passed = false;
+  std::string not_binding = {};  ///< why a miss did not fail the run; empty: it did
 };
 
 template <class Value>

@@ -72,18 +72,20 @@ double MeshOptions::n_elements() const {
 
 void ParticleShape::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
-              "resting shape; `red cell`: the biconcave disc of Evans and Fung; `file`: the closed surface in Particle/file");
+              "resting shape; `red cell`: the biconcave disc of Evans and Fung, whose axis is its own x3; `file`: the closed surface in "
+              "Particle/file");
   section.key("file", file, deck::Choice{},
               "name of a Bezier-extraction text (.iga), looked for where the program is started and beside the deck; its surface and spline space "
               "are taken, in the deck's unit of length");
   const bool round = shape == "sphere" || shape == "red cell";
   if (round) radius = 1.0;
-  section.key("radius", radius, deck::positive(), "length", "of the sphere (1 if not given), or of the red cell's disc");
+  section.key("radius", radius, deck::positive(), "length", "of the sphere, or of the red cell's disc, whose R_C is 0.7224 of it; 1 if not given");
   section.key("semi-axes", semi_axes, deck::positive(), "length",
               "three, along the particle's own x1, x2, x3, of a spheroid (two of them equal) or an ellipsoid");
   section.key("center", center, deck::any(), "length", "centroid of the resting shape");
   section.key("orientation", orientation, deck::any(), "degrees",
-              "rotation vector (axis times angle) that turns the particle's own axes into place");
+              "rotation vector (axis times angle, by the right-hand rule) that turns the particle's own axes into place: [0, 90, 0] brings "
+              "its own x3 to x1, and its own x1 to -x3");
   if (section.given("initial shape") || section.documenting()) {
     initial.emplace();
     section.section("initial shape", *initial, "the shape that the run starts with; without this list the resting one");

@@ -2,6 +2,7 @@
 # ranks: 2
 # The command line does what it promises: every option, every exit code, where results go and what is stored with them.
 import pathlib
+import shutil
 import subprocess
 
 from harness import SOURCE, check, command, deck, main, run, start, summary
@@ -75,6 +76,33 @@ def a_missed_expectation_under_mpirun_is_one_line():
     check(" ".join(launcher) in " ".join(run("--help").stdout.split()), "not in the help")
 
 
+def an_expectation_binds_what_it_was_stated_for():
+    base = deck(SMALL + "  Expect:\n    volume: {value: 5, tolerance: 1.0e-2}\n    early: {series: volume, value: 5, tolerance: 1.0e-2, at: 0.02}\n", "base.yaml")
+    other = deck("Tanktread:\n  Flow: {viscosity: 2}\n", "other.yaml")
+    stated = deck("Tanktread:\n  Flow: {viscosity: 2}\n  Expect:\n    volume: {tolerance: 2.0e-2}\n", "stated.yaml")
+    same, longer = ["--set", "Surface/elements per side=3.0", "--set", "Output/interval=0.05"], ["--set", "Time/final time=0.06"]
+
+    def missed(*arguments, code):
+        result = run(*arguments, "--quiet", "--output", "out", code=code)
+        shutil.rmtree("out")
+        return [line for line in result.stderr.splitlines() if "does not fail the run" in line], result.stderr
+
+    check(not missed(base, code=1)[0], "as shipped")
+    check(not missed(base, *same, code=1)[0], "the same value, and the time between snapshots")
+    for changed in ([other], ["--set", "Flow/viscosity=2"]):
+        excused, said = missed(base, *changed, code=0)
+        check(len(excused) == 2 and all("the deck was changed: Flow/viscosity" in line and "volume is 4.18" in line for line in excused), said)
+    excused, said = missed(base, *longer, code=1)
+    check(len(excused) == 1 and "Expect/volume:" in excused[0] and "Time/final time" in excused[0], said)
+    excused, said = missed(base, stated, code=1)
+    check(len(excused) == 1 and "Expect/early:" in excused[0] and "missed Expect/volume:" in said, said)
+    check(len(missed(base, stated, "--set", "Flow/viscosity=3", code=0)[0]) == 2, "changed once more")
+    check(len(missed(base, "--no-expect", code=0)[0]) == 2, "--no-expect")
+    run(base, other, "--quiet", "--output", "out")
+    check([one["not binding"] for one in summary("out")["expect"]] == 2 * ["the deck was changed: Flow/viscosity"], summary("out")["expect"])
+    run("--resume", "out", "--quiet", "--set", "Time/final time=0.06")  # it does not bind a run that goes on either
+
+
 def an_expectation_that_the_run_does_not_reach_is_missed_and_said_to_be_before():
     late = ["--set", "Expect/volume/value=4.18879", "--set", "Expect/volume/tolerance=1", "--set", "Expect/volume/at=9", "--output", "late", "--quiet"]
     lines = run(deck(SMALL), *late, code=1).stderr.splitlines()
@@ -99,7 +127,8 @@ def a_resumed_run_may_change_its_end_but_not_its_mesh():
 
 
 def xml_decks_are_read():
-    text = '<ParameterList name="Tanktread"><ParameterList name="Flow"><Parameter name="viscosity" type="double" value="7"/></ParameterList></ParameterList>\n'
+    text = '<ParameterList name="Tanktread"><ParameterList name="Flow"><Parameter name="viscosity" type="double" value="7"/></ParameterList>' \
+           '<ParameterList name="Time"><Parameter name="final time" type="double" value="1"/></ParameterList></ParameterList>\n'
     check("viscosity: 7.0" in run(deck(text, "deck.xml"), "--check").stdout, "not read")
 
 

@@ -2,6 +2,7 @@
 # A mistake in the deck or on the command line is one sentence, exit code 2, and leaves nothing behind.
 import os
 import pathlib
+import re
 import shutil
 
 from harness import SOURCE, check, deck, main, run
@@ -23,6 +24,14 @@ SETTINGS = [
     (["Time/end=3"], ["Time/end", "not a key", "final time"]),
     (["Expect/energy/value=1", "Expect/energy/tolerance=1", "Expect/energy/tol=1"], ["Expect/energy/tol", "not a key"]),
     (["Zebra/stripes=1"], ["Zebra", "not a key", "Flow"]),
+    (["Time/dt=0.1"], ["Time/dt", "Time/fixed step", "Time/initial step"]),
+    (["Time/end time=3"], ["Time/end time", "was Time/final time meant?"]),
+    (["Membrane/viscosity=1"], ["Membrane/viscosity", "viscous membranes are not there", "Limits"]),
+    (["Wall/position=1"], ["Wall", "plane walls", "Tube"]),
+    (["Particles/one/radius=1"], ["Particles", "one particle", "Limits"]),
+    (["Flow/gravity=[0, 0, -1]"], ["Flow/gravity", "gravity", "not there"]),
+    (["Domain/periodic=true"], ["Domain", "periodic"]),
+    (["Zebra/stripes=1"], ["Tube"]),
     # unknown words
     (["Surface/mesh=icosahedron"], ["Surface/mesh", "cube", "icosahedron"]),
     (["Flow/type=waterfall"], ["Flow/type", "simple shear", "waterfall"]),
@@ -85,7 +94,16 @@ SETTINGS = [
     # what rounding forbids
     (["Particle/viscosity ratio=1e9"], ["Particle/viscosity ratio", "at most 1e+06", "Solvers/tolerance", "1e+09", "Particle/motion `free`"]),
     # what the libraries that get a list know
-    (["Solvers/iterative solver=Foo"], ["Solvers/Belos", "Foo"]),
+    (["Solvers/iterative solver=Foo"], ["Solvers/iterative solver", "GMRES", "Foo"]),
+    (["Solvers/iterative solver=Hybrid Block GMRES"], ["Solvers/iterative solver", "BICGSTAB", "Hybrid Block GMRES"]),
+    (["Solvers/iterative solver=Seed GMRES"], ["Solvers/iterative solver", "Seed GMRES"]),
+    (["Solvers/Belos/Num Blocks=2000000000"], ["Solvers/Belos/Num Blocks", "at most", "4 GB", "2000000000"]),
+    (["Solvers/Belos/Num Blocks=-1"], ["Solvers/Belos/Num Blocks", "-1"]),
+    (["Solvers/Belos/Orthogonalization=Foo"], ["Solvers/Belos/Orthogonalization", "Foo"]),
+    (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Nonlinear Solver=Foo"], ["Solvers/NOX/Nonlinear Solver", "Foo"]),
+    (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Direction/Method=Foo"], ["Solvers/NOX/Direction/Method", "Foo"]),
+    (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Linesearch/Method=Backtrack"], ["Solvers/NOX/Linesearch/Method", "not a parameter"]),
+    (["Time/nonlinear solver=anderson", "Solvers/NOX/Anderson Parameters/Storage Depht=2"], ["Solvers/NOX/Anderson Parameters/Storage Depht"]),
     (["Solvers/direct solver=Foo"], ["Solvers/direct solver", "Foo", "KLU2"]),
     (["Solvers/Belos/Maximum Iteration=30"], ["Solvers/Belos/Maximum Iteration", "was Solvers/Belos/Maximum Iterations meant?"]),
     (["Solvers/Belos/Maximum Iterations=many"], ["Solvers/Belos/Maximum Iterations", "whole number", "many"]),
@@ -101,6 +119,9 @@ SETTINGS = [
 # (text of the deck, what the sentence must hold)
 TEXTS = [
     ("", ["empty", "Tanktread"]),
+    ("Tanktread:\n  Flow: {type: simple shear}\n", ["Time/final time", "missing"]),
+    ("Tanktread:\n  Particles:\n    - radius: 1\n    - radius: 2\n", ["line 3", "Particles", "one particle"]),
+    ("Tanktread:\n  Flow: {type: uniform}\n  Time:\n    final time:\n", ["Time/final time", "is nothing"]),
     ("# only a comment\n", ["empty", "Tanktread"]),
     ("Dear reader,\nthis is a letter.\n", ["not YAML", "Dear reader,"]),
     ("<html><body>404</body></html>\n", ["not YAML", "line 1"]),
@@ -151,6 +172,30 @@ def wrong_settings_are_refused():
         _refused(words, path, *[word for setting in settings for word in ("--set", setting)])
 
 
+def solvers_and_their_lists_are_tried_before_a_run():
+    for settings, words in [entry for entry in SETTINGS if "Solvers/" in entry[0][-1]]:
+        _refused(words, deck(GOOD), "--check", *[word for setting in settings for word in ("--set", setting)])
+    for settings in (["Solvers/iterative solver=BICGSTAB"], ["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Orthogonalization=ICGS"],
+                     ["Solvers/direct solver=KLU2"], ["Time/scheme=crank-nicolson", "Time/nonlinear solver=newton-krylov", "Solvers/NOX/Line Search/Method=Backtrack"],
+                     ["Time/scheme=crank-nicolson", "Time/nonlinear solver=anderson", "Solvers/NOX/Anderson Parameters/Storage Depth=2"]):
+        run(deck(GOOD), *[word for setting in settings for word in ("--set", setting)], "--quiet", "--output", "good")
+
+
+def suggested_keys_exist():
+    manual, section, keys = (SOURCE / "inputs/REFERENCE.md").read_text(), "", set()
+    for line in manual.splitlines():
+        section = line[3:] if line.startswith("## ") else section
+        if match := re.match(r"\| `([^`]+)` \|", line):
+            keys.add(f"{section}/{match[1]}")
+    names = [name for line in (SOURCE / "lib/deck/synonyms.cpp").read_text().splitlines() for name in re.findall(r'"\|(.+)\|"', line)]
+    check(len(names) > 30, names)
+    for name in (names[0] for names in (line.split("|") for line in names)):
+        said = run(deck(GOOD), "--set", f"{'' if '/' in name else 'Output/'}{name}=1", code=2).stderr
+        for key in re.findall(r"(?:was| or) ([A-Z][a-z]+/[a-z -]+?)(?= meant| or)", said):
+            check(key in keys, f"no key {key} of: {said}")
+        check("not there" in said or "cannot be chosen" in said or "meant?" in said, said)
+
+
 def wrong_texts_are_refused():
     for text, words in TEXTS:
         _refused(words, deck(text))
@@ -183,6 +228,8 @@ def wrong_command_lines_are_refused():
     _refused(["No deck", "--help"])
     _refused(["--colour"], deck(GOOD), "--colour")
     check("--set" in run(deck(GOOD), "--set", code=2).stderr, "a setting without a value")
+    _refused(["--output", "--check", "directory"], deck(GOOD), "--output", "--check")
+    _refused(["--resume", "--check", "directory"], "--resume", "--check")
     _refused(["--output", "--resume", "contradict"], "--resume", "nowhere")
     for arguments in (["--resume", "nowhere"], ["--resume", "nowhere", "--set", "Time/final time=2"]):
         result = run(*arguments, code=2)

@@ -13,7 +13,7 @@ namespace {
 
 Scene scene(const std::string& lists) {
   Scene out;
-  deck::Document document = deck::read_text("Tanktread:\n" + (lists.empty() ? "  Flow: {}\n" : lists));
+  deck::Document document = deck::read({}, {"Time/final time=1"}, "Tanktread:\n" + (lists.empty() ? "  Flow: {}\n" : lists));
   document.declare(out);
   out.check();
   return out;
@@ -49,7 +49,7 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
         "  Flow: {history: {times: [0, 1.5, 1.5], amplitudes: [1, 1, 0], angles: [0, 30, 30]}}\n",
         "  Flow: {history: {type: sine, frequency: 2}}\n"}) {
     Scene first, second;
-    deck::Document once = deck::read_text(std::string("Tanktread:\n") + lists);
+    deck::Document once = deck::read({}, {"Time/final time=1"}, std::string("Tanktread:\n") + lists);
     once.declare(first);
     first.check();
     deck::Document twice = deck::read_text(once.effective());

@@ -12,7 +12,7 @@ struct Told {
   Scene scene;
   Warnings warnings{scene};
   explicit Told(const std::vector<std::string>& settings) {
-    deck::Document deck = deck::read({}, settings);
+    deck::Document deck = deck::read({}, settings, "Tanktread: {Time: {final time: 1}}\n");
     deck.declare(scene);
     scene.check();
   }

@@ -97,6 +97,35 @@ TEST(StoredDecks, LieUnderAllOthers) {
   EXPECT_EQ(s.kinds.law, "hard");
 }
 
+TEST(Expectations, BindWhatTheyWereStatedFor) {
+  const Folder folder;
+  const auto base = folder.file(
+      "base.yaml",
+      "Tanktread:\n  Kinds: {count: 4, center: [1, 2, 3]}\n  Expect:\n    a: {value: 1, tolerance: 1}\n    b: {value: 1, tolerance: 1}\n");
+  const auto same = folder.file("same.yaml", "Tanktread:\n  Kinds: {count: 4.0, center: [1., 2., 3.]}\n");
+  const auto other = folder.file("other.yaml", "Tanktread:\n  Kinds: {count: 5}\n  Expect: {b: {tolerance: 2}}\n");
+  const auto excuses = [](const std::vector<Expectation>& all) {
+    std::vector<std::string> out;
+    for (const Expectation& one : all) out.push_back(one.not_binding);
+    return out;
+  };
+  using Excuses = std::vector<std::string>;
+  EXPECT_EQ(excuses(sample({base}).expect.all), (Excuses{"", ""}));
+  EXPECT_EQ(excuses(sample({base, same}).expect.all), (Excuses{"", ""}));
+  EXPECT_EQ(excuses(sample({base, other}).expect.all), (Excuses{"the deck was changed: Kinds/count", ""})) << "b is stated anew";
+  EXPECT_EQ(excuses(sample({base, other}, {"Kinds/law=hard", "Kinds/Inner/depth=1"}).expect.all),
+            (Excuses{"the deck was changed: Kinds/Inner/depth, Kinds/count and Kinds/law",
+                     "the deck was changed: Kinds/Inner/depth and Kinds/law"}));
+  EXPECT_EQ(excuses(sample({base}, {"Kinds/law=hard", "Expect/a/value=2"}).expect.all), (Excuses{"", "the deck was changed: Kinds/law"}));
+  EXPECT_EQ(
+      excuses(sample({}, {"Expect/a/tolerance=3"}, "Tanktread:\n  Expect: {a: {value: 1, tolerance: 1, not binding: x}}\n").expect.all),
+      Excuses{""});
+  Sample all;
+  Document document = read({base}, {}, {}, "--no-expect");
+  document.declare(all);
+  EXPECT_EQ(excuses(all.expect.all), (Excuses{"--no-expect", "--no-expect"}));
+}
+
 TEST(Xml, IsReadByExtension) {
   const Folder folder;
   const auto file =

@@ -43,8 +43,7 @@ TEST(Expectations, NeedValueAndTolerance) {
             "Expect/volume/tolerance is missing; an expectation needs `value` and `tolerance`.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: 1\n"), "Expect/volume must be a list of keys, but is 1.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1, tolerance: 1, tol: 2}\n"),
-            "Expect/volume/tol is not a key of the deck; Expect/volume has "
-            "series, value, tolerance, kind, at or source.");
+            "Expect/volume/tol is not a key of the deck; was Expect/volume/tolerance meant?");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 0, tolerance: 1, kind: relative}\n"),
             "Expect/volume/kind `relative` and the value 0 contradict each other.");
 }

@@ -30,6 +30,12 @@ TEST(Guesses, ForgiveATypoButNotAnotherWord) {
   EXPECT_EQ(guess("Tube", {"Time"}), "");
 }
 
+TEST(Shortened, KeepsWholeCharacters) {
+  EXPECT_EQ(shortened("abcdef", 6), "abcdef");
+  EXPECT_EQ(shortened("abcdefg", 6), "abc...");
+  EXPECT_EQ(shortened("ab\xc3\xa9xxxx", 6), "ab...");
+}
+
 TEST(Alternatives, ReadAsASentence) {
   EXPECT_EQ(alternatives({"a"}), "a");
   EXPECT_EQ(alternatives({"a", "b"}), "a or b");

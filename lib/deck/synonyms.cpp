@@ -1,0 +1,94 @@
+#include "deck/synonyms.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace tanktread::deck {
+
+namespace {
+
+/// Small letters and digits, blanks for everything else: `t_end`, `t-end` and `T end` are one.
+std::string plain(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    out += std::isalnum(byte) || c == '/' ? static_cast<char>(std::tolower(byte)) : ' ';
+  }
+  return out;
+}
+
+struct Meaning {
+  std::string_view names;  ///< each between bars
+  std::string_view what;
+};
+
+constexpr std::array<Meaning, 23> synonyms{{
+    {"|dt|delta t|time step|timestep|step|step size|stepsize|", "Time/fixed step or Time/initial step"},
+    {"|tend|t end|end time|end|tfinal|t final|tmax|t max|max time|maximum time|stop time|duration|simulation time|", "Time/final time"},
+    {"|tol|rtol|atol|reltol|abstol|accuracy|error tolerance|", "Time/tolerance"},
+    {"|integrator|time integrator|stepper|time stepping|method|time scheme|", "Time/scheme"},
+    {"|ca|capillary|", "Membrane/capillary number"},
+    {"|gs|g s|shear elasticity|elastic modulus|surface shear modulus|stiffness|young modulus|young s modulus|youngs modulus|es|e s|",
+     "Membrane/shear modulus"},
+    {"|sigma|interfacial tension|tension|", "Membrane/surface tension"},
+    {"|c|nu|poisson ratio|poisson s ratio|poissons ratio|dilatation|area modulus|", "Membrane/area dilatation"},
+    {"|kappa|kb|k b|kappa b|eb|e b|bending|bending stiffness|bending rigidity|", "Membrane/bending modulus"},
+    {"|spontaneous curvature|reference curvature|", "Membrane/bending reference"},
+    {"|alpha|inflation|preinflation|prestress|pre stress|swelling|", "Membrane/pre-inflation"},
+    {"|lambda|viscosity contrast|inner viscosity|viscosity inside|", "Particle/viscosity ratio"},
+    {"|r|a|rc|r c|r0|diameter|size|", "Particle/radius"},
+    {"|axes|semiaxes|aspect ratio|aspect|", "Particle/semi-axes"},
+    {"|position|centre|location|x0|origin|offset|", "Particle/center"},
+    {"|angle|rotation|tilt|euler angles|inclination|", "Particle/orientation"},
+    {"|mu|eta|dynamic viscosity|outer viscosity|viscosity outside|", "Flow/viscosity"},
+    {"|gamma|gammadot|gamma dot|shear|rate|strain rate|", "Flow/shear rate"},
+    {"|velocity gradient|gradu|grad u|gradient tensor|", "Flow/gradient"},
+    {"|mesh size|h|n|resolution|elements|number of elements|n elements|refinement|refinement level|subdivisions|element size|",
+     "Surface/elements per side"},
+    {"|save every|save interval|snapshot interval|output interval|output frequency|frequency|dump|dt out|output every|", "Output/interval"},
+    {"|output dir|output directory|outdir|directory|dir|folder|output folder|", "--output of the command line"},
+    {"|restart|resume|continue|", "--resume of the command line"},
+}};
+
+/// By the whole path, by a list, or by the name of the key alone.
+constexpr std::array<Meaning, 14> features{{
+    {"|particles|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume "
+     "fraction|",
+     "there is one particle; several in one flow are not there"},
+    {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
+    {"|gravity|g|density|rho|density difference|density ratio|buoyancy|body force|", "gravity and buoyancy are not there"},
+    {"|periodic|period|box|box size|domain|unit cell|periodicity|",
+     "periodic domains are not there; the fluid is unbounded, or fills a Tube"},
+    {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},
+    {"|membrane/viscosity|membrane viscosity|surface viscosity|shear surface viscosity|boussinesq number|",
+     "viscous membranes are not there; the viscosity inside is Particle/viscosity ratio"},
+    {"|order|degree|polynomial degree|polynomial order|spline order|spline degree|p|",
+     "the degree of the splines cannot be chosen; accuracy is a matter of the mesh, Surface/elements per side"},
+    {"|surfactant|surfactants|marangoni|marangoni number|surfactant concentration|elasticity number|", "surfactants are not there"},
+    {"|temperature|brownian|thermal noise|noise|kbt|", "thermal motion is not there"},
+    {"|adhesion|repulsion|adhesion energy|", "forces of adhesion or repulsion are not there"},
+    {"|electric field|magnetic field|charge|", "electric and magnetic fields are not there"},
+    {"|porosity|permeability|", "permeable membranes are not there"},
+    {"|rupture|breakup|break up|plasticity|", "break-up is not there"},
+    {"|power law index|carreau|weissenberg number|relaxation time|", "fluids other than Newtonian ones are not there"},
+}};
+
+std::string looked_up(const auto& table, const std::string& name) {
+  const auto found = std::ranges::find_if(table, [&](const Meaning& m) { return m.names.find("|" + name + "|") != m.names.npos; });
+  return found == table.end() ? std::string() : std::string(found->what);
+}
+
+}  // namespace
+
+std::string synonym(const std::string& name) { return looked_up(synonyms, plain(name)); }
+
+std::string missing_feature(const std::string& path) {
+  const std::string whole = plain(path);
+  std::string what = looked_up(features, whole);
+  if (what.empty()) what = looked_up(features, whole.substr(whole.rfind('/') + 1));
+  return what.empty() ? what : what + " (see Limits in README.md)";
+}
+
+}  // namespace tanktread::deck

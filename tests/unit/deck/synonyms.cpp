@@ -1,0 +1,33 @@
+#include "deck/synonyms.hpp"
+
+#include <gtest/gtest.h>
+
+#include "options.hpp"
+
+namespace tanktread::deck {
+namespace {
+
+TEST(Synonyms, AreFoundHoweverTheyAreWritten) {
+  for (const char* name : {"dt", "time_step", "Time-Step"}) EXPECT_EQ(synonym(name), "Time/fixed step or Time/initial step") << name;
+  for (const char* name : {"tend", "t_end", "T end", "end time"}) EXPECT_EQ(synonym(name), "Time/final time") << name;
+  for (const char* name : {"", "/", "|", "zebra", "shear rate"}) EXPECT_EQ(synonym(name), "") << name;
+}
+
+TEST(MissingFeatures, AreKnownByPathOrName) {
+  EXPECT_NE(missing_feature("Membrane/viscosity"), "");
+  EXPECT_EQ(missing_feature("Flow/viscosity"), "");
+  EXPECT_NE(missing_feature("Flow/gravity"), "");
+  EXPECT_NE(missing_feature("Gravity"), "");
+}
+
+TEST(UnknownKeys, AreRefusedWithWhatIsMissingOrMeant) {
+  EXPECT_EQ(refusal("    Gravity: 1\n"),
+            "Kinds/Gravity is not a key of the deck: gravity and buoyancy are not there (see Limits in README.md).");
+  EXPECT_EQ(refusal("    tend: 1\n"), "Kinds/tend is not a key of the deck; was Time/final time meant?");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Particles:\n    - {a: 1}\n"),
+            "deck.yaml, line 3: Particles is not a key of the deck: there is one particle; several in one flow are not there (see Limits "
+            "in README.md).");
+}
+
+}  // namespace
+}  // namespace tanktread::deck
