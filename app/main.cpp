@@ -171,7 +171,8 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
       return done;
     }
     const int code = run(arguments, speaks);
-    if (speaks) check_output();
+    const bool prints = arguments.check || arguments.reference || arguments.reference_series;  // and nothing else: a run has its files
+    if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {
     return report("stopped by a signal before there was anything to keep", stopped);

@@ -16,7 +16,9 @@ namespace tanktread {
 class Evolution {
  public:
   explicit Evolution(const std::vector<std::string>& settings) {
-    deck::Document deck = deck::read({}, settings);
+    std::vector<std::string> all = {"Time/final time=1"};  // where the settings say no other
+    all.insert(all.end(), settings.begin(), settings.end());
+    deck::Document deck = deck::read({}, all);
     deck.declare(scene);
     scene.check();
     body = tanktread::body(scene);

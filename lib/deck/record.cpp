@@ -39,7 +39,7 @@ std::string elsewhere(const List& list, const std::string& key) {
   if (!meant.empty()) meant = list.path_of(meant);
   if (meant.empty()) meant = synonym(key);
   const std::string last = meant.substr(meant.rfind('/') + 1);
-  if (std::ranges::find(names, last) != names.end()) meant = list.path_of(last);
+  if (meant.find(" or ") == meant.npos && std::ranges::find(names, last) != names.end()) meant = list.path_of(last);
   if (meant.empty()) meant = elsewhere(root, key);
   if (!meant.empty()) throw UserError(what + "; was " + meant + " meant?");
   throw UserError(what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".");

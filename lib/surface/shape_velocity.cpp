@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
@@ -61,8 +62,8 @@ std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, cons
 double shape_velocity(std::span<const double> sums, bool along_x1) {
   std::vector<double> numbers(sums.begin(), sums.end());
   const Sums all(numbers.data());
-  const double volume = all.normals.block<3, 3>(1, 0).trace() / 3;  // over R, as are the first moments of the motion
-  Vec3 frame = all.motion.segment<3>(1) / volume;
+  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R times the identity, but for the rule; with them a translation has no rest
+  Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
   if (along_x1) frame.tail<2>().setZero();
   const Values motion = all.motion - all.normals * frame;
   return std::sqrt(std::max(0.0, motion.dot(all.products.ldlt().solve(motion))) / all.products(0, 0));

@@ -14,8 +14,8 @@ namespace tanktread::surface {
 std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, const Net& v, double radius, std::span<const int> elements);
 
 /// Root mean square of the part of the normal velocity v.n that solid harmonics of degree three at most can follow, in the frame of the centroid
-/// (6.8): with it along x1 only where `along_x1`. Zero for a steady shape, and for a motion of the mesh along it; what the mesh imprints on a shape that
-/// treads through it is of higher degree. Length/time.
+/// (6.8): with it along x1 only where `along_x1`. Zero for a steady shape, and for a motion of the mesh along it; what the mesh imprints on a shape
+/// that treads through it is of higher degree. Length/time.
 double shape_velocity(std::span<const double> sums, bool along_x1);
 
 }  // namespace tanktread::surface

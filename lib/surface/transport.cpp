@@ -31,14 +31,14 @@ struct Circuit {
 
   /// The piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
   void cut(const Corner& a, const Corner& b, const Corner& c) {
-    const bool above[3] = {a.height > 0, b.height > 0, c.height > 0};
+    const bool above[3] = {a.height >= 0, b.height >= 0, c.height >= 0};
     if (above[0] == above[1] && above[1] == above[2]) return;
     const std::array<const Corner*, 3> corners = {&a, &b, &c};
     std::array<Vec3, 2> x, v, unstressed;
     size_t n = 0;
     for (size_t k = 0; k < 3; ++k) {
       const Corner &from = *corners[k], &to = *corners[(k + 1) % 3];
-      if ((from.height > 0) == (to.height > 0)) continue;
+      if ((from.height >= 0) == (to.height >= 0)) continue;
       const double share = from.height / (from.height - to.height);
       x[n] = from.x + share * (to.x - from.x);
       v[n] = from.v + share * (to.v - from.v) - of_centre;
@@ -114,12 +114,16 @@ Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
+  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // where rounding shall not decide on a side
   for (int e = 0; e < map.n_elements(); ++e) {
     const Element places(map, x, e);
     if (!may_meet(places.patch(), centre[1])) continue;
     const Grid at = sample(places.patch()), moves = sample(Element(map, v, e).patch());
     const Grid before = unstressed ? sample(Element(map, *unstressed, e).patch()) : at;
-    const auto corner = [&](size_t j, size_t i) { return Corner{at[j][i], moves[j][i], before[j][i], at[j][i][1] - centre[1]}; };
+    const auto corner = [&](size_t j, size_t i) {
+      const double height = at[j][i][1] - centre[1];
+      return Corner{at[j][i], moves[j][i], before[j][i], std::abs(height) < in_plane ? 0 : height};
+    };
     for (size_t j = 0; j < cells; ++j)
       for (size_t i = 0; i < cells; ++i) {
         circuit.cut(corner(j, i), corner(j, i + 1), corner(j + 1, i + 1));

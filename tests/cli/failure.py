@@ -123,7 +123,7 @@ def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
 
 def memory_that_runs_out_leaves_the_last_good_step():
     process = start(deck(DECK), "--set", "Surface/elements per side=6", "--set", "Particle/viscosity ratio=5", "--set", "Time/final time=50",
-                    "--set", "Output/interval=50", "--output", "out", "--quiet")
+                    "--set", "Time/tolerance=1e-9", "--set", "Output/interval=50", "--output", "out", "--quiet")
     while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
         time.sleep(0.01)
     resource.prlimit(process.pid, resource.RLIMIT_AS, (1, 1))  # no more than it has

@@ -178,7 +178,7 @@ def solvers_and_their_lists_are_tried_before_a_run():
     for settings in (["Solvers/iterative solver=BICGSTAB"], ["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Orthogonalization=ICGS"],
                      ["Solvers/direct solver=KLU2"], ["Time/scheme=crank-nicolson", "Time/nonlinear solver=newton-krylov", "Solvers/NOX/Line Search/Method=Backtrack"],
                      ["Time/scheme=crank-nicolson", "Time/nonlinear solver=anderson", "Solvers/NOX/Anderson Parameters/Storage Depth=2"]):
-        run(deck(GOOD), *[word for setting in settings for word in ("--set", setting)], "--quiet", "--output", "good")
+        run(deck(GOOD), *[word for setting in settings for word in ("--set", setting)], "--quiet", "--output", "good", "--overwrite")
 
 
 def suggested_keys_exist():
@@ -187,7 +187,7 @@ def suggested_keys_exist():
         section = line[3:] if line.startswith("## ") else section
         if match := re.match(r"\| `([^`]+)` \|", line):
             keys.add(f"{section}/{match[1]}")
-    names = [name for line in (SOURCE / "lib/deck/synonyms.cpp").read_text().splitlines() for name in re.findall(r'"\|(.+)\|"', line)]
+    names = [name for line in (SOURCE / "lib/deck/synonyms.cpp").read_text().splitlines() for name in re.findall(r'"\|([^"]+)\|"', line)]
     check(len(names) > 30, names)
     for name in (names[0] for names in (line.split("|") for line in names)):
         said = run(deck(GOOD), "--set", f"{'' if '/' in name else 'Output/'}{name}=1", code=2).stderr

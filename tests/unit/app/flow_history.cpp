@@ -1,6 +1,7 @@
 // Runs in flows that change in time: against closed forms, and against the same run in a steady flow.
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 const std::vector<std::string> capsule_in_shear = {"Surface/elements per side=3", "Surface/extraordinary points=catmull-clark",
-                                                   "Membrane/law=Skalak", "Quadrature/tolerance=1e-5"};
+                                                   "Membrane/law=Skalak", "Quadrature/tolerance=1e-5", "Time/final time=2"};
 const std::vector<std::string> sine = {"Flow/history/type=sine", "Flow/history/frequency=0.5", "Flow/history/mean=0.5", "Flow/history/phase=30"};
 const std::vector<std::string> stop = {"Flow/history/times=[0, 0.3, 0.3]", "Flow/history/amplitudes=[1, 1, 0]"};
 
@@ -35,7 +36,7 @@ TEST(FlowHistory, SchemesKeepTheirOrdersUnderASine) {
   const auto settings = with(capsule_in_shear, sine);
   const auto steps = [&](const char* scheme, const char* step) {
     return shape_at(0.4, with(settings, {std::string("Time/scheme=") + scheme, std::string("Time/fixed step=") + step, "Time/newton tolerance=1e-4",
-                                         "Time/newton iterations=20", "Time/linear tolerance=1e-4", "Time/iteration tolerance=1e-11"}));
+                                         "Time/newton iterations=20", "Time/linear tolerance=1e-4", "Time/nonlinear solver=anderson"}));
   };
   const Net exact = steps("bs3", "0.005");
   const std::pair<const char*, double> orders[] = {{"tr-bdf2", 2}, {"bs3", 3}, {"rkc2", 2}, {"crank-nicolson", 2}, {"bdf3", 3}};
@@ -58,7 +59,7 @@ TEST(FlowHistory, ACapsuleWhoseFlowStopsRelaxes) {
       run.step(1.5);
       EXPECT_LT(run.energy(), energy) << scheme << " at " << run.state.time;
     }
-    EXPECT_LT(run.energy(), 0.1 * before);
+    EXPECT_LT(run.energy(), 0.2 * before);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> at_rest(std::vector<std::string> more) {
   more.insert(more.end(), {"Flow/type=quiescent", "Membrane/law=Skalak", "Membrane/shear modulus=1", "Surface/elements per side=3",
-                           "Surface/extraordinary points=catmull-clark", "Quadrature/tolerance=1e-5"});
+                           "Surface/extraordinary points=catmull-clark", "Quadrature/tolerance=1e-5", "Time/final time=12"});
   return more;
 }
 
@@ -26,15 +26,18 @@ TEST(InitialShape, RelaxesToTheRestingOneAndLosesEnergyInEveryStep) {
     run.step(12);
     EXPECT_LT(run.energy(), energy) << "at " << run.state.time;
   }
-  EXPECT_LT(run.energy(), 1e-4 * first);
-  EXPECT_LT(run.deformation().taylor_inertia, 0.01);
+  EXPECT_LT(run.energy(), 1e-3 * first);
+  EXPECT_LT(run.deformation().taylor_inertia, 0.02);
   EXPECT_NEAR(surface::volume(run.body.space, run.state.x) / volume, 1, 1e-13);
 }
 
 TEST(InitialShape, ThatIsTheRestingOneIsNoneToTheLastBit) {
-  const Evolution none({"Surface/elements per side=3", "Particle/center=[0.1, 0.2, 0.3]"});
+  const std::vector<std::string> settings = {"Surface/elements per side=3", "Particle/center=[0.1, 0.2, 0.3]", "Time/final time=1"};
+  const Evolution none(settings);
   for (const char* same : {"stretch=[1, 1, 1]", "map=[1, 0, 0, 0, 1, 0, 0, 0, 1]"}) {
-    const Evolution run({"Surface/elements per side=3", "Particle/center=[0.1, 0.2, 0.3]", std::string("Particle/initial shape/") + same});
+    std::vector<std::string> shaped = settings;
+    shaped.push_back(std::string("Particle/initial shape/") + same);
+    const Evolution run(shaped);
     EXPECT_EQ(run.state.x, none.state.x);
     EXPECT_EQ(run.state.history[0], none.state.history[0]);
   }

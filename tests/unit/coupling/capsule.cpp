@@ -101,7 +101,7 @@ TEST(Capsule, VelocityFollowsAFlowThatChangesInTime) {
   capsule.at(1, 0);
   const Net none = capsule.velocity(x);
   capsule.at(0, 0);
-  EXPECT_EQ(capsule.velocity(x), one);
+  EXPECT_LT((capsule.velocity(x) - one).norm(), 1e-13 * one.norm());
   const long before = capsule.work().evaluations;
   capsule.at(0, 0);
   capsule.velocity(x);

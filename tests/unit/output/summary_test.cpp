@@ -48,7 +48,7 @@ TEST(Summary, IsReadByPythonAsItWasMeant) {
   write_whole(scratch / "check.py", R"(
 import math, sys, yaml
 s = yaml.safe_load(open(sys.argv[1], encoding='utf-8'))
-assert list(s) == ['status', 'final', 'expect', 'counts', 'seconds', 'plan', 'warnings']
+assert list(s) == ['status', 'final', 'expect', 'counts', 'seconds', 'plan', 'numbers', 'warnings']
 f = s['final']
 assert f['time'] == 7.5 and f['volume_error'] == 1e-15 and math.isnan(f['energy']) and f['drag'] == -math.inf
 assert s['expect'] == [dict(name='taylor_inertia', value=0.39785, expected=0.3979, error=-5e-5, passed=True),
@@ -62,7 +62,7 @@ assert s['warnings'] == ['the load: "strong" # it fails']
 }
 
 TEST(Summary, OfNothingIsStillAMapOfItsParts) {
-  EXPECT_EQ(yaml({}), "status: \"done\"\nfinal: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nwarnings: []\n");
+  EXPECT_EQ(yaml({}), "status: \"done\"\nfinal: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nnumbers: {}\nwarnings: []\n");
 }
 
 }  // namespace
