@@ -25,7 +25,7 @@ class Evolution {
     capsule = tanktread::capsule(scene, body, ranks_, phases_, nullptr);
     scheme_ = motion::integrator(scene.time);
     state.x = body.initial;
-    state.history = {capsule->velocity(state.x)};
+    motion::begin(*capsule, state);
     state.step = motion::first_step(*capsule, state, scene.time);
   }
   Evolution(const Evolution&) = delete;

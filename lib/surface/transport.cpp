@@ -86,10 +86,10 @@ kernel::Lanes in_lanes(const BezierMap& map, const Net& net, std::span<const int
   return lanes;
 }
 
-/// Whether the plane x2 = height can meet the element, which lies in the hull of its Bezier points.
-bool may_meet(const Patch& patch, double height) {
+/// Whether the element, which lies in the hull of its Bezier points, can come as near to the plane x2 = height.
+bool may_meet(const Patch& patch, double height, double near) {
   const auto [low, high] = std::minmax_element(patch.points + patch.n_bezier(), patch.points + 2 * patch.n_bezier());
-  return *low <= height && height <= *high;
+  return *low <= height + near && height - near <= *high;
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const N
   const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // where rounding shall not decide on a side
   for (int e = 0; e < map.n_elements(); ++e) {
     const Element places(map, x, e);
-    if (!may_meet(places.patch(), centre[1])) continue;
+    if (!may_meet(places.patch(), centre[1], in_plane)) continue;
     const Grid at = sample(places.patch()), moves = sample(Element(map, v, e).patch());
     const Grid before = unstressed ? sample(Element(map, *unstressed, e).patch()) : at;
     const auto corner = [&](size_t j, size_t i) {
