@@ -2,8 +2,6 @@
 
 #include <ostream>
 
-#include "coupling/agreement.hpp"
-
 namespace tanktread::coupling {
 
 Vectors::Vectors(Eigen::Index length, int columns)
@@ -49,15 +47,12 @@ void Vectors::MvScale(const std::vector<double>& alpha) {
 }
 
 void Vectors::MvTransMv(double alpha, const Base& a, Small& b) const {
-  for (int j = 0; j < columns(); ++j) {
+  for (int j = 0; j < columns(); ++j)
     for (int i = 0; i < a.GetNumberVecs(); ++i) b(i, j) = alpha * of(a).column(i).dot(column(j));
-    take_first({b[j], static_cast<std::size_t>(a.GetNumberVecs())});
-  }
 }
 
 void Vectors::MvDot(const Base& a, std::vector<double>& b) const {
   for (int c = 0; c < columns(); ++c) b[static_cast<std::size_t>(c)] = column(c).dot(of(a).column(c));
-  take_first(b);
 }
 
 void Vectors::MvNorm(std::vector<double>& norms, Belos::NormType type) const {
@@ -67,7 +62,6 @@ void Vectors::MvNorm(std::vector<double>& norms, Belos::NormType type) const {
                                          : type == Belos::OneNorm ? v.lpNorm<1>()
                                                                   : v.lpNorm<Eigen::Infinity>();
   }
-  take_first(norms);
 }
 
 void Vectors::MvRandom() {

@@ -33,11 +33,11 @@ class KnownProducts {
     outputs_.emplace_back(av);
   }
 
-  /// Whether x is a sum of the inputs to round-off, as the first rank finds; then y = A x.
+  /// Whether x is a sum of the inputs to round-off; then y = A x.
   bool give(const Vectors::Column& x, Vectors::Column y) const {
     Eigen::VectorXd shares(inputs_.size());
     for (std::size_t k = 0; k < inputs_.size(); ++k) shares[static_cast<Eigen::Index>(k)] = inputs_[k].dot(x);
-    if (!of_first(holds(x, shares))) return false;
+    if (!holds(x, shares)) return false;
     y.setZero();
     for (std::size_t k = 0; k < inputs_.size(); ++k) y += shares[static_cast<Eigen::Index>(k)] * outputs_[k];
     return true;
@@ -68,6 +68,7 @@ class FunctionOperator : public Operator {
       Vectors::Column out = Vectors::of(y).column(c);
       if (known_.give(in, out)) continue;
       apply_(in.data(), out.data());
+      take_first({out.data(), static_cast<std::size_t>(out.size())});
       known_.keep(in, out);
     }
   }
@@ -135,13 +136,15 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
 Krylov::~Krylov() = default;
 
 SolveReport Krylov::solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance, const Apply& precondition) const {
-  if (of_first(b.squaredNorm() == 0)) {
-    x.setZero();
-    return {0, true, {}};
-  }
   const auto left = Teuchos::rcp(new Vectors(b.size(), 1)), right = Teuchos::rcp(new Vectors(b.size(), 1));
   left->column(0) = x;
   right->column(0) = b;
+  take_first({left->column(0).data(), static_cast<std::size_t>(x.size())});
+  take_first({right->column(0).data(), static_cast<std::size_t>(b.size())});
+  if (right->column(0).squaredNorm() == 0) {
+    x.setZero();
+    return {0, true, {}};
+  }
   const auto problem = Teuchos::rcp(new Problem(Teuchos::rcp(new FunctionOperator(apply)), left, right));
   if (precondition) problem->setRightPrec(Teuchos::rcp(new FunctionOperator(precondition)));
   problem->setProblem();

@@ -25,8 +25,8 @@ struct SolveReport {
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
 /// Belos, called through its factory, on short vectors that every rank holds whole (Vectors): every rank does the same arithmetic on the whole short
-/// vector, with the first rank's dot products and norms, so that an iteration count cannot differ between ranks. The operator may be
-/// distributed inside; it must return the same vector on every rank, but for round-off.
+/// vector, which is the first rank's where it comes from outside, so dot products need no message and an iteration count cannot differ between
+/// ranks. The operator may be distributed inside; it must return the same vector on every rank, but for round-off.
 class Krylov {
  public:
   using Apply = std::function<void(const double* in, double* out)>;

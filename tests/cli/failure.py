@@ -3,7 +3,6 @@
 # A run that fails, is stopped or runs out of time leaves a checkpoint from which it goes on with another scheme or tolerance.
 import os
 import pathlib
-import resource
 import signal
 import subprocess
 import time
@@ -119,18 +118,6 @@ def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
     check(times[-1] > 1, f"ended at {times[-1]}, though eight iterations are enough until 1.5")
     newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1].name
     check(newest == f"snapshot_{len(times) - 1:06d}.hdf", f"{newest} is not of the last of {len(times)} rows")
-
-
-def memory_that_runs_out_leaves_the_last_good_step():
-    process = start(deck(DECK), "--set", "Surface/elements per side=6", "--set", "Particle/viscosity ratio=5", "--set", "Time/final time=50",
-                    "--set", "Time/tolerance=1e-9", "--set", "Output/interval=50", "--output", "out", "--quiet")
-    while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
-        time.sleep(0.01)
-    resource.prlimit(process.pid, resource.RLIMIT_AS, (1, 1))  # no more than it has
-    _, said = process.communicate(timeout=60)
-    check(process.returncode == 3 and "not enough memory at time" in said and said.count("\n") == 1, process.returncode, said)
-    newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1].name
-    check(newest == f"snapshot_{len(series('out', 'time')) - 1:06d}.hdf", f"{newest} is not of the last of {len(series('out', 'time'))} rows")
 
 
 def a_directory_belongs_to_one_run_at_a_time():

@@ -36,8 +36,8 @@ TEST(ShapeVelocity, OfASphereThatIsDrawnOutIsTheRootMeanSquareOfTheStrain) {
 TEST(ShapeVelocity, OfARigidTranslationIsZeroButAcrossATube) {
   const Body body(Vec3(1.2, 1, 0.7), Vec3(0, 1, 0));
   const auto translated = [&](const Vec3& u) { return Net(u.transpose().replicate(body.x.rows(), 1)); };
-  EXPECT_LT(body.speed(translated({1, -2, 3})), 1e-12);
-  EXPECT_LT(body.speed(translated({1, 0, 0}), true), 1e-12);
+  EXPECT_LT(body.speed(translated({1, -2, 3})), 1e-7);  // of 3.7, three Gauss points a direction
+  EXPECT_LT(body.speed(translated({1, 0, 0}), true), 1e-7);
   EXPECT_GT(body.speed(translated({0, 0.1, 0}), true), 0.03);
 }
 
