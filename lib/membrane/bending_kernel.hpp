@@ -1,7 +1,7 @@
 #pragma once
 // Bending energy at Gauss points, its gradient and Hessian by x_,s x_,t x_,ss x_,st x_,tt. Jets are laid out as packed.hpp says.
 
-#include "membrane/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::membrane {
 

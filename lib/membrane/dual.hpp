@@ -1,7 +1,7 @@
 #pragma once
 // Numbers that carry their derivative along one direction.
 
-#include "membrane/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::membrane {
 
@@ -54,6 +54,7 @@ Dual<N> operator/(double a, const Dual<N>& b) {
   const N ratio = a / b.value;
   return {ratio, -ratio * b.slope / b.value};
 }
+using tanktread::sqrt;
 template <class N>
 Dual<N> sqrt(const Dual<N>& a) {
   const N root = sqrt(a.value);

@@ -8,7 +8,7 @@
 #include <array>
 #include <variant>
 
-#include "membrane/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::membrane {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "membrane/pack.hpp"
+#include "base/pack.hpp"
 #include "spline/space.hpp"
 
 namespace tanktread::membrane {

@@ -2,7 +2,7 @@
 // What happens at one Gauss point of the membrane: stored energy, its gradient and its Hessian by the tangents x_,s and x_,t.
 
 #include "membrane/laws.hpp"
-#include "membrane/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::membrane {
 

@@ -1,28 +1,15 @@
 #include "stokes/assembly_kernel.hpp"
 
-#include <cmath>
-#include <cstring>
+#include "base/pack.hpp"
 
 namespace tanktread::stokes {
 namespace {
-
-template <class Real>
-struct Block {
-  static constexpr int lanes = 64 / sizeof(Real), packs = assembly_block / lanes;
-  using Pack __attribute__((vector_size(64))) = Real;
-
-  static Pack load(const Real* a) {
-    Pack p;
-    std::memcpy(&p, a, sizeof p);
-    return p;
-  }
-  static void store(const Pack& p, Real* a) { std::memcpy(a, &p, sizeof p); }
-};
 
 // g[block (6 k + c) + l]
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;
+  alignas(register_bytes) Real inverses[n];
   Real use[n];
   for (int l = 0; l < n; ++l) use[l] = skip >> l & 1 ? 0 : 1;
   for (int k = 0; k < panel.n_nodes; ++k, g += 6 * n) {
@@ -34,8 +21,13 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
     for (int l = 0; l < n; ++l) {
       const Real rx = static_cast<Real>(x - target[l]), ry = static_cast<Real>(y - target[n + l]),
                  rz = static_cast<Real>(z - target[2 * n + l]);
-      const Real square = rx * rx + ry * ry + rz * rz;
-      const Real inverse = square > 0 ? use[l] / std::sqrt(square) : 0, second = inverse * inverse;
+      inverses[l] = rx * rx + ry * ry + rz * rz;
+    }
+    for (int l = 0; l < n; l += Register<Real>::lanes) store(inverse_root(load(inverses + l)), inverses + l);
+    for (int l = 0; l < n; ++l) {
+      const Real rx = static_cast<Real>(x - target[l]), ry = static_cast<Real>(y - target[n + l]),
+                 rz = static_cast<Real>(z - target[2 * n + l]);
+      const Real inverse = use[l] * inverses[l], second = inverse * inverse;
       const Real height = rx * normal[0] + ry * normal[1] + rz * normal[2];
       const Real isotropic = Double ? 0 : weight * inverse;
       const Real dyadic = Double ? -6 * height * (second * second * inverse) : isotropic * second;
@@ -49,18 +41,17 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
   }
 }
 
-// Four functions and six kernel entries at a time: 24 packs of sums in registers.
+// Four functions and six kernel entries at a time: 24 packs of sums in registers, where there are as many.
 template <class Real>
-void add_products(const PanelNodes<Real>& panel, const Real* g, int part, Real* sums) {
-  using B = Block<Real>;
-  using Pack = typename B::Pack;
+void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
+  using Pack = typename Register<Real>::Pack;
   for (int a = 0; a < panel.functions; a += assembly_tile) {
     const Real* basis = panel.basis + static_cast<std::ptrdiff_t>(panel.n_nodes) * a;
     Pack total[assembly_tile][6] = {};
     for (int k = 0; k < panel.n_nodes; ++k) {
       Pack row[6];
 #pragma GCC unroll 6
-      for (int c = 0; c < 6; ++c) row[c] = B::load(g + assembly_block * (6 * k + c) + B::lanes * part);
+      for (int c = 0; c < 6; ++c) row[c] = load(g + assembly_block * (6 * k + c) + first);
 #pragma GCC unroll 4
       for (int t = 0; t < assembly_tile; ++t) {
         const Real value = basis[panel.n_nodes * t + k];
@@ -70,9 +61,9 @@ void add_products(const PanelNodes<Real>& panel, const Real* g, int part, Real* 
     }
 #pragma GCC unroll 4
     for (int t = 0; t < assembly_tile; ++t) {
-      Real* to = sums + static_cast<std::ptrdiff_t>(6 * assembly_block) * panel.rows[a + t] + B::lanes * part;
+      Real* to = sums + static_cast<std::ptrdiff_t>(6 * assembly_block) * panel.rows[a + t] + first;
 #pragma GCC unroll 6
-      for (int c = 0; c < 6; ++c) B::store(B::load(to + assembly_block * c) + total[t][c], to + assembly_block * c);
+      for (int c = 0; c < 6; ++c) store(load(to + assembly_block * c) + total[t][c], to + assembly_block * c);
     }
   }
 }
@@ -85,7 +76,7 @@ void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::u
     kernel_values<Real, false>(panel, target, skip, scratch);
   else
     kernel_values<Real, true>(panel, target, skip, scratch);
-  for (int part = 0; part < Block<Real>::packs; ++part) add_products(panel, scratch, part, sums);
+  for (int first = 0; first < assembly_block; first += Register<Real>::lanes) add_products(panel, scratch, first, sums);
 }
 
 template void add_far_moments<float>(const PanelNodes<float>&, const double*, std::uint32_t, float*, float*);

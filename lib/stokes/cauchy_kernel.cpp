@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stokes/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::stokes {
 namespace {

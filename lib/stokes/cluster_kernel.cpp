@@ -47,7 +47,7 @@ void lagrange(int n, const Pack& x, Pack* value) {
   }
 }
 
-/// Lagrange polynomials of the three directions at eight points.
+/// Lagrange polynomials of the three directions at a register of points.
 struct Basis {
   Pack along[3][most_chebyshev];
 
@@ -60,7 +60,7 @@ struct Basis {
   }
 };
 
-Pack load(const double* a, int n) {
+Pack load_some(const double* a, int n) {
   Pack p{};
   std::memcpy(&p, a, sizeof(double) * std::min(n, lanes));
   return p;
@@ -73,9 +73,9 @@ void spread_components(const ChebyshevBox& box, const Charges& points, Pack* scr
   Basis basis;
   for (int k = 0; k < points.n; k += lanes) {
     const int n = points.n - k;  // lanes beyond the last point carry nothing
-    basis.place(box, load(points.x + k, n), load(points.y + k, n), load(points.z + k, n));
+    basis.place(box, load_some(points.x + k, n), load_some(points.y + k, n), load_some(points.z + k, n));
     Pack q[N];
-    for (int d = 0; d < N; ++d) q[d] = load(points.q[d] + k, n);
+    for (int d = 0; d < N; ++d) q[d] = load_some(points.q[d] + k, n);
     Pack* sum = scratch;
     for (int c = 0; c < n2; ++c)
       for (int b = 0; b < n1; ++b) {
@@ -87,7 +87,7 @@ void spread_components(const ChebyshevBox& box, const Charges& points, Pack* scr
       }
   }
   for (int i = 0; i < box.n_nodes(); ++i)
-    for (int d = 0; d < N; ++d) node_q[d][i] += stokes::sum(scratch[N * i + d]);
+    for (int d = 0; d < N; ++d) node_q[d][i] += tanktread::sum(scratch[N * i + d]);
 }
 
 template <int N>
@@ -96,7 +96,7 @@ void interpolate_components(const ChebyshevBox& box, const double* node_u, int b
   Basis basis;
   for (int k = 0; k < blocks; ++k, target += 3 * far_block, u += N * far_block)
     for (int l = 0; l < far_block; l += lanes) {
-      basis.place(box, load(target + l, lanes), load(target + far_block + l, lanes), load(target + 2 * far_block + l, lanes));
+      basis.place(box, load(target + l), load(target + far_block + l), load(target + 2 * far_block + l));
       Pack sum[N]{};
       int i = 0;
       for (int c = 0; c < n2; ++c)
@@ -110,8 +110,8 @@ void interpolate_components(const ChebyshevBox& box, const double* node_u, int b
           for (int d = 0; d < N; ++d) sum[d] += both * row[d];
         }
       for (int d = 0; d < N; ++d) {
-        const Pack value = load(u + far_block * d + l, lanes) + sum[d];
-        std::memcpy(u + far_block * d + l, &value, sizeof value);
+        const Pack value = load(u + far_block * d + l) + sum[d];
+        store(value, u + far_block * d + l);
       }
     }
 }

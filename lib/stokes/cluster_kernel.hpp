@@ -4,7 +4,7 @@
 #include <array>
 
 #include "stokes/far_kernel.hpp"
-#include "stokes/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::stokes {
 

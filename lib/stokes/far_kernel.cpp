@@ -3,25 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
-#include "stokes/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::stokes {
 namespace {
 
 constexpr int packs = far_block / lanes;
 
+/// Packs of targets that are summed for side by side.
+constexpr int tile = packs < 4 ? packs : 4;
+
 /// Nodes that all targets meet before the next ones are loaded: 48 or 72 bytes each.
 constexpr int nodes_in_cache = 4096;
-
-Pack load(const double* a) {
-  Pack p;
-  std::memcpy(&p, a, sizeof p);
-  return p;
-}
-
-void store(const Pack& p, double* a) { std::memcpy(a, &p, sizeof p); }
 
 /// u[3 k + c] of target k, which has the coordinates given[0][k], and what else goes with it in given[1][k].
 template <std::size_t Vectors, class Nodes>
@@ -42,11 +36,10 @@ void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, 
   }
 }
 
-}  // namespace
-
-void far_sum(const PointForces& forces, const double* target, double* u) {
-  Pack x0[packs], y0[packs], z0[packs], ux[packs] = {}, uy[packs] = {}, uz[packs] = {};
-  for (int p = 0; p < packs; ++p) {
+/// The targets of one tile.
+void tile_sum(const PointForces& forces, const double* target, double* u) {
+  Pack x0[tile], y0[tile], z0[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};
+  for (int p = 0; p < tile; ++p) {
     x0[p] = load(target + lanes * p);
     y0[p] = load(target + far_block + lanes * p);
     z0[p] = load(target + 2 * far_block + lanes * p);
@@ -54,7 +47,7 @@ void far_sum(const PointForces& forces, const double* target, double* u) {
   for (int k = 0; k < forces.n; ++k) {
     const double x = forces.x[k], y = forces.y[k], z = forces.z[k], fx = forces.fx[k], fy = forces.fy[k], fz = forces.fz[k];
 #pragma GCC unroll 8
-    for (int p = 0; p < packs; ++p) {
+    for (int p = 0; p < tile; ++p) {
       const Pack rx = x - x0[p], ry = y - y0[p], rz = z - z0[p];
       const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz);
       const Pack along = (rx * fx + ry * fy + rz * fz) * (inverse * inverse);
@@ -63,11 +56,17 @@ void far_sum(const PointForces& forces, const double* target, double* u) {
       uz[p] += inverse * (fz + rz * along);
     }
   }
-  for (int p = 0; p < packs; ++p) {
+  for (int p = 0; p < tile; ++p) {
     store(ux[p], u + lanes * p);
     store(uy[p], u + far_block + lanes * p);
     store(uz[p], u + 2 * far_block + lanes * p);
   }
+}
+
+}  // namespace
+
+void far_sum(const PointForces& forces, const double* target, double* u) {
+  for (int first = 0; first < far_block; first += tile * lanes) tile_sum(forces, target + first, u + first);
 }
 
 void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u) { sums_by_blocks<1>(forces, {targets}, u); }

@@ -47,12 +47,6 @@ struct Points {
   }
 };
 
-Pack root(const Pack& a) {
-  Pack value;
-  for (int l = 0; l < lanes; ++l) value[l] = std::sqrt(a[l]);
-  return value;
-}
-
 template <int Degree>
 struct Sums {
   static void area_weights(const PointTable& table, const double* bezier, Pack* weight) {
@@ -62,7 +56,7 @@ struct Sums {
       Pack a[3], b[3];
       for (int c = 0; c < 3; ++c) points.gradient(bezier + n_b * c, a[c], b[c]);
       const Pack nx = a[1] * b[2] - a[2] * b[1], ny = a[2] * b[0] - a[0] * b[2], nz = a[0] * b[1] - a[1] * b[0];
-      weight[k] = table.weights[k] * root(nx * nx + ny * ny + nz * nz);
+      weight[k] = table.weights[k] * sqrt(nx * nx + ny * ny + nz * nz);
     }
   }
 

@@ -1,14 +1,14 @@
 #pragma once
-// Bernstein polynomials at the points of any rule, eight points side by side: what a target with its own rule evaluates.
+// Bernstein polynomials at the points of any rule, a register of points side by side: what a target with its own rule evaluates.
 
 #include <vector>
 
 #include "quadrature/rule.hpp"
-#include "stokes/pack.hpp"
+#include "base/pack.hpp"
 
 namespace tanktread::stokes {
 
-/// For pack k of eight points: B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each. The last pack is filled up with weights 0.
+/// For pack k of points: B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each. The last pack is filled up with weights 0.
 struct PointTable {
   int degree = 3, points = 0;
   std::vector<Pack> bernstein, weights;

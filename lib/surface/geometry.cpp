@@ -12,26 +12,26 @@
 namespace tanktread::surface {
 namespace {
 
-/// Calls use(elements of the group, Bezier points in lanes) for the elements, eight of one degree at a time; a short group repeats its last.
+/// Calls use(elements of the group, Bezier points in lanes) for the elements, a register of one degree at a time; a short group repeats its last.
 template <class Use>
 void each_group(const BezierMap& map, const Net& net, std::span<const int> elements, Use use) {
-  kernel::Lanes lanes;
+  kernel::Lanes packed;
   std::vector<double> one(3 * kernel::most_bezier);
   std::vector<int> group;
   for (const Block& block : map.blocks().blocks) {
     const int n = 3 * (block.degree + 1) * (block.degree + 1);
     const auto flush = [&] {
-      for (int l = static_cast<int>(group.size()); l < kernel::lanes; ++l)
-        for (int k = 0; k < n; ++k) lanes.value[k * kernel::lanes + l] = lanes.value[k * kernel::lanes];
-      use(block.degree, std::span<const int>(group), lanes);
+      for (int l = static_cast<int>(group.size()); l < lanes; ++l)
+        for (int k = 0; k < n; ++k) packed.value[k * lanes + l] = packed.value[k * lanes];
+      use(block.degree, std::span<const int>(group), packed);
       group.clear();
     };
     for (const int e : elements) {
       if (map.degree(e) != block.degree) continue;
       map.points(e, net, one.data());
-      for (int k = 0; k < n; ++k) lanes.value[k * kernel::lanes + static_cast<int>(group.size())] = one[k];
+      for (int k = 0; k < n; ++k) packed.value[k * lanes + static_cast<int>(group.size())] = one[k];
       group.push_back(e);
-      if (group.size() == kernel::lanes) flush();
+      if (group.size() == lanes) flush();
     }
     if (!group.empty()) flush();
   }
@@ -74,7 +74,7 @@ double Geometry::volume(const Net& net) const {
   for (const int b : all_blocks_) {
     double of_block = 0;
     each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
-      double part[kernel::lanes];
+      double part[lanes];
       kernel::volume(degree, points, part);
       for (std::size_t l = 0; l < group.size(); ++l) of_block += part[l];
     });
@@ -91,7 +91,7 @@ void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Ne
     kernel::volume_gradient(degree, points, gradient);
     const int n = 3 * (degree + 1) * (degree + 1);
     for (int l = 0; l < static_cast<int>(group.size()); ++l) {
-      for (int k = 0; k < n; ++k) one[k] = gradient.value[k * kernel::lanes + l];
+      for (int k = 0; k < n; ++k) one[k] = gradient.value[k * lanes + l];
       map_.add_transposed(group[l], one, b);
     }
   });

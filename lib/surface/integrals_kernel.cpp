@@ -1,6 +1,5 @@
 #include "surface/integrals_kernel.hpp"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -114,9 +113,7 @@ struct Of {
       cross(a1, a2, normal);
       const double weight = table.weight[qs] * table.weight[qt];
       const Lane square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-      Lane jacobian;
-      for (int l = 0; l < lanes; ++l) jacobian[l] = std::sqrt(square[l]);
-      area += weight * jacobian;
+      area += weight * sqrt(square);
       const Lane flux = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
       volume_sum += flux;
       for (int c = 0; c < 3; ++c) {

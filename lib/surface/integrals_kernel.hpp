@@ -1,13 +1,14 @@
 #pragma once
-// Integrals over elements from their Bezier points, eight elements at a time, one in each lane.
+// Integrals over elements from their Bezier points, a register of elements at a time, one in each lane.
+
+#include "base/pack.hpp"
 
 namespace tanktread::surface::kernel {
 
-constexpr int lanes = 8;
 constexpr int largest_degree = 6;
 constexpr int most_bezier = (largest_degree + 1) * (largest_degree + 1);
 
-/// Bezier points, or what is dual to them, of eight elements of one degree p: component c of point b in lane l is
+/// Bezier points, or what is dual to them, of as many elements of one degree p: component c of point b in lane l is
 /// value[(c * (p+1)^2 + b) * lanes + l].
 struct alignas(sizeof(double) * lanes) Lanes {
   double value[3 * most_bezier * lanes];
