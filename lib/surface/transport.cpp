@@ -75,15 +75,15 @@ class Element {
   double points_[3 * (spline::max_degree + 1) * (spline::max_degree + 1)];
 };
 
-/// The Bezier points of eight elements of one degree; a short group repeats its last.
+/// The Bezier points of a register of elements of one degree; a short group repeats its last.
 kernel::Lanes in_lanes(const BezierMap& map, const Net& net, std::span<const int> group) {
-  kernel::Lanes lanes;
-  for (size_t l = 0; l < kernel::lanes; ++l) {
+  kernel::Lanes packed;
+  for (size_t l = 0; l < lanes; ++l) {
     const Element element(map, net, group[std::min(l, group.size() - 1)]);
     for (int k = 0; k < 3 * element.patch().n_bezier(); ++k)
-      lanes.value[static_cast<size_t>(k) * kernel::lanes + l] = element.patch().points[k];
+      packed.value[static_cast<size_t>(k) * lanes + l] = element.patch().points[k];
   }
-  return lanes;
+  return packed;
 }
 
 /// Whether the element, which lies in the hull of its Bezier points, can come as near to the plane x2 = height.
@@ -100,8 +100,8 @@ Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
   double volume = 0, flux = 0;
   Vec3 first = Vec3::Zero(), carried = Vec3::Zero();
   for (const Block& block : map.blocks().blocks)
-    for (size_t begin = 0; begin < block.elements.size(); begin += kernel::lanes) {
-      const std::span group = std::span(block.elements).subspan(begin, std::min<size_t>(kernel::lanes, block.elements.size() - begin));
+    for (size_t begin = 0; begin < block.elements.size(); begin += lanes) {
+      const std::span group = std::span(block.elements).subspan(begin, std::min<size_t>(lanes, block.elements.size() - begin));
       kernel::Transport part;
       kernel::transport(block.degree, in_lanes(map, y, group), in_lanes(map, v, group), part);
       for (size_t l = 0; l < group.size(); ++l) {
