@@ -5,6 +5,14 @@
 # So do comparisons with them; what a kernel may not rely on is the last bit of a sum.
 set(kernel_flags -O3 -ffast-math -fno-finite-math-only -mprefer-vector-width=512)
 
+# What nearly every file reads first, compiled once: a third of the time to compile a file. Files still include what they use, which a build with
+# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows.
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp CONTENT "")
+add_library(headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp)
+target_link_libraries(headers PRIVATE Eigen3::Eigen)
+target_precompile_headers(headers PRIVATE <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <set> <span> <string> <vector>
+  <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <Eigen/SparseCore>)
+
 function(room name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;EXTERNAL")
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
@@ -15,6 +23,7 @@ function(room name)
 
   if(sources)
     add_library(tanktread_${name} STATIC ${sources})
+    target_precompile_headers(tanktread_${name} REUSE_FROM headers)
     set(visibility PUBLIC)
     target_link_libraries(tanktread_${name} PRIVATE ${externals})
   else()
@@ -29,6 +38,6 @@ function(room name)
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "/${name}/[^/]*kernel[^/]*\\.cpp$")
   if(kernels)
-    set_source_files_properties(${kernels} PROPERTIES COMPILE_OPTIONS "${kernel_flags}")
+    set_source_files_properties(${kernels} PROPERTIES COMPILE_OPTIONS "${kernel_flags}" SKIP_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()
