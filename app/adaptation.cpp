@@ -18,20 +18,37 @@ namespace tanktread {
 
 namespace {
 
-/// The body and the state carried over by `move`, which gives a net on the new space.
+/// The particle that is looked at, and the state of all.
+struct Subject {
+  const Scene& scene;
+  const Body& body;
+  const spline::Block& block;
+  const motion::State& state;
+  Net x;  ///< its own shape
+};
+
+/// The body and the state carried over by `move`, which gives a net of this particle on the new space.
 template <class Move>
-Adapted carried(const Body& body, std::unique_ptr<Body> target, const motion::State& state, const Move& move) {
-  Adapted result{std::move(target), state};
-  result.body->rest = move(body.rest);
-  result.body->unstressed = move(body.unstressed);
-  result.state.x = move(state.x);
-  for (Net& slope : result.state.history) slope = move(slope);
-  for (motion::Place& place : result.state.places) place.x = move(place.x);
-  if (state.direction.size() > 0) result.state.direction = move(state.direction);
-  std::vector<Net> pairs = state.secants.pairs();
-  for (Net& net : pairs) net = move(net);
+Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
+  Adapted result{std::move(target), of.state};
+  result.body->rest = move(of.body.rest);
+  result.body->unstressed = move(of.body.unstressed);
+  const auto exchange = [&](Net& all) {
+    if (all.size() == 0) return;
+    const Net own = move(of.block.rows(all));
+    const Eigen::Index before = of.block.first_point, after = all.rows() - before - of.block.n_points;
+    Net changed(before + own.rows() + after, 3);
+    changed << all.topRows(before), own, all.bottomRows(after);
+    all = std::move(changed);
+  };
+  exchange(result.state.x);
+  for (Net& slope : result.state.history) exchange(slope);
+  for (motion::Place& place : result.state.places) exchange(place.x);
+  exchange(result.state.direction);
+  std::vector<Net> pairs = of.state.secants.pairs();
+  for (Net& net : pairs) exchange(net);
   result.state.secants = coupling::Secants(std::move(pairs));
-  if (state.frozen.size() > 0) result.state.frozen = move(state.frozen);
+  exchange(result.state.frozen);
   return result;
 }
 
@@ -41,9 +58,9 @@ void settle(Adapted& result, double moved, double radius) {
   result.body->refit_error += result.change;
 }
 
-std::unique_ptr<Body> on_mesh(const Scene& scene, const Body& body, spline::TMesh mesh) {
-  auto target = std::make_unique<Body>(body);
-  lay_out(scene, std::move(mesh), *target);
+std::unique_ptr<Body> on_mesh(const Subject& of, spline::TMesh mesh) {
+  auto target = std::make_unique<Body>(of.body);
+  lay_out(of.scene, std::move(mesh), *target);
   return target;
 }
 
@@ -55,16 +72,12 @@ spline::RepairRules rules(const Body& body) {
   return result;
 }
 
-Adapted on_finer_mesh(const Scene& scene, const Body& body, const motion::State& state, spline::TMesh mesh) {
-  auto target = on_mesh(scene, body, std::move(mesh));
-  const spline::Transfer transfer(body.nested(), target->nested());
-  double residual = 0;
-  Adapted result = carried(body, std::move(target), state, [&](const Net& field) {
-    const auto moved = transfer(field);
-    if (&field == &body.unstressed || &field == &state.x) residual = std::max(residual, moved.residual);
-    return moved.net;
-  });
-  settle(result, residual, body.radius);
+Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
+  auto target = on_mesh(of, std::move(mesh));
+  const spline::Transfer transfer(of.body.nested(), target->nested());
+  const double residual = std::max(transfer(of.body.unstressed).residual, transfer(of.x).residual);
+  Adapted result = carried(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
+  settle(result, residual, of.body.radius);
   return result;
 }
 
@@ -88,7 +101,8 @@ std::vector<Item> agreed(const std::vector<Item>& mine) {
   return items;
 }
 
-Findings findings(const Scene& scene, const Body& body, const motion::State& state, const surface::FieldAt& traction) {
+Findings findings(const Subject& particle, const surface::FieldAt& traction) {
+  const auto& [scene, body, block, state, x] = particle;
   const motion::AdaptationOptions& options = scene.adaptation;
   const auto of = [&](auto indicator) {
     auto merges = agreed(motion::merges(indicator, options));
@@ -96,12 +110,12 @@ Findings findings(const Scene& scene, const Body& body, const motion::State& sta
                     std::move(merges)};
   };
   if (options.indicator == "error")
-    return of(surface::resolution(body.mesh, body.nested(), body.unstressed, state.x, options.load_tolerance ? traction : surface::FieldAt()));
+    return of(surface::resolution(body.mesh, body.nested(), body.unstressed, x, options.load_tolerance ? traction : surface::FieldAt()));
   surface::MetricFields fields;
   if (options.reference_traction_variation) fields.traction = traction;
   if (options.reference_velocity_variation && !state.history.empty())
-    fields.velocity = surface::field_of_net(body.nested(), state.history.front());
-  return of(surface::element_metrics(body.mesh, body.nested(), state.x, fields));
+    fields.velocity = surface::field_of_net(body.nested(), block.rows(state.history.front()));
+  return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }
 
 /// Takes out the marks of elements of the T-mesh with a side at a pole, where these stay degenerate, and under the paper's rule, which cuts none of
@@ -116,7 +130,8 @@ void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>
 }
 
 /// Cuts all that is marked; where that gives more points than allowed, what is marked with limits twice, four times, ... as large.
-Adapted refined(const Scene& scene, const Body& body, const motion::State& state, const Findings& found) {
+Adapted refined(const Subject& of, const Findings& found) {
+  const auto& [scene, body, block, state, x] = of;
   const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
   const size_t before = spline::anchors(body.mesh).size();
   Adapted result;
@@ -130,7 +145,7 @@ Adapted refined(const Scene& scene, const Body& body, const motion::State& state
     const int refused = factor == 1 ? refinement.refused : result.refused;
     const bool fits = static_cast<int>(spline::anchors(refinement.mesh).size() - before) <= room;
     const bool full = result.full || !fits;
-    if (fits && refinement.mesh.edges != body.mesh.edges) result = on_finer_mesh(scene, body, state, std::move(refinement.mesh));
+    if (fits && refinement.mesh.edges != body.mesh.edges) result = on_finer_mesh(of, std::move(refinement.mesh));
     result.refused = refused;
     result.full = full;
     if (fits) break;
@@ -148,21 +163,22 @@ std::vector<bool> elements_over(const Body& body, const std::vector<double>& def
 }
 
 /// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
-Adapted coarsened(const Scene& scene, const Body& body, const motion::State& state, std::vector<spline::Merge> merges) {
+Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
+  const auto& [scene, body, block, state, x] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
     spline::Coarsening coarsening = spline::coarsen(body.mesh, merges, rules(body));
-    auto target = on_mesh(scene, body, std::move(coarsening.mesh));
+    auto target = on_mesh(of, std::move(coarsening.mesh));
     if (target->space.n_points >= body.space.n_points) return {};
     const spline::Projection projection(body.nested(), target->nested());
     std::vector<double> defect(body.nested().elements.size(), 0.0);
-    for (const Net* net : {&body.unstressed, &state.x}) {
+    for (const Net* net : {&body.unstressed, &x}) {
       const std::vector<double> found = projection(*net).defect;
       for (size_t e = 0; e < defect.size(); ++e) defect[e] = std::max(defect[e], found[e]);
     }
     coupling::take_first(defect);
     const double change = *std::max_element(defect.begin(), defect.end());
     if (change <= scene.adaptation.coarsening_tolerance) {
-      Adapted result = carried(body, std::move(target), state, [&](const Net& field) { return projection(field).net; });
+      Adapted result = carried(of, std::move(target), [&](const Net& field) { return projection(field).net; });
       result.finer = false;
       settle(result, change, body.radius);
       return result;
@@ -175,13 +191,15 @@ Adapted coarsened(const Scene& scene, const Body& body, const motion::State& sta
 
 }  // namespace
 
-Adapted adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area) {
-  const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, state.x, load)
+Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+                bool per_unstressed_area) {
+  const Subject particle{scene, body, block, state, block.rows(state.x)};
+  const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
                                                         : surface::field_of_net(body.nested(), load);
-  const Findings found = findings(scene, body, state, traction);
-  Adapted finer = refined(scene, body, state, found);
+  const Findings found = findings(particle, traction);
+  Adapted finer = refined(particle, found);
   if (finer.body || !scene.adaptation.coarsen) return finer;
-  Adapted coarser = coarsened(scene, body, state, found.merges);
+  Adapted coarser = coarsened(particle, found.merges);
   coarser.refused = finer.refused;
   coarser.full = finer.full;
   return coarser;

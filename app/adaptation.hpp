@@ -5,10 +5,11 @@
 
 #include "app/body.hpp"
 #include "motion/integrator.hpp"
+#include "spline/stacked.hpp"
 
 namespace tanktread {
 
-/// A body and the state of its run after a change of mesh.
+/// A body and the state of its run, of all particles, after a change of its mesh.
 struct Adapted {
   std::unique_ptr<Body> body;  ///< none: the mesh stays as it is
   motion::State state;
@@ -19,8 +20,9 @@ struct Adapted {
 };
 
 /// Cuts what the indicator marks, or takes back what it allows to be longer. Every field of the state goes along: both surfaces, the scheme's
-/// slopes, the geometry of the frozen operator. `load`: control values of the load at state.x, per area of the unstressed surface if
-/// `per_unstressed_area`. The same on every rank.
-Adapted adapted(const Scene& scene, const Body& body, const motion::State& state, const Net& load, bool per_unstressed_area);
+/// slopes, the geometry of the frozen operator, whose rows of other particles than `block` stay. `load`: control values of this particle's load at
+/// state.x, per area of the unstressed surface if `per_unstressed_area`. The same on every rank.
+Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+                bool per_unstressed_area);
 
 }  // namespace tanktread

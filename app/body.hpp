@@ -51,10 +51,6 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 /// What the load is measured on: that of a drop, which has no unstressed state, and the strong one are always per current area.
 stokes::Measure load_measure(const Scene& scene);
 
-/// The coupled system that the scene needs, and no more, in a tube if there is one.
-std::unique_ptr<coupling::Capsule> capsule(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases,
-                                           std::unique_ptr<coupling::Tube> tube);
-
 /// The line of the plan about a flow without a tube.
 std::string unbounded_flow(const Scene& scene);
 

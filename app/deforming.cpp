@@ -1,11 +1,14 @@
-// The capsule or drop in the time loop, on a mesh that may change.
+// Capsules and drops in the time loop, on meshes that may change.
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "app/adaptation.hpp"
 #include "app/drift.hpp"
+#include "app/gaps.hpp"
+#include "app/member.hpp"
 #include "app/moving.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
@@ -13,89 +16,120 @@
 #include "spline/locate.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
+#include "surface/transport.hpp"
 
 namespace tanktread {
 
 namespace {
 
-std::vector<Series> deforming_series(const Scene& scene) {
-  std::vector<Series> all = series({"time", "time_step", "taylor_inertia", "taylor_surface", "inclination", "volume", "volume_error", "area",
-                                    "energy", "smallest_tension", "compressed_area", "stresslet_11", "stresslet_22", "stresslet_33",
-                                    "stresslet_12", "stresslet_13", "stresslet_23", "length_x1", "length_x2", "length_x3", "normal_velocity",
-                                    "shape_velocity", "n_control_points", "step_error", "rejected_steps", "iterations", "evaluations", "assemblies",
-                                    "solver_iterations", "velocity_iterations", "wall_seconds", "centroid_x1", "centroid_x2", "centroid_x3",
-                                    "velocity_x1", "velocity_x2", "velocity_x3"});
+/// What is known of each particle.
+std::vector<Series> particle_series(const Scene& scene) {
+  std::vector<Series> all = series({"taylor_inertia", "taylor_surface", "inclination", "volume", "volume_error", "area", "energy",
+                                    "smallest_tension", "compressed_area", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12",
+                                    "stresslet_13", "stresslet_23", "length_x1", "length_x2", "length_x3", "normal_velocity", "shape_velocity",
+                                    "n_control_points", "centroid_x1", "centroid_x2", "centroid_x3", "velocity_x1", "velocity_x2", "velocity_x3",
+                                    "tank_treading_velocity", "tank_treading_frequency", "phase", "axis_1", "axis_2", "axis_3", "axis_1_x1",
+                                    "axis_1_x2", "axis_1_x3"});
   if (scene.tube.present) std::ranges::copy(series({"migration_velocity"}), std::back_inserter(all));
-  std::ranges::copy(series({"tank_treading_velocity"}), std::back_inserter(all));
-  if (scene.tube.present) std::ranges::copy(tube_series(), std::back_inserter(all));
-  std::ranges::copy(series({"tank_treading_frequency", "phase", "axis_1", "axis_2", "axis_3", "axis_1_x1", "axis_1_x2", "axis_1_x3"}),
-                    std::back_inserter(all));
   if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
   if (scene.adaptation.enabled) std::ranges::copy(series({"refit_error"}), std::back_inserter(all));
   return all;
 }
 
+/// What is known of the run.
+std::vector<Series> run_series(const Scene& scene) {
+  std::vector<Series> all = series({"time", "time_step", "step_error", "rejected_steps", "iterations", "evaluations", "assemblies",
+                                    "solver_iterations", "velocity_iterations", "wall_seconds"});
+  if (scene.tube.present) std::ranges::copy(tube_series(), std::back_inserter(all));
+  if (!scene.particles.empty())
+    std::ranges::copy(series({"energy", "n_control_points", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13",
+                              "stresslet_23", "velocity_x1", "velocity_x2", "velocity_x3", "smallest_gap", "first_of_gap", "second_of_gap",
+                              "gap_x1", "gap_x2", "gap_x3"}),
+                      std::back_inserter(all));
+  return all;
+}
+
 }  // namespace
 
-std::vector<Column> deforming_columns(const Scene& scene) { return columns(deforming_series(scene)); }
+std::vector<Column> deforming_columns(const Scene& scene) {
+  std::vector<Column> all = columns(run_series(scene));
+  for (const Scene& one : scene.alone())
+    for (Column& column : columns(particle_series(one))) {
+      if (!one.name.empty()) column.name = one.name + "/" + column.name;
+      all.push_back(std::move(column));
+    }
+  return all;
+}
 
 namespace {
 
 class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), body_(std::make_unique<Body>(tanktread::body(scene))),
-        capsule_(capsule(scene, *body_, ranks, phases, tube(scene, *body_, phases))), series_(deforming_series(scene)),
-        columns_(tanktread::columns(series_)) {
-    const spline::Space& space = body_->nested();
-    followed_ = site_ahead(space, body_->rest, capsule_->geometry().measures(body_->rest).centroid, body_->plane);
-    place_ = spline::place(space, followed_);
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), of_run_(run_series(scene)), columns_(deforming_columns(scene)) {
+    check_apart(members_);
+    set_up(tube(members_.front().scene, *members_.front().body, phases));
+    for (Member& member : members_) {
+      const Body& body = *member.body;
+      member.followed = site_ahead(body.nested(), body.rest, geometry(member).measures(body.rest).centroid, body.plane);
+      member.place = spline::place(body.nested(), member.followed);
+    }
   }
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
-  const Body& body() const override { return *body_; }
-  Net start() const override { return body_->initial; }
+  const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
+  Net start() const override { return body().initial; }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
-  void resume(Resumed& resumed) override {
-    const bool another = resumed.volume != body_->volume || symmetry(scene_, *body_, resumed.state.x).order() != body_->symmetry.order();
-    body_->volume = resumed.volume;
-    if (resumed.body || another) settle(resumed.body ? std::move(resumed.body) : std::move(body_), resumed.state.x);
+  bool resume(Resumed& resumed) override {
+    const bool another_mesh = restore(resumed.checkpoint, members_);
+    const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), resumed.state.x).order() != body().symmetry.order();
+    if (another_mesh || another_symmetry) settle(resumed.state.x);
     if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
     capsule_->work() = resumed.standing.work;
-    turning_ = resumed.standing.turning;
+    for (std::size_t p = 0; p < members_.size(); ++p) members_[p].turning = resumed.standing.turning.at(p);
+    return another_mesh;
   }
+
+  void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
 
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, Standing& standing) override {
-    before_.reset();
+    before_.clear();
     if (holds_centre_) hold_centre(capsule_->flow(), capsule_->geometry(), scene_.particle.shape.center, state);
-    if (!scene_.adaptation.enabled || standing.step % scene_.adaptation.interval != 0) return false;
+    const auto due = [&](const Member& member) {
+      return member.scene.adaptation.enabled && standing.step % member.scene.adaptation.interval == 0;
+    };
+    if (std::ranges::none_of(members_, due)) return false;
     const auto clock = phases_.time("adaptation");
-    Adapted change = adapted(scene_, *body_, state, capsule_->load(state.x), capsule_->measure() == stokes::Measure::reference);
-    remark_on(change, state.time);
-    if (!change.body) return false;
-    state = std::move(change.state);
-    settle(std::move(change.body), state.x);
+    std::vector<Net> loads;
+    for (const Member& member : members_) loads.push_back(member.own(capsule_->load(state.x)));
+    for (std::size_t p = 0; p < members_.size(); ++p)
+      if (due(members_[p])) adapt(p, loads[p], state, standing);
+    if (before_.empty()) return false;
+    settle(state.x);
     capsule_->restore_volume(state.x);
     if (!state.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
     if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
-    (change.finer ? standing.refinements : standing.coarsenings) += 1;
     return true;
   }
 
   void undo_adapt(const Net& x) override {
-    if (!before_) return;
-    capsule_.reset();
-    body_ = std::move(before_);
-    body_->symmetry = symmetry(scene_, *body_, x);
-    capsule_ = capsule(scene_, *body_, ranks_, phases_, tube(scene_, *body_, phases_));
+    if (before_.empty()) return;
+    for (auto& [p, body] : before_) members_[p].body = std::move(body);
+    before_.clear();
+    settle(x);
   }
 
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
 
   coupling::Work work() const override { return capsule_->work(); }
-  Turning turning() const override { return turning_; }
+
+  std::vector<Turning> turning() const override {
+    std::vector<Turning> all;
+    for (const Member& member : members_) all.push_back(member.turning);
+    return all;
+  }
 
   stokes::Evaluations kernel_evaluations() const override {
     const stokes::Evaluations now = capsule_->kernel_evaluations();
@@ -105,16 +139,22 @@ class Deforming : public Moving {
   const std::vector<Column>& columns() const override { return columns_; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    Moment now = moment(scene_, *body_, *capsule_, state, report, ranks_);
-    now.wall_seconds = wall_seconds;
     const Net v = material_velocity(state);
-    add_treading(scene_, *body_, capsule_->geometry(), state.x, v, now);
-    if (body_->wall) add_tube(*capsule_, state.x, v, now);
-    std::optional<double> angle;
-    if (!capsule_->slides()) angle = angle_in(body_->plane, surface::value(body_->nested(), state.x, followed_) - now.centre);
-    turning_.advance(report.step, now.treading.frequency, angle);
-    now.phase = turning_.degrees;
-    return tanktread::row(series_, now);
+    Moment of_run;
+    of_run.time = state.time, of_run.wall_seconds = wall_seconds;
+    of_run.step = report, of_run.work = capsule_->work();
+    std::vector<double> of_particles;
+    for (std::size_t p = 0; p < members_.size(); ++p) {
+      const Moment now = moment(p, state, v, report);
+      std::ranges::copy(tanktread::row(particle_series(members_[p].scene), now), std::back_inserter(of_particles));
+      of_run.energy += now.energy, of_run.n_points += now.n_points, of_run.stresslet += now.stresslet;
+      of_run.velocity += now.velocity / static_cast<double>(members_.size());
+    }
+    if (body().wall) add_tube(*capsule_, state.x, v, of_run);
+    if (all_) of_run.nearest = smallest_gap(members_, state.x, ranks_);
+    std::vector<double> row = tanktread::row(of_run_, of_run);
+    row.insert(row.end(), of_particles.begin(), of_particles.end());
+    return row;
   }
 
   Portrait portrait(const motion::State& state) override {
@@ -126,31 +166,75 @@ class Deforming : public Moving {
   }
 
  private:
+  const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
+  const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
+
+  /// Everything that belongs to the present meshes.
+  void set_up(std::unique_ptr<coupling::Tube> tube) {
+    arrange(members_);
+    all_ = together(members_);
+    capsule_ = capsule(members_, body(), ranks_, phases_, std::move(tube));
+  }
+
   /// Of the fluids on the surface. In a tube it is asked for, as the slope carries what is left of the scheme's iteration, over the step.
   Net material_velocity(const motion::State& state) {
-    if (body_->wall) return capsule_->fluid_velocity(state.x, state.history.front());
+    if (body().wall) return capsule_->fluid_velocity(state.x, state.history.front());
     return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
   }
 
-  /// Goes on with the particle on another mesh, in the shape x.
-  void settle(std::unique_ptr<Body> body, const Net& x) {
-    body->symmetry = symmetry(scene_, *body, x);
-    const coupling::Work work = capsule_->work();
-    kernel_evaluations_ = kernel_evaluations();
-    std::unique_ptr<coupling::Tube> tube;
-    if (capsule_->tube()) tube = std::make_unique<coupling::Tube>(*capsule_->tube(), body->space);
+  /// What a row is made of for particle p, where the fluids move by v.
+  Moment moment(std::size_t p, const motion::State& state, const Net& v, const motion::StepReport& report) {
+    Member& member = members_[p];
+    const Body& body = *member.body;
+    const Net x = member.own(state.x), slope = member.own(state.history.front());
+    Moment now = tanktread::moment(member.scene, body, geometry(member), membrane(member), x, slope, ranks_);
+    now.volume_error = capsule_->volume_error(now.measures.volume, p);
+    now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
+    if (body.flow.affine())
+      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, capsule_->flow().gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
+    add_treading(member.scene, body, geometry(member), x, member.own(v), now);
+    std::optional<double> angle;
+    if (!capsule_->particles()[p].slides()) angle = angle_in(body.plane, surface::value(body.nested(), x, member.followed) - now.centre);
+    member.turning.advance(report.step, now.treading.frequency, angle);
+    now.phase = member.turning.degrees;
+    return now;
+  }
+
+  /// Another mesh for particle p, if its present one asks for it.
+  void adapt(std::size_t p, const Net& load, motion::State& state, Standing& standing) {
+    Member& member = members_[p];
+    Adapted change = adapted(member.scene, *member.body, member.block, state, load, capsule_->measure() == stokes::Measure::reference);
+    remark_on(member, change, state.time);
+    if (!change.body) return;
+    const int more = change.body->space.n_points - member.block.n_points;
+    before_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
+    state = std::move(change.state);
+    member.block.n_points += more;
+    for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
+    (change.finer ? standing.refinements : standing.coarsenings) += 1;
+  }
+
+  /// Goes on with the members' present bodies, in the shape x.
+  void settle(const Net& x) {
+    if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
+    if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
+    std::unique_ptr<coupling::Tube> around;
+    if (capsule_ && capsule_->tube())
+      around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
+    else
+      around = tube(members_.front().scene, *members_.front().body, phases_);
     capsule_.reset();
-    before_ = std::exchange(body_, std::move(body));
-    capsule_ = capsule(scene_, *body_, ranks_, phases_, std::move(tube));
-    capsule_->work() = work;
-    if (scene_.adaptation.enabled) followed_ = spline::Locator(body_->nested())(place_);
+    set_up(std::move(around));
+    capsule_->work() = work_;
+    for (Member& member : members_)
+      if (member.scene.adaptation.enabled) member.followed = spline::Locator(member.body->nested())(member.place);
   }
 
   /// What a change of the mesh lacks.
-  void remark_on(const Adapted& change, double time) {
-    const motion::AdaptationOptions& options = scene_.adaptation;
-    const auto remark = [&](bool lacks, const char* kind, const std::string& sentence) {
-      if (lacks) remarks_.push_back({kind, formatted("at time %.4g ", time) + sentence});
+  void remark_on(const Member& member, const Adapted& change, double time) {
+    const motion::AdaptationOptions& options = member.scene.adaptation;
+    const auto remark = [&](bool lacks, const std::string& kind, const std::string& sentence) {
+      if (lacks) remarks_.push_back({member.label(kind), member.label(formatted("at time %.4g ", time) + sentence)});
     };
     remark(change.refused > 0, "levels",
          formatted("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows",
@@ -168,7 +252,7 @@ class Deforming : public Moving {
   /// `velocity`: of the fluids, or empty.
   std::vector<output::Field> fields(const output::Nodes& nodes, output::NodeRange range, const Net& x, const Net& load,
                                     const Net& velocity) const {
-    const std::vector<surface::Jet> before = nodes.jets(body_->unstressed, range), now = nodes.jets(x, range);
+    const std::vector<surface::Jet> before = nodes.jets(body().unstressed, range), now = nodes.jets(x, range);
     const auto n = static_cast<Eigen::Index>(now.size());
     Net traction = nodes.values(load, range);
     std::vector<output::Field> fields{{"load", traction}};
@@ -176,31 +260,42 @@ class Deforming : public Moving {
       for (Eigen::Index i = 0; i < n; ++i)
         traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
     fields.push_back({"traction", traction});
-    fields.push_back({"displacement", nodes.values(x - body_->unstressed, range)});
+    fields.push_back({"displacement", nodes.values(x - body().unstressed, range)});
     if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity, range)});
-    const Eigen::MatrixX2d tensions = membrane::tensions(body_->law, before, now);
+    Eigen::MatrixX2d tensions(n, 2);
+    Eigen::VectorXd curvature(n), particle(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<size_t>(i);
+      const std::size_t p = particle_of(nodes.mesh().sites[static_cast<size_t>(range.begin) + k].element);
+      tensions.row(i) = membrane::tensions(members_[p].body->law, std::span(&before[k], 1), std::span(&now[k], 1));
+      curvature[i] = surface::mean_curvature(now[k]);
+      particle[i] = static_cast<double>(p + 1);
+    }
     fields.push_back({"smallest tension", tensions.col(0)});
     fields.push_back({"largest tension", tensions.col(1)});
-    Eigen::VectorXd curvature(n);
-    for (Eigen::Index i = 0; i < n; ++i) curvature[i] = surface::mean_curvature(now[static_cast<size_t>(i)]);
     fields.push_back({"mean curvature", curvature});
+    if (all_) fields.push_back({"particle", particle});
     return fields;
+  }
+
+  std::size_t particle_of(int element) const {
+    const auto after = std::ranges::upper_bound(members_, element, {}, [](const Member& member) { return member.block.first_element; });
+    return static_cast<std::size_t>(after - members_.begin()) - 1;
   }
 
   const Scene& scene_;
   coupling::Ranks& ranks_;
   Phases& phases_;
-  std::unique_ptr<Body> body_;
+  std::vector<Member> members_;
+  std::unique_ptr<Body> all_;  // several particles
   std::unique_ptr<coupling::Capsule> capsule_;
-  std::vector<Series> series_;
+  std::vector<Series> of_run_;
   std::vector<Column> columns_;
-  spline::Place place_;    // of the material point whose phase is told, in the nested space
-  spline::Site followed_;  // the same on the present mesh
-  Turning turning_;
-  stokes::Evaluations kernel_evaluations_;  // of capsules on earlier meshes
-  std::unique_ptr<Body> before_;  // the latest change of mesh; until the next one
+  coupling::Work work_;                     // of systems on earlier meshes
+  stokes::Evaluations kernel_evaluations_;  // the same
+  std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had
   std::vector<Warning> remarks_;
-  bool holds_centre_ = holds_centre(scene_);
+  bool holds_centre_ = scene_.particles.empty() && holds_centre(scene_);
 };
 
 }  // namespace

@@ -118,6 +118,12 @@ constexpr Series table[] = {
     {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7)",
      [](const Moment& m) { return m.pressure_drop; }},
     {"gap", "length", "smallest distance between particle and wall", [](const Moment& m) { return m.gap; }},
+    {"smallest_gap", "length", "smallest distance between two of several particles", [](const Moment& m) { return m.nearest.gap; }},
+    {"first_of_gap", "1", "number of the first of these two, from 1 in the order of the deck", [](const Moment& m) { return double(m.nearest.first); }},
+    {"second_of_gap", "1", "number of the second one", [](const Moment& m) { return double(m.nearest.second); }},
+    {"gap_x1", "length", "place between their nearest points, component 1", [](const Moment& m) { return m.nearest.place[0]; }},
+    {"gap_x2", "length", "place between their nearest points, component 2", [](const Moment& m) { return m.nearest.place[1]; }},
+    {"gap_x3", "length", "place between their nearest points, component 3", [](const Moment& m) { return m.nearest.place[2]; }},
     {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)",
      [](const Moment& m) { return m.tube.flux; }},
     {"force_imbalance", "1",
@@ -218,6 +224,14 @@ bool strains(const Scene& scene) {
   return flow.affine() && (gradient + gradient.transpose()).norm() > 1e-10 * gradient.norm();
 }
 
+std::vector<double> entries_of_particles(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name) {
+  std::vector<double> found;
+  for (size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].name.ends_with("/" + std::string(name))) found.push_back(row.at(k));
+  if (found.empty()) found.push_back(entry(columns, row, name));
+  return found;
+}
+
 double entry(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name) {
   const auto at = std::ranges::find(columns, name, &Column::name);
   if (at == columns.end()) throw std::out_of_range("there is no series '" + std::string(name) + "'");
@@ -258,24 +272,23 @@ std::vector<int> own_elements(const surface::Geometry& geometry, const coupling:
 }
 
 /// Ranks share blocks of elements, and sites.
-Whole whole(const Scene& scene, const Body& body, const coupling::Capsule& capsule, const motion::State& state, const coupling::Ranks& ranks) {
-  const surface::Geometry& geometry = capsule.geometry();
-  const membrane::Membrane& membrane = capsule.membrane();
+Whole whole(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
+            const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
   const std::vector<int>& sites = body.symmetry.fundamental();  // the others are images of these
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
-  const membrane::ElementTensions tensions = membrane.element_tensions(state.x, elements);
-  std::vector<double> moments = geometry.block_moments(state.x, blocks);
-  std::vector<double> energy = surface::block_sums(membrane.element_energies(state.x, elements));
+  const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);
+  std::vector<double> moments = geometry.block_moments(x, blocks);
+  std::vector<double> energy = surface::block_sums(membrane.element_energies(x, elements));
   std::vector<double> area = surface::block_sums(tensions.area), compressed = surface::block_sums(tensions.compressed);
   std::vector<double> smallest = slots(ranks, elements.empty() ? 0 : tensions.smallest);
-  std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, state, own));
-  std::vector<double> shape = surface::shape_velocity_sums(geometry.bezier(), state.x, state.history.front(), body.radius, elements);
+  std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, x, slope, own));
+  std::vector<double> shape = surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements);
   ranks.add_all({moments, energy, area, compressed, smallest, fastest, shape});
-  return {surface::Geometry::measures(state.x, moments),
-          {least(smallest, ranks, geometry.n_blocks()) / membrane::modulus(membrane.law()), sum(compressed) / sum(area)},
+  return {surface::Geometry::measures(x, moments),
+          {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area)},
           sum(energy),
           std::ranges::max(fastest),
           surface::shape_velocity(shape, scene.tube.present) / unit_speed(scene, body)};
@@ -306,27 +319,20 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
   return surface::Geometry::deformation(measures, extremes);
 }
 
-Moment moment(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state, const motion::StepReport& report,
-              const coupling::Ranks& ranks) {
-  const auto [measures, tension, energy, normal_velocity, shape_velocity] = whole(scene, body, capsule, state, ranks);
+Moment moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
+              const Net& slope, const coupling::Ranks& ranks) {
+  const auto [measures, tension, energy, normal_velocity, shape_velocity] = whole(scene, body, geometry, membrane, x, slope, ranks);
   Moment now;
-  now.time = state.time;
-  now.step = report;
   now.n_points = body.space.n_points;
   now.measures = measures;
-  now.shape = deformation(capsule.geometry(), body.plane, state.x, measures, ranks);
+  now.shape = deformation(geometry, body.plane, x, measures, ranks);
   now.axes = surface::principal_axes(measures);
-  now.volume_error = capsule.volume_error(measures.volume);
   now.refit_error = body.refit_error;
   now.energy = energy;
   now.tension = tension;
   now.normal_velocity = normal_velocity;
   now.shape_velocity = shape_velocity;
-  now.stresslet = capsule.stresslet(state.x, state.history.front());
-  if (body.flow.affine())
-    now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body.flow.gradient(measures.centroid), scene.flow.viscosity, measures.volume);
   now.centre = measures.centroid;
-  now.work = capsule.work();
   return now;
 }
 
@@ -338,19 +344,18 @@ void add_treading(const Scene& scene, const Body& body, const surface::Geometry&
                                         plane.components(now.centre), plane.components(now.velocity));
 }
 
-double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state,
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites) {
-  if (state.history.empty()) return 0;
   double largest = 0;
   Vec3 frame = Vec3::Zero();
-  if (!body.flow.affine() || scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), state.x, state.history.front())[0];
+  if (!body.flow.affine() || scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), x, slope)[0];
   const surface::BezierMap& map = geometry.bezier();
   constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
   double points[most], velocities[most];
   for (const int i : sites) {
     const auto& [element, s, t] = body.space.collocation[static_cast<size_t>(i)].front();
-    map.points(element, state.x, points);
-    map.points(element, state.history.front(), velocities);
+    map.points(element, x, points);
+    map.points(element, slope, velocities);
     const surface::Jet at = surface::jet({map.degree(element), points}, s, t);
     const Vec3 v = surface::place({map.degree(element), velocities}, s, t) - frame;
     largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));

@@ -2,6 +2,7 @@
 // The series of a run, of every kind of particle: each is stated once, with its unit, what it is, and where its value comes from.
 
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,13 @@
 #include "surface/transport.hpp"
 
 namespace tanktread {
+
+/// The two of several particles that are nearest to each other, by their numbers from 1 in the order of the deck, and the place between them.
+struct Nearest {
+  double gap = std::numeric_limits<double>::infinity();
+  int first = 0, second = 0;
+  Vec3 place = Vec3::Zero();
+};
 
 /// What a row is taken from. A particle fills in what its series ask for. Vectors are in the axes of space.
 struct Moment {
@@ -37,6 +45,7 @@ struct Moment {
   surface::Treading treading;
   double phase = 0;
   double pressure_drop = 0, gap = 0;  ///< in a tube
+  Nearest nearest;                    ///< among others
   coupling::Tube::Checks tube;
   Vec3 drag = Vec3::Zero(), torque = Vec3::Zero();  ///< on a prescribed body; errors against the exact solution
   double drag_error = 0, drag_error_of_traction = 0, torque_error = 0, pressure_error = 0, normal_error = 0, kernel_evaluations = 0;
@@ -67,9 +76,12 @@ std::vector<double> row(std::span<const Series> of, const Moment& now);
 /// The value of one series in a row. Throws std::out_of_range where there is no such series.
 double entry(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name);
 
-/// What every capsule and drop has, but for its velocity and wall_seconds. Collective.
-Moment moment(const Scene& scene, const Body& body, coupling::Capsule& capsule, const motion::State& state, const motion::StepReport& report,
-              const coupling::Ranks& ranks);
+/// Those of all particles, `name` and `<particle>/name`, in their order; without the run's own where particles have it. Throws as entry does.
+std::vector<double> entries_of_particles(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name);
+
+/// What every capsule and drop has that its own shape x and slope tell. Collective.
+Moment moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
+              const Net& slope, const coupling::Ranks& ranks);
 
 /// Velocity of the centroid, and tank-treading, of a surface x whose material moves by v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, Moment& now);
@@ -92,7 +104,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
 
 /// Largest |v.n| over these collocation sites, over rate x R_C: zero when the shape is steady. In a tube of the velocity relative to the centroid's
 /// along the tube, over the mean velocity.
-double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const motion::State& state,
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 
 }  // namespace tanktread

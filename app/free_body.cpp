@@ -51,13 +51,18 @@ class Free : public Moving {
   const Body& body() const override { return body_; }
   Net start() const override { return coupling::placed(free_->centre()); }
   /// Counts go on as if the set-up had been done once.
-  void resume(Resumed& resumed) override {
+  bool resume(Resumed& resumed) override {
     const coupling::Work again = work();
     before_ = resumed.standing.work;
     before_.assemblies -= again.assemblies;
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
-    turning_ = resumed.standing.turning;
+    turning_ = resumed.standing.turning.at(0);
+    return false;
+  }
+  void store(output::Checkpoint& checkpoint) const override {
+    checkpoint.arrays["unstressed"] = body_.unstressed;
+    checkpoint.arrays["initial"] = body_.rest;
   }
   bool adapt(motion::State&, Standing&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
@@ -73,7 +78,7 @@ class Free : public Moving {
     return work;
   }
 
-  Turning turning() const override { return turning_; }
+  std::vector<Turning> turning() const override { return {turning_}; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
     const Net x = free_->surface(state.x);

@@ -86,6 +86,18 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   return name;
 }
 
+/// The files that a particle's shapes come from.
+void find_shapes(ParticleKind& kind, const Arguments& arguments) {
+  surface::ParticleShape& shape = kind.particle.shape;
+  if (shape.file) shape.file = found(*shape.file, kept_surface(kind), arguments);
+  shape.read();
+  auto& initial = shape.initial;
+  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has what became of it
+  if (initial)
+    for (auto* name : {&initial->file, &initial->run})
+      if (*name) *name = found(**name, {}, arguments);
+}
+
 int run(const Arguments& arguments, bool speaks) {
   if (arguments.reference) {
     if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene{});
@@ -108,13 +120,8 @@ int run(const Arguments& arguments, bool speaks) {
   deck.declare(scene);
   if (resume) check_changes(stored, deck, before);
   if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
-  if (auto& file = scene.particle.shape.file) file = found(*file, kept_surface, arguments);
-  scene.particle.shape.read();
-  auto& initial = scene.particle.shape.initial;
-  if (resume && initial && (initial->file || initial->run)) initial.reset();  // which may be gone; the checkpoint has what became of it
-  if (initial)
-    for (auto* name : {&initial->file, &initial->run})
-      if (*name) *name = found(**name, {}, arguments);
+  find_shapes(scene, arguments);
+  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments);
   scene.check();
   coupling::try_solvers(scene.solvers, scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))

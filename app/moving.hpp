@@ -12,17 +12,17 @@
 #include "app/warnings.hpp"
 #include "coupling/dynamics.hpp"
 #include "motion/integrator.hpp"
+#include "output/checkpoint.hpp"
 #include "output/snapshot.hpp"
 #include "stokes/kernels.hpp"
 
 namespace tanktread {
 
-/// A run to go on with. The body is there when its mesh had been adapted.
+/// A run to go on with.
 struct Resumed {
   motion::State state;
   Standing standing;
-  std::unique_ptr<Body> body;
-  double volume = 0;  ///< V0
+  output::Checkpoint checkpoint;  ///< that holds it, and what `store` has put there
 };
 
 /// The particle at one moment, as a picture shows it.
@@ -38,12 +38,13 @@ class Moving {
   virtual coupling::Dynamics& dynamics() = 0;
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< State::x at time zero
-  virtual void resume(Resumed& resumed) = 0;                                     ///< takes what a checkpoint holds beside the state
+  virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now
+  virtual void store(output::Checkpoint& checkpoint) const = 0;                  ///< adds what `resume` takes beside state and standing
   virtual bool adapt(motion::State& state, Standing& standing) = 0;              ///< after a step; whether body() has another mesh now
   virtual void undo_adapt(const Net&) {}                                         ///< goes back to the mesh before, in this shape, for a last picture
   virtual std::vector<Warning> remarks() { return {}; }                          ///< for the user, who is to hear of each kind once
   virtual coupling::Work work() const = 0;
-  virtual Turning turning() const = 0;                                           ///< as of the latest row
+  virtual std::vector<Turning> turning() const = 0;                              ///< of each particle, as of the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual const std::vector<Column>& columns() const = 0;
   virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;

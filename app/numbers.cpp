@@ -65,6 +65,7 @@ std::span<const Number> all_numbers() { return table; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
+  if (!scene.particles.empty()) return found;  // which are of one particle
   for (const Number& one : table)
     if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;

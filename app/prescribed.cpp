@@ -179,7 +179,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   results.record(only);
   motion::State state;
   state.x = body.rest;
-  results.save(state, {}, portrait(scene, body, solution), state.time);
+  results.save({}, state, {}, portrait(scene, body, solution), state.time);
   clock.reset();
   Account account;
   account.plan = chosen;

@@ -36,46 +36,16 @@ std::string identifier() {
   return sum.digits();
 }
 
-/// The edges of the T-mesh; the lattice follows from the deck.
-void store(const spline::TMesh& mesh, output::Checkpoint& checkpoint) {
-  checkpoint.arrays["mesh edges"] = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
-                                        mesh.edges.data(), static_cast<Eigen::Index>(mesh.edges.size())).cast<double>();
-  checkpoint.arrays["mesh spacing"] =
-      Eigen::Map<const Eigen::VectorXi>(mesh.spacing.data(), static_cast<Eigen::Index>(mesh.spacing.size())).cast<double>();
-}
-
 }  // namespace
 
-spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint) {
-  const Eigen::MatrixXd &spacing = checkpoint.arrays.at("mesh spacing"), &bits = checkpoint.arrays.at("mesh edges");
-  if (static_cast<size_t>(bits.size()) != mesh.edges.size())
-    throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run goes on from a mesh that is refined.");
-  for (Eigen::Index i = 0; i < bits.size(); ++i) mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
-  for (Eigen::Index i = 0; i < spacing.size(); ++i) mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
-  return mesh;
-}
-
 namespace {
-
-/// The body on the stored mesh; none where the checkpoint holds no mesh.
-std::unique_ptr<Body> stored_body(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint) {
-  if (!checkpoint.arrays.contains("mesh edges")) return {};
-  auto body = std::make_unique<Body>(first);
-  lay_out(scene, stored_mesh(first.mesh, checkpoint), *body);
-  body->unstressed = checkpoint.arrays.at("unstressed");
-  body->rest = checkpoint.arrays.at("initial");
-  body->volume = checkpoint.numbers.at("initial volume");
-  body->refit_error = checkpoint.numbers.at("refit error");
-  return body;
-}
 
 UserError another_version(const std::filesystem::path& directory) {
   return UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
 }
 
-Resumed stored_run(const Scene& scene, const Body& first, const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
-  return {output::stored_state(checkpoint), stored_standing(checkpoint), stored_body(scene, first, checkpoint),
-          checkpoint.numbers.at("initial volume")};
+Resumed stored_run(const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
+  return {output::stored_state(checkpoint), stored_standing(checkpoint), checkpoint};
 } catch (const std::out_of_range&) {
   throw another_version(directory);
 }
@@ -94,6 +64,8 @@ output::Entries<double> with_earlier(const Phases& phases, const output::Entries
   }
   return seconds;
 }
+
+std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + ".iga"; }
 
 std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
 
@@ -148,7 +120,8 @@ void Results::begin() {
   output::start_directory(directory_);
   run_ = identifier();
   if (scene_.tube.outline) keep(*scene_.tube.outline, kept_outline(scene_));
-  if (scene_.particle.shape.imported) keep(*scene_.particle.shape.file, kept_surface);
+  for (const Scene& one : scene_.alone())
+    if (one.particle.shape.imported) keep(*one.particle.shape.file, kept_surface(one));
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);
@@ -175,7 +148,7 @@ std::optional<Resumed> Results::resumed() {
   if (!request_.resume) return {};
   const output::Saved saved = newest_checkpoint(directory_, ranks_);
   const std::string chosen = saved.file.path.filename();
-  Resumed resumed = stored_run(scene_, *body_, saved.checkpoint, directory_);
+  Resumed resumed = stored_run(saved.checkpoint, directory_);
   last_saved_ = resumed.standing.step;
   if (saved.file.step != last_saved_)
     throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name", last_saved_));
@@ -236,11 +209,13 @@ void Results::write_surface(const Net& surface) {
   write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
 }
 
-void Results::save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time) {
+void Results::save(output::Checkpoint checkpoint, const motion::State& state, const Standing& standing, const Portrait& portrait,
+                   double picture_time) {
   const std::vector<output::Field> fields = gathered(portrait);
   write([&] {
     write_record();
-    output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint(state, standing, picture_time), nodes_->mesh(), fields,
+    complete(checkpoint, state, standing, picture_time);
+    output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, nodes_->mesh(), fields,
                            durable());
     if (durable() == output::Durable::yes) output::sync(directory_);
     series_->add(standing.step, picture_time);
@@ -248,20 +223,13 @@ void Results::save(const motion::State& state, const Standing& standing, const P
   last_saved_ = standing.step;
 }
 
-output::Checkpoint Results::checkpoint(const motion::State& state, const Standing& standing, double picture_time) const {
-  output::Checkpoint checkpoint;
+void Results::complete(output::Checkpoint& checkpoint, const motion::State& state, const Standing& standing, double picture_time) const {
   output::store(state, checkpoint);
   store(standing, checkpoint);
   checkpoint.numbers["picture time"] = picture_time;
-  checkpoint.arrays["unstressed"] = body_->unstressed;
-  checkpoint.arrays["initial"] = body_->rest;
   checkpoint.texts["deck"] = request_.deck_text;
   checkpoint.texts["run"] = run_;
   checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(standing.step) + 1);
-  checkpoint.numbers["initial volume"] = body_->volume;
-  checkpoint.numbers["refit error"] = body_->refit_error;
-  if (scene_.adaptation.enabled) store(body_->mesh, checkpoint);
-  return checkpoint;
 }
 
 /// A picture at all nodes, on every rank: each has evaluated its share, in pieces that stay in the cache.

@@ -22,8 +22,8 @@
 namespace tanktread {
 
 /// What a run keeps in its directory of the files that its deck names, for it goes on without them.
-constexpr const char* kept_surface = "particle.iga";
-std::string kept_outline(const Scene& scene);  ///< the name of Tube/outline, without its folder
+std::string kept_surface(const ParticleKind& kind);  ///< of a particle's file
+std::string kept_outline(const Scene& scene);        ///< the name of Tube/outline, without its folder
 
 /// What a run says of itself when it ends.
 struct Account {
@@ -45,9 +45,6 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 
 /// Throws UserError where the directory holds results that the request does not allow to delete, or another run writes to it. Collective.
 void check_vacant(const RunRequest& request);
-
-/// The mesh whose edges a checkpoint holds, on the lattice of `mesh`. Throws UserError where that is another one.
-spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint);
 
 /// The files of a run (README.md, Results). Every rank evaluates its own nodes of a picture, and the first one writes all files; every call is made
 /// by all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
@@ -71,8 +68,8 @@ class Results {
   /// A sentence about what the run has come near to, on standard error and in the summary.
   void warn(const std::string& sentence);
 
-  /// Checkpoint of the present step and a picture, of the same moment or of one within the step.
-  void save(const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
+  /// Checkpoint of the present step and a picture, of the same moment or of one within the step. `checkpoint` holds what else the run goes on from.
+  void save(output::Checkpoint checkpoint, const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
 
   /// The surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
@@ -91,7 +88,7 @@ class Results {
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_columns();
-  output::Checkpoint checkpoint(const motion::State& state, const Standing& standing, double picture_time) const;
+  void complete(output::Checkpoint& checkpoint, const motion::State& state, const Standing& standing, double picture_time) const;
   std::vector<output::Field> gathered(const Portrait& portrait) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
   void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);

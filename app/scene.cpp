@@ -32,17 +32,64 @@ void ParticleOptions::declare(deck::Section& section) {
               "`reciprocal` theorem, the default under Quadrature/rule `adaptive`; the other rules are too coarse for it");
 }
 
+void ParticleKind::declare(deck::Section& section) {
+  section.mention("like");
+  if (section.documenting()) return;
+  particle.declare(section);
+  declare_lists(section);
+}
+
+void ParticleKind::declare_lists(deck::Section& section) {
+  membrane_given = section.given("Membrane");
+  if (!particle.rigid() || membrane_given) section.section("Membrane", membrane, "what its surface is made of");
+  if (particle.shape.shape != "file")
+    section.section("Surface", surface, "the spline space of its surface");
+  else if (section.given("Surface"))
+    throw UserError(section.path("Surface") + " and the particle's shape `file` contradict each other: the spline space is the file's.");
+  section.section("Interface", interface, "how the mesh of a drop moves along its interface");
+  if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
+  section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
+}
+
+namespace {
+
+/// The list Particles.
+struct Kinds {
+  std::vector<ParticleKind>& all;
+
+  void declare(deck::Section& section) {
+    section.each_alike(
+        "one of several particles: keys of Particle, and lists Membrane, Surface, Interface and Adaptation as they stand in a deck with one. What "
+        "it does not say itself it takes from the list that its key `like` names, or from Particles/defaults",
+        [this](const std::string& name, deck::Section& inner) {
+          all.emplace_back().name = name;
+          all.back().declare(inner);
+        });
+    if (section.documenting()) all.clear();
+    else if (all.empty()) throw UserError(section.path() + " names no particle.");
+  }
+};
+
+}  // namespace
+
 void Scene::declare(deck::Section& root) {
   root.section("Flow", flow, "the ambient flow and the outer fluid");
-  root.section("Particle", particle, "the particle at rest");
-  membrane_given = root.given("Membrane");
+  const bool several = root.given("Particles");
+  if (several) {
+    for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
+      if (root.given(list))
+        throw UserError(std::string(list) + " and Particles contradict each other: each particle has its own, in Particles/<name>, and what they share "
+                                            "is said once in Particles/defaults.");
+  } else {
+    root.section("Particle", particle, "the particle at rest");
+    declare_lists(root);
+  }
+  if (Kinds kinds{particles}; several || root.documenting())
+    root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
+  else
+    root.mention("Particles");
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
-  if (deforming || membrane_given) root.section("Membrane", membrane, "what its surface is made of");
-  if (particle.shape.shape != "file")
-    root.section("Surface", surface, "the spline space of its surface");
-  else if (root.given("Surface"))
-    throw UserError("Surface and Particle/shape `file` contradict each other: the spline space is the file's.");
   tube.present = root.given("Tube");
   if (tube.present || root.documenting())
     root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
@@ -51,9 +98,6 @@ void Scene::declare(deck::Section& root) {
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
-  root.section("Interface", interface, "how the mesh of a drop moves along its interface");
-  if (!root.documenting() && particle.shape.sized()) adaptation.radius = radius();
-  root.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");
@@ -188,7 +232,36 @@ void check_adaptation(const Scene& scene) {
 
 }  // namespace
 
+std::vector<Scene> Scene::alone() const {
+  if (particles.empty()) return {*this};
+  std::vector<Scene> scenes;
+  for (const ParticleKind& kind : particles) {
+    Scene& one = scenes.emplace_back(*this);
+    one.particles.clear();
+    static_cast<ParticleKind&>(one) = kind;
+  }
+  return scenes;
+}
+
+/// What cannot be done with several particles yet, and each of them by itself.
+void Scene::check_several() const {
+  if (tube.present) throw UserError("Tube and Particles contradict each other: one particle at a time goes into a tube so far.");
+  for (const Scene& one : alone()) {
+    const std::string list = "Particles/" + one.name;
+    if (one.particle.rigid())
+      throw UserError(list + "/motion `" + one.particle.motion + "`: of several particles all are `deforming` so far.");
+    if (one.load_is_strong() != alone().front().load_is_strong())
+      throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
+    try {
+      one.check();
+    } catch (const UserError& error) {
+      throw UserError(list + ": " + error.what());
+    }
+  }
+}
+
 void Scene::check() const {
+  if (!particles.empty()) return check_several();
   check_flow(*this);
   check_tube(*this);
   particle.shape.check();
@@ -234,6 +307,7 @@ double Scene::radius() const { return particle.shape.equivalent_radius(); }
 double Scene::speed() const { return flow.speed(radius()); }
 
 double Scene::rate() const {
+  if (!particles.empty()) return alone().front().rate();
   if (speed() > 0) return speed() / radius();
   return particle.rigid() ? 1 : modulus() / (flow.viscosity * radius());
 }

@@ -33,28 +33,43 @@ struct ParticleOptions {
   void declare(deck::Section& section);
 };
 
-/// The options of every room; one list of the deck each.
-struct Scene {
-  stokes::FlowOptions flow;
+/// What may differ from particle to particle.
+struct ParticleKind {
+  std::string name;  ///< of the list Particles/<name>; empty of the only one
   ParticleOptions particle;
   membrane::Options membrane;
   surface::MeshOptions surface;
+  coupling::InterfaceOptions interface;
+  motion::AdaptationOptions adaptation;
+  bool membrane_given = false;  ///< whether the deck has this list at all
+
+  void declare(deck::Section& section);        ///< of Particles/<name>: the keys of Particle, and the other lists
+  void declare_lists(deck::Section& section);  ///< Membrane, Surface, Interface and Adaptation
+};
+
+/// The options of every room; one list of the deck each.
+struct Scene : ParticleKind {
+  stokes::FlowOptions flow;
+  std::vector<ParticleKind> particles;  ///< Particles/<name>; none: the one particle that the scene itself is of
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
   motion::TimeOptions time;
-  motion::AdaptationOptions adaptation;
-  coupling::InterfaceOptions interface;
   coupling::SymmetryOptions symmetry;
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;
-  bool membrane_given = false, volume_given = false;  ///< whether the deck has these lists at all
+  bool volume_given = false;  ///< whether the deck has this list at all
 
   void declare(deck::Section& root);
 
   /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
   void check() const;
+  void check_several() const;
+  bool load_is_strong() const { return membrane.load == "strong"; }
+
+  /// The scene of each particle, as if it were alone.
+  std::vector<Scene> alone() const;
 
   bool reciprocal_forces() const;    ///< `Particle/forces`, or its default
   double radius() const;             ///< R_C: of the sphere of equal volume

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numeric>
 #include <new>
 #include <optional>
 #include <sstream>
 
 #include "app/body.hpp"
+#include "app/gaps.hpp"
+#include "app/member.hpp"
 #include "app/moving.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
@@ -100,7 +103,7 @@ class Run {
     while (reason.empty() && state_.time < scene_.time.final_time) {
       reason = step();
       if (interrupted_) break;
-      progress.show({state_.time, standing_.step, report_.iterations, scene_.particle.rigid() ? 0 : entry("taylor_inertia")});
+      progress.show({state_.time, standing_.step, report_.iterations, scene_.particle.rigid() ? 0 : largest("taylor_inertia")});
       if (!reason.empty() || snapshot_due_) save_or_fail();
     }
     progress.close();
@@ -126,9 +129,7 @@ class Run {
   }
 
   void resume(Resumed& resumed) {
-    const bool adapted = resumed.body != nullptr;
-    particle_->resume(resumed);
-    if (adapted) results_.remesh(particle_->body(), particle_->bezier());
+    if (particle_->resume(resumed)) results_.remesh(particle_->body(), particle_->bezier());
     state_ = resumed.state;
     if (request_.another_scheme) motion::forget(state_);
     standing_ = resumed.standing;
@@ -281,13 +282,15 @@ class Run {
     Signs signs;
     signs.time = state_.time;
     signs.step = report_.step;
-    signs.smallest_tension = entry("smallest_tension");
-    signs.compressed_area = entry("compressed_area");
-    signs.volume_error = entry("volume_error");
+    signs.smallest_tension = smallest("smallest_tension");
+    signs.compressed_area = largest("compressed_area");
+    signs.volume_error = std::max(largest("volume_error"), -smallest("volume_error"));
     signs.jacobian_ratio = quality_.jacobian_ratio;
     signs.aspect_ratio = quality_.aspect_ratio;
     if (scene_.tube.present) signs.gap = entry("gap");
-    signs.element = std::sqrt(entry("area") / static_cast<double>(particle_->body().space.elements.size()));
+    const std::vector<double> areas = entries_of_particles(particle_->columns(), row_, "area");
+    const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
+    signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
     for (const std::string& sentence : warnings_.look(signs)) results_.warn(sentence);
   }
 
@@ -297,7 +300,9 @@ class Run {
     standing_.seconds = with_earlier(phases_, earlier_seconds_);
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     particle_->dynamics().at(pictured.time, began_);
-    results_.save(state_, standing_, particle_->portrait(pictured), pictured.time);
+    output::Checkpoint checkpoint;
+    particle_->store(checkpoint);
+    results_.save(std::move(checkpoint), state_, standing_, particle_->portrait(pictured), pictured.time);
   }
 
   void save_or_fail() {
@@ -316,7 +321,7 @@ class Run {
     const auto limit = scene_.output.wall_clock_limit;
     if (limit && ranks_.first(watch_.here()) > *limit) return by_clock;
     const auto tolerance = scene_.time.steady_tolerance;
-    if (tolerance && entry("shape_velocity") < *tolerance) return steady;
+    if (tolerance && largest("shape_velocity") < *tolerance) return steady;
     return {};
   }
 
@@ -341,6 +346,10 @@ class Run {
     return status;
   }
 
+  /// Of all particles.
+  double smallest(std::string_view name) const { return std::ranges::min(entries_of_particles(particle_->columns(), row_, name)); }
+  double largest(std::string_view name) const { return std::ranges::max(entries_of_particles(particle_->columns(), row_, name)); }
+
   double entry(std::string_view name) const { return tanktread::entry(particle_->columns(), row_, name); }
 
   const Scene& scene_;
@@ -364,14 +373,15 @@ class Run {
   output::Entries<double> earlier_seconds_;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
   surface::Quality quality_;
-  Warnings warnings_{scene_};
+  Scene first_ = scene_.alone().front();
+  Warnings warnings_{first_};  // of several particles by the numbers of the first
 };
 
 }  // namespace
 
 std::vector<std::string> check_expectations(const Scene& scene) {
   const bool prescribed = scene.particle.motion == "prescribed";
-  const std::vector<Column> series = prescribed                       ? prescribed_columns(scene)
+  const std::vector<Column> series = prescribed                        ? prescribed_columns(scene)
                                      : scene.particle.motion == "free" ? free_columns(scene)
                                                                        : deforming_columns(scene);
   std::vector<std::string> names;
@@ -390,7 +400,13 @@ std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phase
   return scene.particle.motion == "free" ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
 }
 
-std::string plan_text(const Scene& scene, int ranks) { return plan_text(plan(scene, body(scene), ranks)); }
+std::string plan_text(const Scene& scene, int ranks) {
+  std::vector<Member> all = members(scene);
+  check_apart(all);
+  arrange(all);
+  const std::unique_ptr<Body> stacked = together(all);
+  return plan_text(plan(scene, stacked ? *stacked : *all.front().body, ranks));
+}
 
 std::string plan_text(const output::Entries<std::string>& plan) {
   std::ostringstream text;

@@ -40,8 +40,10 @@ void store(const Standing& standing, output::Checkpoint& checkpoint) {
   each_count(standing, [&](const char* name, const auto& count) { checkpoint.numbers[name] = static_cast<double>(count); });
   checkpoint.numbers["wall seconds"] = standing.wall_seconds;
   checkpoint.numbers["growth of waves"] = standing.warnings.waves;
-  checkpoint.numbers["phase"] = standing.turning.degrees;
-  checkpoint.numbers["tank-treading frequency"] = standing.turning.rate;
+  Eigen::MatrixXd turning(standing.turning.size(), 2);
+  for (std::size_t p = 0; p < standing.turning.size(); ++p)
+    turning.row(static_cast<Eigen::Index>(p)) << standing.turning[p].degrees, standing.turning[p].rate;
+  checkpoint.arrays["phase and tank-treading frequency"] = turning;
   for (const auto& [phase, seconds] : standing.seconds) checkpoint.numbers[std::string(phase_prefix) + phase] = seconds;
   for (std::size_t k = 0; k < standing.warnings.said.size(); ++k)
     checkpoint.texts[warning_name(k)] = standing.warnings.said[k].kind + "\n" + standing.warnings.said[k].sentence;
@@ -52,7 +54,7 @@ Standing stored_standing(const output::Checkpoint& checkpoint) {
   each_count(standing, [&]<class Count>(const char* name, Count& count) { count = static_cast<Count>(checkpoint.numbers.at(name)); });
   standing.wall_seconds = checkpoint.numbers.at("wall seconds");
   standing.warnings.waves = checkpoint.numbers.at("growth of waves");
-  standing.turning = {checkpoint.numbers.at("phase"), checkpoint.numbers.at("tank-treading frequency")};
+  for (const auto& row : checkpoint.arrays.at("phase and tank-treading frequency").rowwise()) standing.turning.push_back({row[0], row[1]});
   for (const auto& [name, seconds] : checkpoint.numbers)
     if (name.starts_with(phase_prefix)) standing.seconds.emplace_back(name.substr(phase_prefix.size()), seconds);
   for (std::size_t k = 0; checkpoint.texts.contains(warning_name(k)); ++k) {

@@ -18,7 +18,7 @@ struct Standing {
   int refinements = 0, coarsenings = 0;
   stokes::Evaluations kernel;       ///< of all ranks
   Warnings::Memory warnings;
-  Turning turning;                  ///< of the particle
+  std::vector<Turning> turning;     ///< of each particle
   output::Entries<double> seconds;  ///< of the first rank, by phase
 };
 

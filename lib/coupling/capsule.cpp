@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/formatted.hpp"
@@ -15,6 +16,15 @@ namespace tanktread::coupling {
 namespace {
 
 double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+
+/// Every particle with its space and its rows.
+CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
+  if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
+  place(parameters.particles);
+  return parameters;
+}
+
+bool slides(const Particle& particle) { return particle.slides(); }
 bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
@@ -24,12 +34,12 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     : space_(space),
       unstressed_(unstressed),
       flow_(flow),
-      parameters_(parameters),
+      parameters_(placed(parameters, space)),
       ranks_(ranks),
       phases_(phases),
       geometry_(space),
       mass_matrix_(space),
-      membrane_(space, unstressed, parameters.law, 4, parameters.bending),
+      membrane_(space, unstressed, materials(parameters_.particles)),
       tangent_(membrane_),
       layer_(space, parameters.quadrature),
       collocation_(parameters.solvers.direct, parameters.symmetry),
@@ -48,16 +58,17 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_reference(unstressed);
   layer_.set_symmetry(symmetry);
   layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
-  if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
+  if (auto contrasts = viscosity_contrasts(particles()); !contrasts.empty())
+    double_layer_.emplace(space, parameters.quadrature, std::move(contrasts));
   if (by_sites()) sites_ = collocation_matrix(space);
   if (tube_) {
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
   }
-  volume0_ = parameters.kept_volume.value_or(geometry_.volume(initial));
-  if (parameters.interface_motion != "material")
-    interface_.emplace(space, unstressed, parameters.interface_motion, parameters.interface_speed, layer_, own_points_, share.elements,
-                       collocation_, parameters.solvers.direct, symmetry, ranks_);
+  for (const Particle& particle : particles())
+    volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
+  if (std::ranges::any_of(particles(), coupling::slides))
+    interface_.emplace(space, unstressed, particles(), parameters.quadrature, own_points_, share.elements, collocation_, mass_.reference(), ranks_);
 }
 
 Capsule::~Capsule() = default;
@@ -158,6 +169,14 @@ Net Capsule::flux_vector(const Net& x) {
   return b;
 }
 
+/// P v: of each particle what its volume allows.
+void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
+  for (const Particle& particle : particles()) {
+    const auto rows = [&](const Net& net) { return particle.block.rows(net).array(); };
+    particle.block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * particle.block.rows(c);
+  }
+}
+
 Net Capsule::symmetric(Net field) const {
   parameters_.symmetry.complete(field);
   return field;
@@ -198,13 +217,13 @@ Net Capsule::present_velocity(const Net& x, const Net& near) {
   Net c = b;
   const Net f = latest_.load = load_there(x, constrained ? &c : nullptr);
   Net v = load_velocity(x, f);
-  if (constrained) v -= dot(b, v) / dot(b, c) * c;
+  if (constrained) constrain(v, b, c);
   if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
   if (!interface_) return v;
   latest_.fluid = symmetric(v);
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
-  if (constrained) v -= dot(b, v) / dot(b, c) * c;  // interpolation of the normal motion lets a little flux in
+  if (constrained) constrain(v, b, c);  // interpolation of the normal motion lets a little flux in
   return v;
 }
 
@@ -244,15 +263,16 @@ bool Capsule::enter_tube(const Net& x) {
   return !ranks_.any(outside);
 }
 
-/// B v = v - (1 - lambda) R^-1 (H v), from what the double layer gives at the sites.
-Net Capsule::viscous(const Net& v, const Net& hv) const { return v - (1 - parameters_.viscosity_ratio) * collocation_.solve(hv); }
+/// B v = v - R^-1 (H v), from what the double layer gives at the sites.
+Net Capsule::viscous(const Net& v, const Net& hv) const { return v - collocation_.solve(hv); }
 
 void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   ++work_.velocity_solves;
   work_.velocity_iterations += report.iterations;
   work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
-  if (v.allFinite())
-    require_convergence(report, formatted("the velocity at viscosity ratio %g", parameters_.viscosity_ratio), parameters_.solvers.tolerance);
+  const auto contrast = [](const Particle& particle) { return std::abs(std::log(particle.viscosity_ratio)); };
+  const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
+  if (v.allFinite()) require_convergence(report, formatted("the velocity at viscosity ratio %g", ratio), parameters_.solvers.tolerance);
 }
 
 /// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
@@ -276,7 +296,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);
   const auto project = [&](Net& v) {
-    if (b.size() > 0) v -= dot(b, v) / dot(b, c) * c;
+    if (b.size() > 0) constrain(v, b, c);
   };
   const auto apply = [&](const double* in, double* out) {
     Net v = Eigen::Map<const Net>(in, n, 3);
@@ -309,31 +329,49 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const
 void Capsule::restore_volume(Net& x) {
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
-  for (int k = 0; k < 5; ++k) {  // two are enough after any but a very long step
+  std::vector<double> missing(particles().size());  // over V0
+  const auto larger_than = [&](double bound) { return std::ranges::any_of(missing, [&](double m) { return !(std::abs(m) <= bound); }); };
+  for (int k = 0; k < 6; ++k) {  // two changes are enough after any but a very long step
     const Net b = flux_vector(x);
-    const double missing = volume0_ - dot(b, x.rowwise() - x.colwise().mean()) / 3;
-    if (k > 1 && !(std::abs(missing) > 2e-15 * volume0_)) return;
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+      const auto rows = particles()[p].block.rows(x);
+      const double volume = (rows.rowwise() - rows.colwise().mean()).cwiseProduct(particles()[p].block.rows(b)).sum() / 3;
+      missing[p] = 1 - volume / volume0_[p];
+    }
+    if (k > 1 && !larger_than(2e-15)) return;
+    if (k == 5) break;
     const auto projection = phases_.time("projection");
     const Net c = symmetric(solved(mass_.reference(), b));
-    x += missing / dot(b, c) * c;
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+      const spline::Block& block = particles()[p].block;
+      block.rows(x) += missing[p] * volume0_[p] / block.rows(b).cwiseProduct(block.rows(c)).sum() * block.rows(c);
+    }
   }
-  if (!(std::abs(volume_error(x)) < 1e-12)) x.setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (larger_than(1e-12)) x.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+double Capsule::volume_error(const Net& x) const {
+  return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
 }
 
 double Capsule::norm(const Net& displacement) const {
-  if (tube_) {
-    Net across = displacement;
-    across.col(0).array() -= across.col(0).mean();
-    return across.norm() / (parameters_.radius * std::sqrt(static_cast<double>(across.rows())));
+  const double along = tube_ ? displacement.col(0).mean() : 0;
+  double largest = 0;
+  for (const Particle& particle : particles()) {
+    const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
+    const double norm = moved.norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
+    largest = norm <= largest ? largest : norm;  // what is not a number stays so
   }
-  return displacement.norm() / (parameters_.radius * std::sqrt(static_cast<double>(displacement.rows())));
+  return largest;
 }
 
-Mat3 Capsule::stresslet(const Net& x, const Net& slope) {
-  Mat3 moment = energy_gradient(x).transpose() * x;  // int df x dG, since x = sum N_A x_A
-  if (double_layer_) {
+Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
+  const Particle& particle = particles()[p];
+  const auto own = [&](const Net& net) { return particle.block.rows(net); };
+  Mat3 moment = own(energy_gradient(x)).transpose() * own(x);  // int df x dG, since x = sum N_A x_A
+  if (particle.viscosity_ratio != 1) {
     const Net v = interface_ ? fluid_velocity(x) : slope;
-    moment -= 2 * (1 - parameters_.viscosity_ratio) * parameters_.viscosity * v.transpose() * geometry_.volume_gradient(x);
+    moment -= 2 * (1 - particle.viscosity_ratio) * parameters_.viscosity * own(v).transpose() * own(geometry_.volume_gradient(x));
   }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }

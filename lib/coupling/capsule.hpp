@@ -15,6 +15,7 @@
 #include "coupling/krylov.hpp"
 #include "coupling/nodal_operator.hpp"
 #include "coupling/options.hpp"
+#include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
 #include "coupling/tube.hpp"
 #include "membrane/mass_solver.hpp"
@@ -45,28 +46,23 @@ struct Work {
   long most_velocity_iterations = 0;  ///< of one of them
 };
 
-/// What a capsule is made of and how it is solved.
+/// What capsules and drops are made of and how they are solved.
 struct CapsuleParameters {
-  double viscosity = 1;        ///< mu of the outer fluid
-  double viscosity_ratio = 1;  ///< lambda
-  double radius = 1;     ///< R_C
-  membrane::Law law;
-  membrane::Bending bending;
+  double viscosity = 1;                                          ///< mu of the outer fluid
+  std::vector<Particle> particles{1};                            ///< stacked in this order; one alone need not name its space
   bool strong_load = false;                                      ///< (P-3) at the collocation sites instead of (3.5)
   stokes::Measure measure = stokes::Measure::reference;          ///< of the weak load: (3.7) or (3.6)
-  std::string interface_motion = "material";                    ///< of the control points of a drop
-  double interface_speed = 0;                                    ///< of its relaxing motion, length/time
   VolumeOptions volume;
-  std::optional<double> kept_volume;  ///< V0 to be kept, where it is not that of the initial net: on another mesh
   SolverOptions solvers;
   quadrature::Options quadrature;
   surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
 };
 
-/// dx/dt = v(x) without a wall (2.4), (4.2):
+/// dx/dt = v(x) of the stacked nets of all particles without a wall (2.4), (4.2):
 ///
-///   B v = v_inf - R^{-1} A M0^{-1} dE/dx,   B = I - (1 - lambda) R^{-1} H,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b    (2.8)
+///   B v = v_inf - R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} H,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b    (2.8)
 ///
+/// A, H: layers over all surfaces, at all; H with the factor 1 - lambda of each. One condition b.v = 0, and one factor of P, a particle.
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
 ///
@@ -111,13 +107,14 @@ class Capsule : public Dynamics {
     return fluid_velocity(about ? latest_.x : x);
   }
 
-  /// Particle stresslet (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
+  /// Stresslet of particle p (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
   /// The fluids' velocity v is `slope`, that of the control points, or is evaluated where it matters and they slide along an interface.
   /// Batchelor 1970; Pozrikidis 1992, section 5.1.
-  Mat3 stresslet(const Net& x, const Net& slope);
+  Mat3 stresslet(const Net& x, const Net& slope, std::size_t p = 0);
 
-  double volume_error(const Net& x) const { return volume_error(geometry_.volume(x)); }  ///< V/V0 - 1
-  double volume_error(double volume) const { return volume / volume0_ - 1; }
+  const std::vector<Particle>& particles() const { return parameters_.particles; }
+  double volume_error(const Net& x) const;  ///< of all volumes together
+  double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
   Tube* tube() { return tube_.get(); }      ///< nothing without one
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
 
@@ -146,6 +143,7 @@ class Capsule : public Dynamics {
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
   Net flux_vector(const Net& x);
+  void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& hv) const;
   Net frozen_viscous(const Net& v);
@@ -170,7 +168,7 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   stokes::SingleLayer layer_;
-  std::optional<stokes::DoubleLayer> double_layer_;  // lambda != 1
+  std::optional<stokes::DoubleLayer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov krylov_, inner_krylov_;
@@ -182,7 +180,7 @@ class Capsule : public Dynamics {
   Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube
   double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
   std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised
-  double volume0_ = 0;
+  std::vector<double> volume0_;         // of each particle
   Work work_;
   struct Latest {
     Net x, load, velocity;

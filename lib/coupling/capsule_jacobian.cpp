@@ -73,7 +73,7 @@ Net Capsule::frozen_viscous(const Net& v) {
   frozen_double_.apply(v, hv);
   replicate(hv);
   if (!tube_) return viscous(v, hv);
-  return v - collocation_.solve((1 - parameters_.viscosity_ratio) * hv + tube_->frozen_response({}, v));
+  return v - collocation_.solve(hv + tube_->frozen_response({}, v));
 }
 
 /// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.

@@ -1,30 +1,40 @@
 #include "coupling/interface_motion.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "coupling/collocation.hpp"
+#include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
 
-InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, const std::string& motion, double speed,
-                                 stokes::SingleLayer& layer, const std::vector<int>& own_points, const std::vector<int>& own_elements,
-                                 const membrane::SymmetricSolver& collocation, const membrane::DirectSolverOptions& solver,
-                                 const surface::Symmetry& symmetry, const Ranks& ranks)
+InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles,
+                                 const quadrature::Options& quadrature, const std::vector<int>& own_points, const std::vector<int>& own_elements,
+                                 const membrane::SymmetricSolver& collocation, const membrane::SymmetricSolver& mass, const Ranks& ranks)
     : space_(space),
-      relaxed_(motion == "relaxed"),
-      speed_(speed),
-      own_points_(own_points),
-      own_elements_(own_elements),
       sites_(collocation_matrix(space)),
       collocation_(collocation),
+      mass_(mass),
       ranks_(ranks),
       mesh_(space, initial, membrane::NeoHookean{1}),
-      tangent_(mesh_),
-      mass_(solver, symmetry) {
-  if (!relaxed_) return;
-  mass_.factor(membrane::MassMatrix(space).update(initial));
-  layer.assemble(initial, stokes::Measure::reference, own_points_, layer_);
+      tangent_(mesh_) {
+  for (const Particle& particle : particles) {
+    if (!particle.slides()) continue;
+    const spline::Block& block = particle.block;
+    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}});
+    Drop& drop = drops_.back();
+    std::ranges::copy_if(own_points, std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
+    if (!drop.relaxed) continue;
+    relaxed_ = true;
+    const int end = block.first_element + block.n_elements;
+    std::ranges::copy_if(own_elements, std::back_inserter(own_elements_), [&](int e) { return e >= block.first_element && e < end; });
+    std::vector<int> targets;
+    for (const int i : drop.points) targets.push_back(i - block.first_point);
+    stokes::SingleLayer layer(*particle.space, quadrature);
+    layer.set_reference(block.rows(initial));
+    layer.assemble(block.rows(initial), stokes::Measure::reference, targets, drop.layer);
+  }
 }
 
 namespace {
@@ -48,33 +58,37 @@ Eigen::RowVector3d mean_motion(const Net& x, const Net& b, const Net& v) {
 
 std::vector<Vec3> InterfaceMotion::normals_at(const Net& x) const {
   std::vector<Vec3> normals;
-  for (const int i : own_points_) normals.push_back(normal(space_, x, space_.collocation[static_cast<size_t>(i)]));
+  for (const Drop& drop : drops_)
+    for (const int i : drop.points) normals.push_back(normal(space_, x, space_.collocation[static_cast<size_t>(i)]));
   return normals;
 }
 
-/// R^-1 of U + n n.(v - U) + (1 - n n).w at the sites, w from the density f (empty: none).
-Net InterfaceMotion::combined(const std::vector<Vec3>& normals, const Eigen::RowVector3d& mean, const Net& v, const Net& f) const {
-  const Net across = sites_ * Net(v.rowwise() - mean);
-  const Eigen::Map<const Eigen::VectorXd> density(f.data(), f.size());
-  Net u(v.rows(), 3);
-  for (size_t k = 0; k < own_points_.size(); ++k) {
-    const int i = own_points_[k];
-    const Vec3& n = normals[k];
-    Vec3 along = Vec3::Zero();
-    if (relaxed_) along = -speed_ * layer_.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * density;
-    u.row(i) = (along + n * n.dot(across.row(i).transpose() - along)).transpose() + mean;
+/// R^-1 of U + n n.(v - U) + (1 - n n).w at the sites, U at x with b = dV/dx there, w from the density f (empty: none).
+Net InterfaceMotion::combined(const Net& x, const Net& b, const std::vector<Vec3>& normals, const Net& v, const Net& f) const {
+  Net u = sites_ * v;
+  size_t place = 0;
+  for (const Drop& drop : drops_) {
+    const spline::Block& block = drop.block;
+    const Eigen::RowVector3d mean = mean_motion(block.rows(x), block.rows(b), block.rows(v));
+    const Eigen::Map<const Eigen::VectorXd> density(f.data() + 3 * block.first_point, drop.relaxed ? 3 * block.n_points : 0);
+    for (size_t k = 0; k < drop.points.size(); ++k) {
+      const Vec3& n = normals[place++];
+      Vec3 along = Vec3::Zero();
+      if (drop.relaxed) along = -drop.speed * drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * density;
+      auto row = u.row(drop.points[k]);
+      row = (along + n * n.dot((row - mean).transpose() - along)).transpose() + mean;
+    }
   }
   ranks_.replicate(u);
   return collocation_.solve(u);
 }
 
 Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {
-  const Eigen::RowVector3d mean = mean_motion(x, b, v);
-  if (!relaxed_) return combined(normals_at(x), mean, v, {});
+  if (!relaxed_) return combined(x, b, normals_at(x), v, {});
   Net d(x.rows(), 3);
   mesh_.load(x, own_elements_, d);
   ranks_.replicate(d);
-  return combined(normals_at(x), mean, v, mass_.solve(d));
+  return combined(x, b, normals_at(x), v, mass_.solve(d));
 }
 
 void InterfaceMotion::linearise(const Net& x, const Net& b) {
@@ -84,12 +98,11 @@ void InterfaceMotion::linearise(const Net& x, const Net& b) {
 }
 
 Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
-  const Eigen::RowVector3d mean = mean_motion(x_, flux_, dv);
-  if (!relaxed_) return combined(normals_, mean, dv, {});
+  if (!relaxed_) return combined(x_, flux_, normals_, dv, {});
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
   ranks_.replicate(h);
-  return combined(normals_, mean, dv, mass_.solve(h));
+  return combined(x_, flux_, normals_, dv, mass_.solve(h));
 }
 
 }  // namespace tanktread::coupling

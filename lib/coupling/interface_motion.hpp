@@ -1,35 +1,36 @@
 #pragma once
 // How control points move along a fluid interface, where only the motion across it is physics.
 
+#include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
-#include "coupling/options.hpp"
+#include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
-#include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
 #include "membrane/symmetric_solver.hpp"
+#include "quadrature/options.hpp"
 #include "spline/space.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/dense_rows.hpp"
 
 namespace tanktread::coupling {
 
-/// Velocity of the control points from the fluid's velocity v: at the collocation sites
+/// Velocity of the control points from the fluid's velocity v: at the collocation sites of each drop
 ///
 ///   u = U + n n.(v - U) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed A0 M0^{-1} dE1/dx (`relaxed`)          (4.6)
 ///
-/// U is the mean motion (6.4), which the mesh shares: a drop that is carried along keeps its mesh as one at rest does. E1 is the energy of a
+/// U is the drop's mean motion (6.4), which the mesh shares: a drop that is carried along keeps its mesh as one at rest does. E1 is the energy of a
 /// neo-Hookean membrane of modulus 1 whose unstressed shape is the initial one, and A0, M0 belong to that shape: the mesh slides along the
 /// interface as an elastic bag would be dragged through the fluid, so elements keep their shape and the system is no stiffer than that of a
-/// capsule with Ca = mu rate R_C / (mu speed). A0 never changes.
+/// capsule with Ca = mu rate R_C / (mu speed). A0 never changes, and knows one drop alone. At the sites of other particles u = v.
 class InterfaceMotion {
  public:
-  /// `initial`: the net that the mesh relaxes towards; `speed`: length/time; `layer` has `initial` as its reference.
-  InterfaceMotion(const spline::Space& space, const Net& initial, const std::string& motion, double speed, stokes::SingleLayer& layer,
+  /// `initial`: the net that the meshes relax towards; `mass`: the factored M0 of it.
+  InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles, const quadrature::Options& quadrature,
                   const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::SymmetricSolver& collocation,
-                  const membrane::DirectSolverOptions& solver, const surface::Symmetry& symmetry, const Ranks& ranks);
+                  const membrane::SymmetricSolver& mass, const Ranks& ranks);
 
   /// Control-point velocity u at x for the fluid's velocity v (control values), with b = dV/dx. Collective.
   Net velocity(const Net& x, const Net& b, const Net& v);
@@ -41,22 +42,27 @@ class InterfaceMotion {
   Net derivative(const Net& dv, const Net& delta);
 
  private:
-  Net combined(const std::vector<Vec3>& normals, const Eigen::RowVector3d& mean, const Net& v, const Net& f) const;
+  struct Drop {
+    spline::Block block;
+    bool relaxed;
+    double speed;
+    std::vector<int> points;      // own ones
+    stokes::Rows<double> layer;   // their rows of A0, in full: what the mesh does must not depend on units or axes
+  };
+  Net combined(const Net& x, const Net& b, const std::vector<Vec3>& normals, const Net& v, const Net& f) const;
   std::vector<Vec3> normals_at(const Net& x) const;
 
   const spline::Space& space_;
-  bool relaxed_;
-  double speed_;
-  std::vector<int> own_points_, own_elements_;
+  std::vector<Drop> drops_;
+  bool relaxed_ = false;           // any of them
+  std::vector<int> own_elements_;  // of those
   Eigen::SparseMatrix<double> sites_;  // R
-  const membrane::SymmetricSolver& collocation_;
+  const membrane::SymmetricSolver &collocation_, &mass_;
   const Ranks& ranks_;
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
-  membrane::SymmetricSolver mass_;
-  stokes::Rows<double> layer_;  // A0, in full: what the mesh does must not depend on units or axes
-  Net x_, flux_;                // as linearised
-  std::vector<Vec3> normals_;
+  Net x_, flux_;               // as linearised
+  std::vector<Vec3> normals_;  // of the points of all drops, one drop after the other
 };
 
 }  // namespace tanktread::coupling

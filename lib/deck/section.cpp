@@ -242,6 +242,49 @@ void Section::each(std::string_view meaning, const std::function<void(const std:
   }
 }
 
+namespace {
+
+/// The list of this name with all that it shares; `above`: those that lead to it.
+std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
+  const std::string path = all.path_of(name);
+  const auto* entry = all.given->getEntryPtr(name);
+  if (!entry->isList()) throw UserError(path + " must be a list of keys, but is " + description(*entry) + ".");
+  const auto& own = Teuchos::getValue<Teuchos::ParameterList>(*entry);
+  auto merged = std::make_shared<Teuchos::ParameterList>();
+  if (const auto* like = own.getEntryPtr("like")) {
+    const auto other = as_text(*like);
+    above.push_back(name);
+    if (!other || !all.given->isSublist(*other) || std::ranges::count(above, *other))
+      throw UserError(path + "/like must be the name of another list of " + all.path + " that is not made like this one, but is " +
+                      description(*like) + ".");
+    merged = with_shared(all, *other, above);
+  } else if (all.given->isSublist("defaults")) {
+    overlay(*merged, all.given->sublist("defaults"));
+  }
+  overlay(*merged, own);
+  merged->remove("like", false);
+  return merged;
+}
+
+}  // namespace
+
+void Section::each_alike(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use) {
+  List& list = *state_->list;
+  list.open = true;
+  list.mentioned.emplace_back("defaults");
+  std::vector<std::string> names;
+  if (list.given)
+    for (const auto& item : *list.given)
+      if (item.first != "defaults") names.push_back(item.first);
+  if (state_->documenting) names = {"<name>"};
+  for (const std::string& name : names) {
+    Section inner = enter(name, meaning);
+    List& one = *inner.state_->list;
+    if (one.given) one.merged = with_shared(list, name, {}), one.given = one.merged.get();
+    use(name, inner);
+  }
+}
+
 bool Section::given(std::string_view name) const { return state_->list->given && state_->list->given->isParameter(std::string(name)); }
 
 bool Section::documenting() const { return state_->documenting; }

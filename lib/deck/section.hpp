@@ -75,6 +75,10 @@ class Section {
   /// Lists whose names the user chooses (Expect/<name>): `use` is called with each name and its section.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
 
+  /// The same, where lists share what they do not say themselves: with the list that their key `like` names, and with the one named `defaults`, which
+  /// is none of them.
+  void each_alike(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
+
   /// Whether the user gave this key (for contradictory alternatives), and its path for messages.
   bool given(std::string_view name) const;
   bool documenting() const;  ///< whether the manual is being made: then every list is stated

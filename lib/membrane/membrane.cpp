@@ -14,8 +14,8 @@ constexpr int max_values = 6 * max_order * max_order;
 
 }  // namespace
 
-Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order, const Bending& bending)
-    : space_(&space), unstressed_(unstressed), law_(law), order_(order), bending_(bending), all_(space.elements.size()) {
+Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order)
+    : space_(&space), unstressed_(unstressed), materials_(materials), order_(order), all_(space.elements.size()) {
   assert(unstressed.rows() == space.n_points && order >= 2 && order <= 10);
   std::iota(all_.begin(), all_.end(), 0);
 }
@@ -26,7 +26,7 @@ std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const 
     std::rotate(parts_.begin(), found, found + 1);
   } else {
     if (parts_.size() == parts_kept) parts_.pop_back();
-    parts_.insert(parts_.begin(), std::make_shared<const Part>(*space_, unstressed_, elements, order_, bending_));
+    parts_.insert(parts_.begin(), std::make_shared<const Part>(*space_, unstressed_, elements, order_, materials_));
   }
   return parts_.front();
 }
@@ -41,11 +41,11 @@ double Membrane::energy(const Net& x, std::span<const int> elements) const {
 std::vector<double> Membrane::element_energies(const Net& x, std::span<const int> elements) const {
   const auto mine = part(elements);
   std::vector<double> sum(space_->elements.size(), 0.);
-  if (bending_.modulus > 0) add_bending_energies(bending_, *mine, x, sum);
+  if (materials_.bend()) add_bending_energies(materials_, *mine, x, sum);
   mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
     Pack a[max_values];
     tangents(group, batch, x, a);
-    const Pack energies = membrane::energy(law_, group.n_gauss(), reference, a);
+    const Pack energies = membrane::energy(materials_.all[group.material].law, group.n_gauss(), reference, a);
     for (int l = 0; l < batch.used; ++l) sum[batch.elements[l]] += energies[l];
   });
   return sum;
@@ -57,10 +57,10 @@ void Membrane::load(const Net& x, std::span<const int> elements, Net& d) const {
   mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
     Pack a[max_values], p[max_values];
     tangents(group, batch, x, a);
-    stresses(law_, group.n_gauss(), reference, a, p);
+    stresses(materials_.all[group.material].law, group.n_gauss(), reference, a, p);
     add_transpose(group, batch, p, d);
   });
-  if (bending_.modulus > 0) add_bending_load(bending_, *mine, x, d);
+  if (materials_.bend()) add_bending_load(materials_, *mine, x, d);
 }
 
 Net Membrane::load(const Net& x) const {

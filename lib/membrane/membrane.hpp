@@ -8,6 +8,7 @@
 #include "base/types.hpp"
 #include "membrane/bending.hpp"
 #include "membrane/laws.hpp"
+#include "membrane/material.hpp"
 #include "spline/space.hpp"
 #include "surface/patch.hpp"
 
@@ -19,7 +20,7 @@ struct TensionSummary {
   double smallest = 0, compressed_area = 0;
 };
 
-/// What it is made of: the smallest tension on some elements, force/length, and of each element of the space the area and that with a negative
+/// What it is made of: the smallest tension on some elements, over the modulus, and of each element of the space the area and that with a negative
 /// tension, zero for elements that were not asked for.
 struct ElementTensions {
   double smallest = 0;
@@ -33,7 +34,11 @@ struct ElementTensions {
 class Membrane {
  public:
   /// `order` Gauss points per direction at degree 3, one more for each degree beyond; 2 to 10. `space` must outlive the membrane.
-  Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4, const Bending& bending = {});
+  Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4, const Bending& bending = {})
+      : Membrane(space, unstressed, Materials{{{law, bending}}, {}}, order) {}
+
+  /// A membrane whose elements are of several materials.
+  Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order = 4);
 
   /// E = int Psi dGamma_0, and the bending energy, over all or the given elements. Units force x length.
   double energy(const Net& x) const;
@@ -60,8 +65,8 @@ class Membrane {
 
   const spline::Space& space() const { return *space_; }
   const Net& unstressed() const { return unstressed_; }
-  const Law& law() const { return law_; }
-  const Bending& bending() const { return bending_; }
+  const Materials& materials() const { return materials_; }
+  const Law& law(int element = 0) const { return materials_.all[materials_.of_element.empty() ? 0 : materials_.of_element[element]].law; }
   int order() const { return order_; }
 
  private:
@@ -70,9 +75,8 @@ class Membrane {
 
   const spline::Space* space_;
   Net unstressed_;
-  Law law_;
+  Materials materials_;
   int order_;
-  Bending bending_;
   std::vector<int> all_;
   mutable std::vector<std::shared_ptr<const Part>> parts_;  // the latest first
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
+#include <utility>
 
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
@@ -48,13 +49,14 @@ void append(Group& g, const spline::Space& space, std::span<const int> elements)
 
 }  // namespace
 
-std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order) {
-  std::map<int, std::vector<int>> by_degree;
-  for (int e : elements) by_degree[space.elements[e].degree].push_back(e);
+std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material) {
+  std::map<std::pair<int, int>, std::vector<int>> alike;
+  for (int e : elements) alike[{material.empty() ? 0 : material[e], space.elements[e].degree}].push_back(e);
   std::vector<Group> groups;
-  for (auto& [degree, list] : by_degree) {
+  for (auto& [kind, list] : alike) {
     std::sort(list.begin(), list.end());
-    Group& g = groups.emplace_back(group_with_rule(degree, order + std::max(0, degree - 3)));
+    Group& g = groups.emplace_back(group_with_rule(kind.second, order + std::max(0, kind.second - 3)));
+    g.material = kind.first;
     for (std::size_t first = 0; first < list.size(); first += lanes)
       append(g, space, std::span(list).subspan(first, std::min<std::size_t>(lanes, list.size() - first)));
   }

@@ -24,9 +24,10 @@ struct Batch {
   std::size_t extraction = 0;         ///< where its extraction starts in Group::extraction, [A * (p + 1)^2 + b]
 };
 
-/// All elements of one degree of a list, in ascending order, with the Gauss rule that belongs to the degree.
+/// All elements of one degree and material of a list, in ascending order, with the Gauss rule that belongs to the degree.
 struct Group {
   int degree = 3, order = 4;
+  int material = 0;                        ///< of its elements
   std::vector<double> value, slope, bend;  ///< 1-D Bernstein polynomials, first and second derivatives at the Gauss nodes, [q * (p + 1) + i]
   std::vector<double> weight;              ///< tensor weights, [q_t * order + q_s]
   std::vector<Batch> batches;
@@ -37,9 +38,9 @@ struct Group {
   int n_bernstein() const { return (degree + 1) * (degree + 1); }
 };
 
-/// The given elements (any order, no repetition), one group a degree, degrees ascending. A group's rule has `order` points per
-/// direction at degree 3 and one more for each degree beyond.
-std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order);
+/// The given elements (any order, no repetition), one group a material and degree, both ascending. A group's rule has `order` points per
+/// direction at degree 3 and one more for each degree beyond. `material`: of each element of the space; of all 0 where there are none.
+std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material = {});
 
 /// Tangents of a net at the Gauss points of a batch: a[6 q + c] = component c of x_,s, a[6 q + 3 + c] of x_,t.
 void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);

@@ -17,13 +17,15 @@ std::vector<Pack> curvature_of(const Group& group, const Net& net) {
 
 }  // namespace
 
-Part::Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Bending& bending)
-    : elements(list.begin(), list.end()), groups(pack(space, list, order)) {
+Part::Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& materials)
+    : elements(list.begin(), list.end()), groups(pack(space, list, order, materials.of_element)) {
   Pack a[6 * max_order * max_order];
   for (const Group& group : groups) {
+    const Bending& bending = materials.all[group.material].bending;
+    std::vector<Pack>& curvature = relaxed_curvature.emplace_back();
     if (bending.modulus > 0) {
       const std::size_t n = group.n_gauss() * group.batches.size();
-      relaxed_curvature.push_back(bending.curved_when_relaxed ? curvature_of(group, unstressed) : std::vector<Pack>(n, Pack{}));
+      curvature = bending.curved_when_relaxed ? curvature_of(group, unstressed) : std::vector<Pack>(n, Pack{});
     }
     std::vector<ReferencePoint>& points = reference.emplace_back(group.n_gauss() * group.batches.size());
     for (std::size_t k = 0; k < group.batches.size(); ++k) {

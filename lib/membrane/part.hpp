@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "membrane/bending.hpp"
+#include "membrane/material.hpp"
 #include "membrane/packed.hpp"
 #include "membrane/points_kernel.hpp"
 
@@ -15,9 +15,9 @@ struct Part {
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< a group; point q of batch k at n_gauss k + q
 
-  std::vector<std::vector<Pack>> relaxed_curvature;  ///< c0 of `Bending` at the same places; empty without bending
+  std::vector<std::vector<Pack>> relaxed_curvature;  ///< c0 of `Bending` at the same places, a group; empty for groups without bending
 
-  Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Bending& bending = {});
+  Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& materials);
 
   /// use(group, batch, reference points of the batch, place of the batch's first Gauss point among those of its group, group index)
   template <class Use>

@@ -48,7 +48,7 @@ Vec3 Membrane::strong_load(const Net& x, const spline::Site& site) const {
         for (int c = 0; c < 3; ++c) t[c] = -(by_s[c].slope + by_t[c].slope);
         return Vec3(t / now.s.cross(now.t).norm());
       },
-      law_);
+      law(site.element));
 }
 
 void Membrane::strong_load(const Net& x, std::span<const int> targets, Net& t) const {

@@ -22,9 +22,9 @@ void Tangent::update(const Net& x, std::span<const int> elements) {
   part.each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, std::size_t first, std::size_t g) {
     Pack a[6 * max_order * max_order];
     tangents(group, batch, x, a);
-    tangent_points(membrane_->law(), group.n_gauss(), reference, a, &points_->of_group[g][first]);
+    tangent_points(membrane_->materials().all[group.material].law, group.n_gauss(), reference, a, &points_->of_group[g][first]);
   });
-  if (membrane_->bending().modulus == 0) return;
+  if (!membrane_->materials().bend()) return;
   points_->jets.resize(part.groups.size());
   for (std::size_t g = 0; g < part.groups.size(); ++g) points_->jets[g].resize(15 * part.reference[g].size());
   part.each_batch([&](const Group& group, const Batch& batch, const ReferencePoint*, std::size_t first, std::size_t g) {
@@ -44,7 +44,9 @@ void Tangent::apply(const Net& u, Net& hu) const {
   points_->part->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint*, std::size_t first, std::size_t g) {
     Pack gradient[15 * max_order * max_order], p[15 * max_order * max_order];
     jets(group, batch, u, gradient);
-    bending_apply(membrane_->bending().modulus, group.n_gauss(), group.weight.data(), &points_->part->relaxed_curvature[g][first],
+    const double modulus = membrane_->materials().all[group.material].bending.modulus;
+    if (modulus == 0) return;
+    bending_apply(modulus, group.n_gauss(), group.weight.data(), &points_->part->relaxed_curvature[g][first],
                   &points_->jets[g][15 * first], gradient, p);
     add_jet_transpose(group, batch, p, hu);
   });

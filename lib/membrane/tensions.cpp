@@ -34,20 +34,21 @@ std::array<double, 2> tensions_of(const Law& law, const Metric& before, const Me
 TensionSummary Membrane::tension_summary(const Net& x) const {
   const ElementTensions all = element_tensions(x, all_);
   const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
-  return {all.smallest / modulus(law_), sum(all.compressed) / sum(all.area)};
+  return {all.smallest, sum(all.compressed) / sum(all.area)};
 }
 
 ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements) const {
-  const double unit = modulus(law_);
   const std::vector<double> none(space_->elements.size(), 0.);
   ElementTensions result{std::numeric_limits<double>::infinity(), none, none};
   Pack smallest = Pack{} + result.smallest;
   part(elements)->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
     Pack a[6 * max_order * max_order], tension[max_order * max_order], share[max_order * max_order], area{}, compressed{};
+    const Law& law = materials_.all[group.material].law;
+    const double unit = modulus(law);
     tangents(group, batch, x, a);
-    smaller_tensions(law_, group.n_gauss(), reference, a, tension, share);
+    smaller_tensions(law, group.n_gauss(), reference, a, tension, share);
     for (int q = 0; q < group.n_gauss(); ++q) {
-      smallest = tension[q] < smallest ? tension[q] : smallest;
+      smallest = tension[q] / unit < smallest ? tension[q] / unit : smallest;
       area += share[q];
       compressed += tension[q] < compressed_below * unit ? share[q] : Pack{};
     }

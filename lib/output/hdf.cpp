@@ -33,7 +33,9 @@ Id text_type(const std::string& text) {
 
 void write_any(hid_t parent, const std::string& name, hid_t type, const Shape& shape, const void* data) {
   const Id space = space_of(shape);
-  const Id set(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, "cannot create " + name);
+  const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "no list of link properties");
+  check(H5Pset_create_intermediate_group(links, 1), "cannot create groups");
+  const Id set(H5Dcreate2(parent, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, "cannot create " + name);
   check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write " + name);
 }
 
@@ -91,6 +93,16 @@ std::vector<std::string> names(hid_t group) {
     return 0;
   };
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &result), "cannot list a group");
+  return result;
+}
+
+std::vector<std::string> datasets(hid_t group) {
+  std::vector<std::string> result;
+  const auto visit = [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
+    if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  check(H5Ovisit(group, H5_INDEX_NAME, H5_ITER_INC, visit, &result), "cannot list a group");
   return result;
 }
 

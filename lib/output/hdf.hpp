@@ -37,10 +37,11 @@ Id open(const std::filesystem::path& path);
 Id new_group(hid_t parent, const std::string& name);
 Id group(hid_t parent, const std::string& name);
 std::vector<std::string> names(hid_t group);  ///< of the members, in alphabetical order
+std::vector<std::string> datasets(hid_t group);  ///< in it and in the groups below, `group/name`
 
 using Shape = std::vector<hsize_t>;  ///< empty: a scalar
 
-/// Datasets, row-major. `read_*` fill `shape` with what was found.
+/// Datasets, row-major; groups on the way to `group/name` are made. `read_*` fill `shape` with what was found.
 void write(hid_t parent, const std::string& name, std::span<const double> values, const Shape& shape);
 void write(hid_t parent, const std::string& name, std::span<const std::int64_t> values);
 void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values);

@@ -18,7 +18,7 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
   RunRecord record(path, hdf::read_text(file, "deck"), {});
   for (const auto& key : hdf::attribute_names(file, "provenance")) record.provenance_[key] = hdf::read_attribute(file, "provenance", key);
   const hdf::Id series = hdf::group(file, "series");
-  for (const auto& name : hdf::names(series)) {
+  for (const auto& name : hdf::datasets(series)) {
     hdf::Shape shape;
     record.series_.push_back({name, hdf::read_attribute(series, name, "unit"), hdf::read_attribute(series, name, "description"),
                               hdf::read_doubles(series, name, shape)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "stokes/pair_kernel.hpp"
 
@@ -17,13 +18,17 @@ quadrature::Options sharper(quadrature::Options options) {
 
 }  // namespace
 
-DoubleLayer::DoubleLayer(const spline::Space& space, const quadrature::Options& options) : surface_(space, sharper(options)) {
+DoubleLayer::DoubleLayer(const spline::Space& space, const quadrature::Options& options, std::vector<double> factor)
+    : surface_(space, sharper(options)), factor_(std::move(factor)) {
   if (sums_by_tree(space, options)) tree_.emplace(options.tolerance / 2);  // measured: the largest error is a quarter of the tolerance
 }
 
 void DoubleLayer::place(const Net& x, std::span<const int> targets) {
   surface_.place(x);
   node_normals(surface_.panels, surface_.bezier, normal_);
+  for (int e = 0; e < surface_.panels.size() && !factor_.empty(); ++e)
+    for (auto& component : normal_)
+      for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) component[surface_.panels[e].first_node + k] *= factor_[e];
   surface_.collocation_points(targets, at_);
   if (tree_) x_ = x;
 }
@@ -103,7 +108,7 @@ void DoubleLayer::integrate(std::span<const int> targets, const std::vector<Vec3
       Vec3 own, far;
       double_sum(table, &surface_.bezier[panel.first_bezier], &bezier_v_[panel.first_bezier], at_[k].data(), v0[k].data(), own.data());
       node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), v0[k].data(), far.data());
-      hv.row(targets[k]) += (own - far).transpose();
+      hv.row(targets[k]) += (factor(e) * own - far).transpose();
       count += table.points + panel.table->n_nodes;
     };
     for (const int e : surface_.near(targets[k], at_[k])) replace(e, surface_.near_field.rule(e, at_[k]), evaluations_.near);
@@ -124,6 +129,7 @@ struct DoubleLayer::Moments {
   void own_moments(const Vec3& x0, int e, const PointTable& table, SelfPair*, double* moments) {
     scratch.resize(static_cast<std::size_t>(6) * table.packs());
     double_moments(table, &layer.surface_.bezier[layer.surface_.panels[e].first_bezier], x0.data(), scratch.data(), moments);
+    for (int k = 0; k < 6 * layer.surface_.panels[e].table->n_bernstein; ++k) moments[k] *= layer.factor(e);
   }
 
   template <class Real>

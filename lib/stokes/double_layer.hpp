@@ -15,15 +15,17 @@
 
 namespace tanktread::stokes {
 
-/// The double layer of a closed spline surface at its own collocation points x_i, regularised, so that no principal value is taken:
+/// The double layer of closed spline surfaces p at their own collocation points x_i, regularised, so that no principal value is taken:
 ///
-///   (H v)_i = (1 / 8 pi) int (v_j(x) - v_j(x_i)) T_ijk n_k dG,   v = sum_B v_B N_B         (2.1), (2.2)
+///   (H v)_i = sum_p (k_p / 8 pi) int_p (v_j(x) - v_j(x_i)) T_ijk n_k dG,   v = sum_B v_B N_B         (2.1), (2.2)
 ///
-/// n out of the surface. H v is the principal value plus v/2; rigid-body motions give 0 (2.3). Rules as for the single layer; under
-/// `desingularised` the difference in the integrand is all that is done about the singularity.
+/// n out of the surface. Of the surface that x_i lies on this is k times the principal value plus v/2; another gives what it gives without v_j(x_i),
+/// for the integral of T n over it is 0 (2.3), and as x_i comes near stays as accurate. Rigid-body motions of all give 0. Rules as for the single
+/// layer; under `desingularised` the difference in the integrand is all that is done about the singularity.
 class DoubleLayer {
  public:
-  DoubleLayer(const spline::Space& space, const quadrature::Options& options);
+  /// `factor`: k of each element; 1 where there are none.
+  DoubleLayer(const spline::Space& space, const quadrature::Options& options, std::vector<double> factor = {});
 
   /// Rows `targets` of H v, shape (N, 3), for the velocity with control values v on the surface x.
   void apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv);
@@ -42,6 +44,7 @@ class DoubleLayer {
   struct Moments;
   void place(const Net& x, std::span<const int> targets);
   void take(const Net& v);
+  double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   void integrate(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
   void add_far(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
   void add_by_tree(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
@@ -49,7 +52,8 @@ class DoubleLayer {
   Stresslets nodes() const;
 
   LayerSurface surface_;
-  std::vector<double> bezier_v_, velocity_[3], normal_[3];  // of the far nodes; normals times weights
+  std::vector<double> factor_;                              // k of each panel
+  std::vector<double> bezier_v_, velocity_[3], normal_[3];  // of the far nodes; normals times weights and k
   std::vector<Vec3> at_;
   std::optional<TreeSum> tree_;  // where clusters are faster
   Net x_, tree_x_;               // shape; that of the tree and of stress_

@@ -116,7 +116,7 @@ void velocity_evaluation(benchmark::State& state) {
   coupling::Ranks ranks;
   Phases phases;
   coupling::CapsuleParameters parameters;
-  parameters.law = membrane::NeoHookean{1 / 0.3};
+  parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   stokes::FlowOptions shear;
   coupling::Capsule capsule(scene.space, scene.unstressed, scene.unstressed, stokes::AmbientFlow(shear), parameters, ranks, phases);
   const auto x = in_turns(scene.x);
@@ -147,7 +147,7 @@ void catmull_clark_over_g1(benchmark::State& state) {
   coupling::Ranks ranks;
   Phases phases[2];
   coupling::CapsuleParameters parameters;
-  parameters.law = membrane::NeoHookean{1 / 0.3};
+  parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   const stokes::AmbientFlow flow{stokes::FlowOptions()};
   const int n = static_cast<int>(state.range(0));
   const Scene scene[2] = {Scene(n), Scene(n, spline::ExtraordinaryRule::catmull_clark)};

@@ -83,7 +83,7 @@ void growth(benchmark::State& state) {
   coupling::Ranks ranks;
   Phases phases;
   coupling::CapsuleParameters parameters;
-  parameters.law = membrane::NeoHookean{1 / 0.3};
+  parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   parameters.quadrature.tolerance = asked;
   if (state.range(1) != 0) parameters.quadrature.far_sum = "dense";
   const double start = now();

@@ -70,7 +70,7 @@ void refinement(benchmark::State& state) {
   coupling::Ranks ranks;
   Phases phases;
   coupling::CapsuleParameters parameters;
-  parameters.law = membrane::NeoHookean{1 / 0.3};
+  parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   const stokes::AmbientFlow flow{stokes::FlowOptions()};
   coupling::Capsule capsule(surface.space, surface.unstressed, surface.unstressed, flow, parameters, ranks, phases);
   const std::vector<const Net*> fields = {&surface.unstressed, &surface.x, &surface.x, &surface.x, &surface.x};

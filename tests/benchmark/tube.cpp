@@ -36,9 +36,9 @@ struct Capsule {
     const Vec3 centre(0, 0, -0.2);
     unstressed = (0.6 / 1.02 * sphere).rowwise() + centre.transpose();
     x = fit.fit_image(sphere, [&](const Vec3& p) { return Vec3(centre + 0.6 * Vec3(p[0] + 0.2 * p[2] * p[2] - 0.1, 1.02 * p[1], 0.98 * p[2])); });
-    parameters.law = membrane::Skalak{10, 1};
-    parameters.viscosity_ratio = viscosity_ratio;
-    parameters.radius = 0.6;
+    parameters.particles.front().material.law = membrane::Skalak{10, 1};
+    parameters.particles.front().viscosity_ratio = viscosity_ratio;
+    parameters.particles.front().radius = 0.6;
   }
 
   double seconds(const stokes::AmbientFlow& flow, coupling::Ranks& ranks, Phases& phases, std::unique_ptr<coupling::Tube> tube,
@@ -79,7 +79,7 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
   const auto duct = std::make_shared<const stokes::DuctFlow>(options, 1.0, 1.0);
   const surface::TubeWall wall = surface::tube_wall(duct->outline(), options, 2 * 3.14159265358979);
   coupling::TubeParameters parameters;
-  parameters.viscosity_ratio = capsule.parameters.viscosity_ratio;
+  parameters.viscosity_ratio = capsule.parameters.particles.front().viscosity_ratio;
   stokes::FlowOptions shear, in_duct;
   in_duct.type = "duct";
   in_duct.mean_velocity = 1;

@@ -16,7 +16,7 @@ double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 /// A unit sphere on the coarsest mesh, in shear or at rest.
 struct Fixture : SphereInFlow {
   explicit Fixture(const char* type = "simple shear") : SphereInFlow(3, type) {
-    parameters.law = membrane::NeoHookean{2.5};
+    parameters.particles.front().material.law = membrane::NeoHookean{2.5};
     parameters.viscosity = 1.7;
   }
 
@@ -155,7 +155,7 @@ TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays)
   const Net w = f.capsule().velocity(x);  // v_inf - S df: the right-hand side of (2.4)
   for (const double ratio : {0.2, 5.0})
     for (const char* way : {"assembled", "matrix-free"}) {
-      f.parameters.viscosity_ratio = ratio;
+      f.parameters.particles.front().viscosity_ratio = ratio;
       f.parameters.solvers.double_layer = way;
       const Net v = f.capsule().velocity(x);
       stokes::DoubleLayer layer(f.space, f.parameters.quadrature);
@@ -177,7 +177,7 @@ TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
   f.flow.gradient = spin;
   f.parameters.solvers.tolerance = 1e-10;
   for (const double ratio : {0.01, 100.0}) {
-    f.parameters.viscosity_ratio = ratio;
+    f.parameters.particles.front().viscosity_ratio = ratio;
     const Net v = f.capsule().velocity(f.sphere);
     EXPECT_LT((v - f.sphere * spin.transpose()).norm(), 1e-6 * v.norm()) << ratio;  // a hundred times 1e-10 over 0.01
   }

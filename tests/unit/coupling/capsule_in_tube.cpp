@@ -47,18 +47,18 @@ struct Confined {
     CapsuleParameters parameters;
     parameters.solvers.frozen_operator = "assembled";  // the sum over nodes is good to 3 per cent on so few
     parameters.viscosity = 1.3;
-    parameters.viscosity_ratio = viscosity_ratio;
-    parameters.radius = 0.6;
-    parameters.law = membrane::NeoHookean{10};
+    parameters.particles.front().viscosity_ratio = viscosity_ratio;
+    parameters.particles.front().radius = 0.6;
+    parameters.particles.front().material.law = membrane::NeoHookean{10};
     parameters.solvers.tube = form;
     parameters.solvers.tolerance = 1e-11;
     parameters.quadrature.tolerance = 1e-7;  // differences of velocities are looked at
     TubeParameters in_tube;
     if (!interface.empty()) {
-      parameters.law = membrane::SurfaceTension{10};
+      parameters.particles.front().material.law = membrane::SurfaceTension{10};
       parameters.measure = in_tube.measure = stokes::Measure::current;
-      parameters.interface_motion = interface;
-      parameters.interface_speed = 1;
+      parameters.particles.front().interface_motion = interface;
+      parameters.particles.front().interface_speed = 1;
     }
     in_tube.viscosity = 1.3;
     in_tube.viscosity_ratio = viscosity_ratio;

@@ -13,12 +13,12 @@ namespace {
 
 struct Drop : SphereInFlow {
   Drop() : SphereInFlow(3, "planar hyperbolic") {
-    parameters.law = membrane::SurfaceTension{5};
+    parameters.particles.front().material.law = membrane::SurfaceTension{5};
     parameters.measure = stokes::Measure::current;
-    parameters.interface_speed = 1;
+    parameters.particles.front().interface_speed = 1;
   }
   Net velocity(const std::string& motion, const Net& x) {
-    parameters.interface_motion = motion;
+    parameters.particles.front().interface_motion = motion;
     return capsule().velocity(x);
   }
   /// Largest normal and tangential component at the sites.
@@ -59,14 +59,14 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
 // Tension alone leaves a sphere to the flow as a blob of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970, section 5.
 TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
   SphereInFlow drop(6, "planar hyperbolic");
-  drop.parameters.law = membrane::SurfaceTension{5};
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
   drop.parameters.measure = stokes::Measure::current;
-  drop.parameters.interface_speed = 1;
+  drop.parameters.particles.front().interface_speed = 1;
   drop.parameters.quadrature.tolerance = 1e-6;
   for (const double ratio : {0.1, 10.0})
     for (const char* motion : {"material", "normal", "relaxed"}) {
-      drop.parameters.viscosity_ratio = ratio;
-      drop.parameters.interface_motion = motion;
+      drop.parameters.particles.front().viscosity_ratio = ratio;
+      drop.parameters.particles.front().interface_motion = motion;
       Capsule capsule = drop.capsule();
       const Mat3 s = capsule.stresslet(drop.sphere, capsule.velocity(drop.sphere));
       const double exact = 2 * 4 * std::numbers::pi / 3 * 5 * (ratio - 1) / (2 * ratio + 3);
@@ -113,7 +113,7 @@ TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
   drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
   const Net moved = Eigen::RowVector3d(0.3, -0.1, 0.2).replicate(drop.sphere.rows(), 1);
   for (const char* motion : {"normal", "relaxed"}) {
-    drop.parameters.interface_motion = motion;
+    drop.parameters.particles.front().interface_motion = motion;
     Capsule capsule = drop.capsule();
     capsule.freeze(drop.sphere);
     const Net change = capsule.derivative(drop.sphere, Net::Zero(moved.rows(), 3), moved);

@@ -10,7 +10,7 @@ namespace {
 
 struct Fixture : SphereInFlow {
   Fixture() : SphereInFlow(4, "simple shear") {
-    parameters.law = membrane::NeoHookean{2.5};
+    parameters.particles.front().material.law = membrane::NeoHookean{2.5};
     parameters.quadrature.tolerance = 1e-9;  // what rules leave of the integrals need not be symmetric
   }
 
@@ -76,7 +76,7 @@ TEST(Symmetry, OfAParticleOffTheMiddleOfAShearFlowIsTheMirrorPlaneAlone) {
 TEST(Symmetry, GivesTheVelocityOfTheWholeSurface) {
   for (const double viscosity_ratio : {1.0, 5.0}) {
     Fixture f;
-    f.parameters.viscosity_ratio = viscosity_ratio;
+    f.parameters.particles.front().viscosity_ratio = viscosity_ratio;
     f.parameters.solvers.tolerance = 1e-12;
     const Net x = f.deformed();
     const Net whole = f.capsule(false).velocity(x);

@@ -1,0 +1,83 @@
+#include "app/gaps.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "surface/closest_points.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double accuracy = 1e-7;  // over R_C
+
+/// A particle's surface as closest_points takes it.
+struct Placed {
+  surface::Patches patches;
+  surface::ElementBoxes boxes;
+
+  Placed(const surface::BezierMap& map, const Net& x) : patches(map, x), boxes(patches) {}
+};
+
+struct Two {
+  double bound;
+  int first, second;
+};
+
+/// The nearest of all pairs of which `mine` is true, those first that can be nearest.
+template <class Mine>
+Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const Mine& mine) {
+  std::vector<std::unique_ptr<Placed>> placed;
+  for (std::size_t p = 0; p < members.size(); ++p) placed.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
+  std::vector<Two> pairs;
+  double radius = 0;
+  for (int p = 0; p < static_cast<int>(members.size()); ++p) {
+    radius = std::max(radius, members[static_cast<std::size_t>(p)].body->radius);
+    for (int q = p + 1; q < static_cast<int>(members.size()); ++q)
+      pairs.push_back({distance(placed[static_cast<std::size_t>(p)]->boxes.boxes()[0], placed[static_cast<std::size_t>(q)]->boxes.boxes()[0]), p, q});
+  }
+  std::ranges::sort(pairs, {}, &Two::bound);
+  Nearest found;
+  for (std::size_t k = 0; k < pairs.size() && pairs[k].bound < found.gap; ++k) {
+    if (!mine(k)) continue;
+    const auto& [bound, p, q] = pairs[k];
+    const surface::ClosestPoints closest = surface::closest_points(placed[static_cast<std::size_t>(p)]->boxes,
+                                                                   placed[static_cast<std::size_t>(q)]->boxes, accuracy * radius, found.gap);
+    if (closest.gap < found.gap) found = {closest.gap, p + 1, q + 1, (closest.first + closest.second) / 2};
+  }
+  return found;
+}
+
+}  // namespace
+
+void check_apart(const std::vector<Member>& members) {
+  if (members.size() == 1) return;
+  std::vector<Net> x;
+  for (const Member& member : members) x.push_back(member.body->initial);
+  const Nearest found = nearest(members, x, [](std::size_t) { return true; });
+  if (found.gap > 10 * accuracy * members.front().body->radius) return;
+  const auto name = [&](int number) { return "Particles/" + members[static_cast<std::size_t>(number) - 1].name; };
+  throw UserError(name(found.first) + " and " + name(found.second) +
+                  formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+}
+
+Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks) {
+  std::vector<Net> own;
+  for (const Member& member : members) own.push_back(member.own(x));
+  const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
+  const Nearest of_rank = nearest(members, own, mine);
+  std::vector<double> all(6 * static_cast<std::size_t>(ranks.size()), 0.);
+  double* const here = &all[6 * static_cast<std::size_t>(ranks.rank())];
+  here[0] = std::min(of_rank.gap, std::numeric_limits<double>::max()), here[1] = of_rank.first, here[2] = of_rank.second;
+  std::copy_n(of_rank.place.data(), 3, here + 3);
+  ranks.add(all);
+  Nearest found;
+  for (std::size_t k = 0; k < all.size(); k += 6)
+    if (all[k] < found.gap) found = {all[k], static_cast<int>(all[k + 1]), static_cast<int>(all[k + 2]), {all[k + 3], all[k + 4], all[k + 5]}};
+  return found;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,18 @@
+#pragma once
+// The gaps between the particles of a run.
+
+#include <vector>
+
+#include "app/diagnostics.hpp"
+#include "app/member.hpp"
+#include "coupling/ranks.hpp"
+
+namespace tanktread {
+
+/// Throws UserError, which names the two and their gap, where two particles meet in their initial shapes.
+void check_apart(const std::vector<Member>& members);
+
+/// The smallest gap between any two particles at x, to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
+Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks);
+
+}  // namespace tanktread

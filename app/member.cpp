@@ -1,0 +1,141 @@
+#include "app/member.hpp"
+
+#include <cstdint>
+#include <utility>
+
+#include "app/results.hpp"
+#include "base/errors.hpp"
+
+namespace tanktread {
+
+namespace {
+
+membrane::Material material(const Scene& scene, const Body& body) {
+  return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed"}};
+}
+
+}  // namespace
+
+std::vector<Member> members(const Scene& scene) {
+  std::vector<Member> all;
+  for (Scene& one : scene.alone()) {
+    Member& member = all.emplace_back();
+    member.name = one.name;
+    member.scene = std::move(one);
+    member.body = std::make_unique<Body>(body(member.scene));
+  }
+  return all;
+}
+
+void arrange(std::vector<Member>& members) {
+  std::vector<const spline::Space*> spaces;
+  for (const Member& member : members) spaces.push_back(&member.body->space);
+  const std::vector<spline::Block> blocks = spline::blocks(spaces);
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    Member& member = members[p];
+    member.block = blocks[p];
+    if (members.size() == 1) continue;  // the system's are its own
+    Body& body = *member.body;
+    body.symmetry = surface::Symmetry(body.space.n_points);  // of one particle alone it is none of the scene's
+    member.geometry = std::make_unique<surface::Geometry>(body.space);
+    member.membrane = std::make_unique<membrane::Membrane>(body.space, body.unstressed, membrane::Materials{{material(member.scene, body)}, {}});
+  }
+}
+
+std::unique_ptr<Body> together(const std::vector<Member>& members) {
+  if (members.size() == 1) return {};
+  auto all = std::make_unique<Body>();
+  std::vector<const spline::Space*> spaces;
+  for (const Member& member : members) spaces.push_back(&member.body->space);
+  all->space = spline::stacked(spaces);
+  const Body& first = *members.front().body;
+  all->flow = first.flow, all->plane = first.plane, all->law = first.law, all->modulus = first.modulus;
+  all->radius = 0;
+  for (Net Body::* const net : {&Body::rest, &Body::initial, &Body::unstressed}) {
+    ((*all).*net).resize(all->space.n_points, 3);
+    for (const Member& member : members) member.block.rows((*all).*net) = (*member.body).*net;
+  }
+  for (const Member& member : members) {
+    all->radius = std::max(all->radius, member.body->radius);
+    all->volume += member.body->volume;
+    all->refit_error = std::max(all->refit_error, member.body->refit_error);
+  }
+  all->symmetry = surface::Symmetry(all->space.n_points);
+  return all;
+}
+
+std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+                                           std::unique_ptr<coupling::Tube> tube) {
+  const Scene& scene = members.front().scene;
+  coupling::CapsuleParameters parameters;
+  parameters.viscosity = scene.flow.viscosity;
+  parameters.particles.clear();
+  for (const Member& member : members) {
+    const Scene& own = member.scene;
+    const Body& body = *member.body;
+    coupling::Particle& particle = parameters.particles.emplace_back();
+    particle.space = &body.space;
+    particle.viscosity_ratio = own.particle.viscosity_ratio;
+    particle.material = material(own, body);
+    particle.radius = body.radius;
+    particle.interface_motion = own.interface_motion();
+    const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
+    particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);
+    particle.kept_volume = body.volume;
+    if (load_measure(own) == stokes::Measure::current) parameters.measure = stokes::Measure::current;  // it serves all
+  }
+  parameters.strong_load = scene.load_is_strong();
+  parameters.volume = scene.volume;
+  parameters.solvers = scene.solvers;
+  parameters.quadrature = scene.quadrature;
+  parameters.symmetry = all.symmetry;
+  return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
+}
+
+namespace {
+
+Eigen::MatrixXd numbers_of(const auto& values) {
+  Eigen::MatrixXd numbers(values.size(), 1);
+  for (std::size_t k = 0; k < values.size(); ++k) numbers(static_cast<Eigen::Index>(k)) = values[k];
+  return numbers;
+}
+
+}  // namespace
+
+void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
+  for (const Member& member : members) {
+    const Body& body = *member.body;
+    checkpoint.arrays[member.label("unstressed")] = body.unstressed;
+    checkpoint.arrays[member.label("initial")] = body.rest;
+    checkpoint.numbers[member.label("initial volume")] = body.volume;
+    checkpoint.numbers[member.label("refit error")] = body.refit_error;
+    if (!member.scene.adaptation.enabled) continue;
+    checkpoint.arrays[member.label("mesh edges")] = numbers_of(body.mesh.edges);
+    checkpoint.arrays[member.label("mesh spacing")] = numbers_of(body.mesh.spacing);
+  }
+}
+
+spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix) {
+  const Eigen::MatrixXd &spacing = checkpoint.arrays.at(prefix + "mesh spacing"), &bits = checkpoint.arrays.at(prefix + "mesh edges");
+  if (static_cast<size_t>(bits.size()) != mesh.edges.size())
+    throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run goes on from a mesh that is refined.");
+  for (Eigen::Index i = 0; i < bits.size(); ++i) mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
+  for (Eigen::Index i = 0; i < spacing.size(); ++i) mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
+  return mesh;
+}
+
+bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members) {
+  bool another = false;
+  for (Member& member : members) {
+    member.body->volume = checkpoint.numbers.at(member.label("initial volume"));
+    if (!checkpoint.arrays.contains(member.label("mesh edges"))) continue;
+    another = true;
+    lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);
+    member.body->unstressed = checkpoint.arrays.at(member.label("unstressed"));
+    member.body->rest = checkpoint.arrays.at(member.label("initial"));
+    member.body->refit_error = checkpoint.numbers.at(member.label("refit error"));
+  }
+  return another;
+}
+
+}  // namespace tanktread

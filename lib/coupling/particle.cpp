@@ -1,0 +1,31 @@
+#include "coupling/particle.hpp"
+
+#include <algorithm>
+
+namespace tanktread::coupling {
+
+void place(std::span<Particle> particles) {
+  std::vector<const spline::Space*> spaces;
+  for (const Particle& particle : particles) spaces.push_back(particle.space);
+  const std::vector<spline::Block> blocks = spline::blocks(spaces);
+  for (std::size_t p = 0; p < particles.size(); ++p) particles[p].block = blocks[p];
+}
+
+membrane::Materials materials(std::span<const Particle> particles) {
+  membrane::Materials result;
+  for (const Particle& particle : particles) {
+    result.all.push_back(particle.material);
+    if (particles.size() > 1)
+      result.of_element.insert(result.of_element.end(), particle.block.n_elements, static_cast<int>(result.all.size()) - 1);
+  }
+  return result;
+}
+
+std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
+  std::vector<double> result;
+  if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.viscosity_ratio == 1; })) return result;
+  for (const Particle& particle : particles) result.insert(result.end(), particle.block.n_elements, 1 - particle.viscosity_ratio);
+  return result;
+}
+
+}  // namespace tanktread::coupling

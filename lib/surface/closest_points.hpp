@@ -1,0 +1,49 @@
+#pragma once
+// The smallest distance of two surfaces.
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "surface/patch.hpp"
+
+namespace tanktread::surface {
+
+/// Two surfaces' nearest points and their distance; 0 where the surfaces meet.
+struct ClosestPoints {
+  Vec3 first, second;
+  double gap = 0;
+};
+
+/// Elements of a surface in a binary tree of boxes around their Bezier points, which hold the elements. Made anew for a surface that has moved.
+class ElementBoxes {
+ public:
+  struct Box {
+    Eigen::Array3d low, high;
+    int first, last;    ///< its elements: element(first) .. element(last - 1)
+    int child[2] = {};  ///< of one with several elements
+  };
+
+  /// `surface` must outlive the tree.
+  explicit ElementBoxes(const Patches& surface);
+
+  const Patches& surface() const { return surface_; }
+  const std::vector<Box>& boxes() const { return boxes_; }  ///< the first is around all
+  int element(int k) const { return order_[static_cast<std::size_t>(k)]; }
+
+ private:
+  int split(int first, int last);
+
+  const Patches& surface_;
+  std::vector<int> order_;
+  std::vector<Box> own_, boxes_;  // of elements; of the tree
+};
+
+/// A bound from below of the distance of what two boxes hold.
+double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
+
+/// The nearest points of two surfaces, if they are nearer than `beyond`; otherwise a gap of `beyond`. Pairs of boxes, elements and parts of elements
+/// are halved, those first that can be nearest, until none can be nearer than the best points found by `tolerance`. Parts are bounded by planes
+/// between their Bezier points: by much less than their size where surfaces lie side by side.
+ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
+
+}  // namespace tanktread::surface
