@@ -1,8 +1,10 @@
 #include "app/gaps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -51,6 +53,33 @@ Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, c
   return found;
 }
 
+/// Whether a point that is not on a surface is inside: its solid angle there is 4 pi, outside 0.
+bool encloses(const surface::Patches& patches, const Vec3& point) {
+  constexpr int n = 8;
+  double angle = 0;
+  for (int e = 0; e < patches.size(); ++e)
+    for (int k = 0; k < n * n; ++k) {
+      const surface::Jet at = surface::jet(patches[e], (k % n + 0.5) / n, (k / n + 0.5) / n);
+      const Vec3 r = at.x - point;
+      angle += r.dot(at.s.cross(at.t)) / (n * n * std::pow(r.norm(), 3));
+    }
+  return angle > 2 * std::numbers::pi;
+}
+
+/// Throws where one particle is inside of another, which their gap does not tell.
+void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
+    const Eigen::RowVector3d low = x[p].colwise().minCoeff(), high = x[p].colwise().maxCoeff();
+    for (std::size_t q = 0; q < members.size(); ++q) {
+      const Vec3 inner = surface::value(members[q].body->space, x[q], {0, 0.5, 0.5});
+      if (p == q || (inner.transpose().array() < low.array()).any() || (inner.transpose().array() > high.array()).any()) continue;
+      if (encloses(outer, inner))
+        throw UserError("Particles/" + members[q].name + " is inside of Particles/" + members[p].name + " at the start.");
+    }
+  }
+}
+
 }  // namespace
 
 void check_apart(const std::vector<Member>& members) {
@@ -58,7 +87,7 @@ void check_apart(const std::vector<Member>& members) {
   std::vector<Net> x;
   for (const Member& member : members) x.push_back(member.body->initial);
   const Nearest found = nearest(members, x, [](std::size_t) { return true; });
-  if (found.gap > 10 * accuracy * members.front().body->radius) return;
+  if (found.gap > 10 * accuracy * members.front().body->radius) return check_not_nested(members, x);
   const auto name = [&](int number) { return "Particles/" + members[static_cast<std::size_t>(number) - 1].name; };
   throw UserError(name(found.first) + " and " + name(found.second) +
                   formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));

@@ -9,7 +9,7 @@
 
 namespace tanktread {
 
-/// Throws UserError, which names the two and their gap, where two particles meet in their initial shapes.
+/// Throws UserError, which names the two and their gap, where two particles meet in their initial shapes, or one is inside of another.
 void check_apart(const std::vector<Member>& members);
 
 /// The smallest gap between any two particles at x, to 1e-7 of the largest R_C. Ranks share the pairs. Collective.

@@ -329,6 +329,10 @@ double Scene::snapshot_interval() const { return output.interval.value_or(time.f
 
 bool may_change_on_resume(const std::string& path) {
   if (path == "Tube/contact gap") return true;
+  if (path.starts_with("Particles/")) {
+    const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
+    return of_particle.starts_with("Interface/") || of_particle.starts_with("Adaptation/");
+  }
   for (const char* fixed : {"Flow", "Particle", "Membrane", "Surface", "Volume", "Tube"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;

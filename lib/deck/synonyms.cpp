@@ -54,9 +54,8 @@ constexpr std::array<Meaning, 23> synonyms{{
 
 /// By the whole path, by a list, or by the name of the key alone.
 constexpr std::array<Meaning, 14> features{{
-    {"|particles|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume "
-     "fraction|",
-     "there is one particle; several in one flow are not there"},
+    {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
+     "several particles are lists Particles/<name>, one each"},
     {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
     {"|gravity|g|density|rho|density difference|density ratio|buoyancy|body force|", "gravity and buoyancy are not there"},
     {"|periodic|period|box|box size|domain|unit cell|periodicity|",

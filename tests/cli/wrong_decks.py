@@ -28,7 +28,7 @@ SETTINGS = [
     (["Time/end time=3"], ["Time/end time", "was Time/final time meant?"]),
     (["Membrane/viscosity=1"], ["Membrane/viscosity", "viscous membranes are not there", "Limits"]),
     (["Wall/position=1"], ["Wall", "plane walls", "Tube"]),
-    (["Particles/one/radius=1"], ["Particles", "one particle", "Limits"]),
+    (["Particles/one/radius=1"], ["Membrane and Particles contradict", "Particles/defaults"]),
     (["Flow/gravity=[0, 0, -1]"], ["Flow/gravity", "gravity", "not there"]),
     (["Domain/periodic=true"], ["Domain", "periodic"]),
     (["Zebra/stripes=1"], ["Tube"]),
@@ -120,7 +120,7 @@ SETTINGS = [
 TEXTS = [
     ("", ["empty", "Tanktread"]),
     ("Tanktread:\n  Flow: {type: simple shear}\n", ["Time/final time", "missing"]),
-    ("Tanktread:\n  Particles:\n    - radius: 1\n    - radius: 2\n", ["line 3", "Particles", "one particle"]),
+    ("Tanktread:\n  Particles:\n    - radius: 1\n    - radius: 2\n", ["line 3", "Particles"]),
     ("Tanktread:\n  Flow: {type: uniform}\n  Time:\n    final time:\n", ["Time/final time", "is nothing"]),
     ("# only a comment\n", ["empty", "Tanktread"]),
     ("Dear reader,\nthis is a letter.\n", ["not YAML", "Dear reader,"]),

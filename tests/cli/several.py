@@ -1,0 +1,177 @@
+#!/usr/bin/python3
+# ranks: 3
+# Several capsules and drops in one run: each keeps what is its own, and nothing depends on order, ranks or a pause.
+import pathlib
+import re
+
+import numpy
+
+from harness import check, close, deck, main, run, series, summary
+
+MIXED = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particles:
+    defaults:
+      Surface: {elements per side: 3}
+      Membrane: {capillary number: 0.3}
+    capsule: {center: [-1.5, 0.0, 0.4]}
+    drop: {center: [1.5, 0.0, -0.4], viscosity ratio: 5.0, Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 4}}
+    small: {like: capsule, center: [0.0, 2.5, 0.0], radius: 0.8}
+  Time: {fixed step: 0.02, final time: 0.12}
+  Solvers: {tolerance: 1.0e-12}
+  Output: {interval: 0.04}
+"""
+REFINED = """
+Tanktread:
+  Flow: {type: planar hyperbolic}
+  Particles:
+    defaults:
+      Surface: {elements per side: 4, extraordinary points: catmull-clark}
+      Membrane: {law: Skalak, capillary number: 0.6}
+      Adaptation: {enabled: true, surface tolerance: 1.0e-5, levels: 2}
+    left: {center: [0.0, -1.2, 0.0]}
+    right: {center: [0.0, 1.2, 0.0], radius: 0.9}
+  Time: {fixed step: 0.02, final time: 0.12}
+  Solvers: {tolerance: 1.0e-12}
+  Output: {interval: 0.04}
+"""
+OWN = ("wall_seconds", "solver_iterations", "velocity_iterations")  # of the machine, or of sums in another order
+
+
+def _all(results):
+    """Every series of a run by its name, `particle/name` of a particle."""
+    import h5py
+
+    found = {}
+    with h5py.File(f"{results}/run.h5", "r") as file:
+        file["series"].visititems(lambda name, item: found.update({name: item[:]}) if hasattr(item, "shape") else None)
+    return {name: values for name, values in found.items() if name not in OWN}
+
+
+def _same(one, other, tolerance):
+    a, b = _all(one), _all(other)
+    check(a.keys() == b.keys(), one, other, "other series")
+    for name in a:
+        check(a[name].shape == b[name].shape, f"{other}: {name} has {len(b[name])} rows, not {len(a[name])}")
+        off = numpy.abs(a[name] - b[name]).max() / max(1, numpy.abs(a[name]).max())
+        check(off <= tolerance, f"{other}: {name} is off by {off:.1e} of {one}")
+
+
+def _resumes_on_other_ranks(text):
+    deck(text)
+    run("deck.yaml", "--output", "whole", "--quiet")
+    for ranks, then in ((1, 1), (3, 3), (1, 3), (3, 1)):
+        results = f"from_{ranks}_on_{then}"
+        run("deck.yaml", "--output", results, "--set", "Time/final time=0.08", "--quiet", ranks=ranks)
+        run("--resume", results, "--set", "Time/final time=0.12", "--quiet", ranks=then)
+        _same("whole", results, 1e-10)
+
+
+def a_mixture_resumes_on_other_ranks():
+    _resumes_on_other_ranks(MIXED)
+    for name in ("capsule", "drop", "small"):
+        check(numpy.abs(series("whole", f"{name}/volume_error")).max() < 1e-13, name, "lost volume")
+
+
+def meshes_that_change_resume_on_other_ranks():
+    _resumes_on_other_ranks(REFINED)
+    for name in ("left", "right"):
+        check(len(set(series("whole", f"{name}/n_control_points"))) > 1, "the mesh of", name, "never changed")
+
+
+def the_order_is_of_no_consequence():
+    deck(MIXED, "one.yaml")
+    lines = MIXED.splitlines()
+    capsule = next(k for k, line in enumerate(lines) if line.startswith("    capsule:"))
+    lines[capsule], lines[capsule + 1] = lines[capsule + 1], lines[capsule]
+    deck("\n".join(lines), "other.yaml")
+    for name in ("one", "other"):
+        run(f"{name}.yaml", "--output", name, "--quiet")
+    a, b = _all("one"), _all("other")
+    for name in a:
+        if name.startswith(("first", "second")):
+            continue  # numbers in the order of the deck
+        off = numpy.abs(a[name] - b[name]).max() / max(1, numpy.abs(a[name]).max())
+        check(off <= 1e-10, name, "is off by", off)
+
+
+def one_far_away_changes_nothing():
+    alone = """
+Tanktread:
+  Flow: {type: planar hyperbolic}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 3}
+  Symmetry: {use: none}
+  Time: {fixed step: 0.05, final time: 0.5}
+"""
+    both = """
+Tanktread:
+  Flow: {type: planar hyperbolic}
+  Particles:
+    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 3}}
+    here: {}
+    there: {center: [0.0, 1000.0, 0.0]}
+  Time: {fixed step: 0.05, final time: 0.5}
+"""
+    deck(alone, "alone.yaml"), deck(both, "both.yaml")
+    for name in ("alone", "both"):
+        run(f"{name}.yaml", "--output", name, "--quiet")
+    close(series("both", "here/taylor_inertia")[-1], series("alone", "taylor_inertia")[-1], 1e-6, "D")
+    check(series("both", "smallest_gap").min() > 900, "the gap")
+
+
+def pairs_are_symmetric_and_their_gap_is_true():
+    deck("""
+Tanktread:
+  Flow: {type: simple shear}
+  Particles:
+    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 3}}
+    first: {center: [-1.2, 0.3, 0.5]}
+    second: {center: [1.2, -0.3, -0.5]}
+  Time: {final time: 0.4}
+""")
+    run("deck.yaml", "--output", "pair", "--quiet")
+    distance = 2 * numpy.linalg.norm([1.2, 0.3, 0.5])
+    close(series("pair", "smallest_gap")[0], distance - 2, 2e-3, "the gap of two spheres")  # their splines are spheres to this
+    for k in (1, 2, 3):
+        a, b = series("pair", f"first/centroid_x{k}"), series("pair", f"second/centroid_x{k}")
+        check(numpy.abs(a + b).max() < 1e-4, f"x{k} is not that of a symmetric pair", numpy.abs(a + b).max())  # Time/tolerance
+    found = summary("pair")
+    check(found["status"] == "done" and "first/taylor_inertia" in found["final"], found)
+
+
+def pictures_tell_particles_apart():
+    import h5py
+
+    deck(MIXED)
+    run("deck.yaml", "--output", "mixed", "--set", "Time/final time=0.02", "--quiet")
+    picture = sorted(pathlib.Path("mixed").glob("snapshot_*.hdf"))[-1]
+    with h5py.File(picture, "r") as file:
+        particle = file["VTKHDF/PointData/particle"][:]
+    check(set(particle) == {1, 2, 3}, set(particle))
+
+
+def mistakes_are_named():
+    deck(MIXED)
+    for setting, words in (
+        ("Particles/small/center=[1.5, 0, 0]", ["Particles/drop and Particles/small overlap", "1.3"]),
+        ("Particles/small/center=[1.5, 0.0, -0.4]", ["Particles/small is inside of Particles/drop"]),
+        ("Particles/small/like=drp", ["Particles/small/like", "drp"]),
+        ("Particles/capsule/like=small", ["/like must be", "not made like this one"]),
+        ("Particles/small/centre=[0, 0, 0]", ["Particles/small/centre", "Particles/small/center"]),
+        ("Particles/small/motion=free", ["Particles/small/motion", "deforming"]),
+        ("Particles/small/Membrane/load=strong", ["Particles/small/Membrane/load"]),
+        ("Particles/drop/Interface/motion=sideways", ["Particles/drop/Interface/motion", "relaxed"]),
+        ("Membrane/law=Skalak", ["Membrane and Particles contradict", "Particles/defaults"]),
+        ("Tube/section=circle", ["Tube and Particles contradict"]),
+        ("Expect/taylor_inertia/value=1", ["tolerance"]),
+    ):
+        error = run("deck.yaml", "--check", "--set", setting, code=2).stderr.strip()
+        check(error.count("\n") == 0 and all(word in error for word in words), setting, error)
+    error = run("deck.yaml", "--check", "--set", "Expect/x/value=1", "--set", "Expect/x/tolerance=1", "--set", "Expect/x/series=drop/taylor",
+                code=2).stderr
+    check(re.search("drop/taylor", error), error)
+
+
+main()
