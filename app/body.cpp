@@ -1,5 +1,7 @@
 #include "app/body.hpp"
 
+#include <utility>
+
 #include "app/initial_shape.hpp"
 #include "app/member.hpp"
 #include "app/numbers.hpp"
@@ -123,7 +125,7 @@ std::string time_line(const Scene& scene, double points, int n_evaluated, int ra
 
 output::Entries<std::string> plan_of_several(const Scene& scene, const Body& all, int ranks) {
   const bool tree = stokes::sums_by_tree(all.space, scene.quadrature);
-  output::Entries<std::string> lines = {{"particles", formatted("%d, each with all others' films, no wall between them", static_cast<int>(scene.particles.size()))},
+  output::Entries<std::string> lines = {{"particles", formatted("%d, in one system", static_cast<int>(scene.particles.size()))},
                                         {"surface", formatted("%d control points, %d elements in all", all.space.n_points,
                                                               static_cast<int>(all.space.elements.size()))},
                                         {"flow", unbounded_flow(scene)},
@@ -131,8 +133,15 @@ output::Entries<std::string> plan_of_several(const Scene& scene, const Body& all
                                         {"volume", scene.volume.constraint + ", of each"},
                                         {"time", time_line(scene, all.space.n_points, all.space.n_points, ranks)},
                                         {"symmetry", "none looked for among several particles"}};
-  for (const Scene& one : scene.alone())
-    lines.emplace_back(one.name, membrane_line(one) + "; " + viscosity_line(one, all.space.n_points, tree) + "; mesh " + mesh_line(one));
+  std::string last;
+  for (const Scene& one : scene.alone()) {
+    const std::string line = membrane_line(one) + "; " + viscosity_line(one, all.space.n_points, tree) + "; mesh " + mesh_line(one);
+    if (lines.back().second == line)
+      last = " … " + one.name;
+    else
+      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name, line);
+  }
+  lines.back().first += last;
   return lines;
 }
 

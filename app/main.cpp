@@ -86,10 +86,17 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   return name;
 }
 
-/// The files that a particle's shapes come from.
-void find_shapes(ParticleKind& kind, const Arguments& arguments) {
+/// A file that the run keeps by the name `kept`.
+void find(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
+  file = found(file, kept, arguments);
+  scene.files.emplace_back(file, kept);
+}
+
+/// The files that a particle's shapes and copies come from.
+void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
-  if (shape.file) shape.file = found(*shape.file, kept_surface(kind), arguments);
+  if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
+  if (shape.file) find(*shape.file, kept_surface(kind), arguments, scene);
   shape.read();
   auto& initial = shape.initial;
   if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has what became of it
@@ -119,9 +126,10 @@ int run(const Arguments& arguments, bool speaks) {
   deck::Document deck = deck::read(arguments.decks, arguments.settings, stored, arguments.no_expect ? "--no-expect" : "");
   deck.declare(scene);
   if (resume) check_changes(stored, deck, before);
-  if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
-  find_shapes(scene, arguments);
-  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments);
+  if (auto& outline = scene.tube.outline) find(*outline, kept_outline(scene), arguments, scene);
+  find_shapes(scene, arguments, scene);
+  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
+  scene.particles = with_copies(scene.particles);
   scene.check();
   coupling::try_solvers(scene.solvers, scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))

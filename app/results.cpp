@@ -67,6 +67,8 @@ output::Entries<double> with_earlier(const Phases& phases, const output::Entries
 
 std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + ".iga"; }
 
+std::string kept_places(const ParticleKind& kind) { return kind.name + ".csv"; }
+
 std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
 
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks) {
@@ -119,9 +121,7 @@ void Results::begin() {
   if (!request_.overwrite) output::check_vacant(directory_);
   output::start_directory(directory_);
   run_ = identifier();
-  if (scene_.tube.outline) keep(*scene_.tube.outline, kept_outline(scene_));
-  for (const Scene& one : scene_.alone())
-    if (one.particle.shape.imported) keep(*one.particle.shape.file, kept_surface(one));
+  for (const auto& [file, name] : scene_.files) keep(file, name);
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);

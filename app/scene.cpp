@@ -34,6 +34,11 @@ void ParticleOptions::declare(deck::Section& section) {
 
 void ParticleKind::declare(deck::Section& section) {
   section.mention("like");
+  copies.present = section.given("copies");
+  if (copies.present || section.documenting())
+    section.section("copies", copies, "many of it, at the rows of a file, on a lattice, or at random without overlap");
+  else
+    section.mention("copies");
   if (section.documenting()) return;
   particle.declare(section);
   declare_lists(section);

@@ -3,8 +3,10 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/copies.hpp"
 #include "coupling/options.hpp"
 #include "coupling/symmetry.hpp"
 #include "deck/expectation.hpp"
@@ -41,6 +43,7 @@ struct ParticleKind {
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
   motion::AdaptationOptions adaptation;
+  CopiesOptions copies;
   bool membrane_given = false;  ///< whether the deck has this list at all
 
   void declare(deck::Section& section);        ///< of Particles/<name>: the keys of Particle, and the other lists
@@ -60,6 +63,7 @@ struct Scene : ParticleKind {
   output::Options output;
   deck::Expectations expect;
   bool volume_given = false;  ///< whether the deck has this list at all
+  std::vector<std::pair<std::string, std::string>> files;  ///< that the deck names and a run goes on without: where they are, and what it keeps them as
 
   void declare(deck::Section& root);
 

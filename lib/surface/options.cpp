@@ -163,6 +163,11 @@ bool ParticleShape::sized() const {
   return imported || (shape != "file" && semi_axes);
 }
 
+double ParticleShape::circumscribed_radius() const {
+  if (imported) return (imported->net.rowwise() - imported->net.colwise().mean()).rowwise().norm().maxCoeff();
+  return radius ? *radius : semi_axes.value().maxCoeff();
+}
+
 double ParticleShape::equivalent_radius() const {
   if (shape == "sphere") return radius.value();
   if (shape == "red cell") {

@@ -90,6 +90,9 @@ struct ParticleShape {
 
   /// R_C: radius of the sphere of equal volume.
   double equivalent_radius() const;
+
+  /// Of a sphere around its centre that holds it.
+  double circumscribed_radius() const;
 };
 
 }  // namespace tanktread::surface

@@ -152,6 +152,65 @@ def pictures_tell_particles_apart():
     check(set(particle) == {1, 2, 3}, set(particle))
 
 
+COPIES = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particles:
+    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 2}}
+    one: {center: [0.0, 0.0, 9.0]}
+    many: {radius: 0.5, copies: {%s}}
+  Time: {final time: 0.01}
+"""
+
+
+def _centres(results):
+    """Where the copies start."""
+    found = _all(results)
+    names = sorted({name.split("/")[0] for name in found if name.startswith("many ")}, key=lambda name: int(name.split()[1]))
+    return numpy.array([[found[f"{name}/centroid_x{k}"][0] for k in (1, 2, 3)] for name in names])
+
+
+def copies_are_where_they_are_told_to_be():
+    deck("x1, x2, x3\n0, 0, 0\n1.5, 0, 0.5, 0, 90, 0\n", "places.csv")
+    deck("0, 0, 0\n1.5, 0, 0.5\n", "short.csv")
+    for name, how in (("file", "file: places.csv"), ("lattice", "lattice: [2, 1, 3], spacing: [2.0, 1.0, 1.5]")):
+        deck(COPIES % how)
+        run("deck.yaml", "--output", name, "--quiet")
+    check(numpy.abs(_centres("file") - [[0, 0, 0], [1.5, 0, 0.5]]).max() < 1e-12, _centres("file"))
+    expected = [[x, 0, z] for x in (-1, 1) for z in (-1.5, 0, 1.5)]
+    check(numpy.abs(_centres("lattice") - expected).max() < 1e-12, _centres("lattice"))
+
+
+def copies_at_random_keep_clear_of_each_other_and_come_again():
+    deck(COPIES % "volume fraction: 0.1, box: [4.0, 4.0, 4.0], seed: 7, least gap: 0.1")
+    for name in ("one", "other"):
+        run("deck.yaml", "--output", name, "--quiet")
+    x = _centres("one")
+    check(len(x) == round(0.1 * 64 / (numpy.pi / 6)) and (x == _centres("other")).all(), x)
+    check(numpy.abs(x).max() <= 1.5, "out of the box", x)
+    distance = numpy.linalg.norm(x[:, None] - x[None], axis=2) + 10 * numpy.eye(len(x))
+    check(distance.min() >= 1.05, distance.min())
+    run("deck.yaml", "--output", "third", "--quiet", "--set", "Particles/many/copies/seed=8")
+    check((_centres("third") != x).any(), "another seed, the same places")
+
+
+def mistakes_of_copies_are_named():
+    deck("0, 0, 0\n1.5, 0\n", "short.csv")
+    for how, words in (
+        ("number: 500, box: [4.0, 4.0, 4.0]", ["Particles/many/copies", "no room", "of 500"]),
+        ("number: 5", ["box", "ball"]),
+        ("lattice: [2, 2, 1]", ["Particles/many/copies/spacing"]),
+        ("lattice: [2, 2, 1], spacing: [0.9, 2.0, 2.0]", ["overlap", "many 1", "many 3"]),
+        ("file: none.csv", ["none.csv"]),
+        ("file: short.csv", ["short.csv", "line 2", "2 entries"]),
+        ("number: 5, lattice: [1, 1, 1], spacing: [1.0, 1.0, 1.0]", ["one of `file`, `lattice`"]),
+        ("", ["one of `file`"]),
+    ):
+        deck(COPIES % how)
+        error = run("deck.yaml", "--check", code=2).stderr.strip()
+        check(error.count("\n") == 0 and all(word in error for word in words), how, error)
+
+
 def mistakes_are_named():
     deck(MIXED)
     for setting, words in (

@@ -1,0 +1,100 @@
+// The nearest points of two surfaces: against brute force, and where the answer is known.
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/closest_points.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+struct Shape {
+  spline::TMesh mesh = spline::cube(3);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  BezierMap map{space};
+  Net sphere = initial_shape(space, mesh, {});
+
+  /// An uneven ellipsoid about a place.
+  Net bumpy(std::mt19937& random, const Vec3& centre) const {
+    std::uniform_real_distribution<double> number(-1, 1);
+    Mat3 stretch;
+    for (int k = 0; k < 9; ++k) stretch(k) = (k % 4 == 0 ? 1 : 0) + 0.25 * number(random);
+    Net x = sphere * stretch;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) *= 1 + 0.1 * number(random);
+    return x.rowwise() + centre.transpose();
+  }
+};
+
+ClosestPoints closest(const Shape& shape, const Net& a, const Net& b, double beyond = 1e9) {
+  const Patches first(shape.map, a), second(shape.map, b);
+  return closest_points(ElementBoxes(first), ElementBoxes(second), 1e-8, beyond);
+}
+
+/// Over a grid of each element, so fine that it errs by less than 1e-3 between these shapes.
+double by_brute_force(const Shape& shape, const Net& a, const Net& b) {
+  constexpr int n = 24;
+  const auto points = [&](const Net& net) {
+    const Patches patches(shape.map, net);
+    std::vector<Vec3> all;
+    for (int e = 0; e < patches.size(); ++e)
+      for (int k = 0; k <= n; ++k)
+        for (int l = 0; l <= n; ++l) all.push_back(place(patches[e], double(k) / n, double(l) / n));
+    return all;
+  };
+  double least = 1e9;
+  const std::vector<Vec3> first = points(a), second = points(b);
+  for (const Vec3& x : first)
+    for (const Vec3& y : second) least = std::min(least, (x - y).squaredNorm());
+  return std::sqrt(least);
+}
+
+TEST(ClosestPoints, OfRandomSurfacesAreThoseOfAFineGrid) {
+  const Shape shape;
+  std::mt19937 random(5);
+  std::normal_distribution<double> number;
+  for (int trial = 0; trial < 4; ++trial) {
+    const Vec3 apart = 2.6 * Vec3(number(random), number(random), number(random)).normalized();
+    const Net a = shape.bumpy(random, Vec3::Zero()), b = shape.bumpy(random, apart);
+    const ClosestPoints found = closest(shape, a, b);
+    const double on_grid = by_brute_force(shape, a, b);
+    EXPECT_LE(found.gap, on_grid + 1e-12) << trial;
+    EXPECT_GE(found.gap, on_grid - 2e-3) << trial;
+    EXPECT_NEAR((found.second - found.first).norm(), found.gap, 1e-14);
+    EXPECT_NEAR(closest(shape, b, a).gap, found.gap, 2e-8);
+  }
+}
+
+/// The same surface, moved along its own third axis, by whose symmetry the two tops are nearest.
+TEST(ClosestPoints, OfEqualSurfacesAboveEachOtherAreTheirTops) {
+  const Shape shape;
+  const Patches patches(shape.map, shape.sphere);
+  double top = -1;
+  for (int e = 0; e < patches.size(); ++e)
+    for (const double s : {0., 0.5, 1.})
+      for (const double t : {0., 0.5, 1.}) top = std::max(top, place(patches[e], s, t)[2]);
+  for (const double gap : {1., 1e-2, 1e-4}) {
+    const Net above = shape.sphere.rowwise() + Eigen::RowVector3d(0, 0, 2 * top + gap);
+    const ClosestPoints found = closest(shape, shape.sphere, above);
+    EXPECT_NEAR(found.gap, gap, 2e-8) << gap;
+    if (gap > 1e-3) EXPECT_LT(found.first.head<2>().norm(), 1e-3) << gap;
+  }
+}
+
+TEST(ClosestPoints, AreNotSoughtBeyondADistance) {
+  const Shape shape;
+  const Net other = shape.sphere.rowwise() + Eigen::RowVector3d(3, 0, 0);
+  EXPECT_EQ(closest(shape, shape.sphere, other, 0.5).gap, 0.5);
+}
+
+TEST(ClosestPoints, OfSurfacesThatMeetHaveNoGap) {
+  const Shape shape;
+  const Net other = shape.sphere.rowwise() + Eigen::RowVector3d(1.5, 0.1, 0);
+  EXPECT_LT(closest(shape, shape.sphere, other).gap, 1e-7);
+}
+
+}  // namespace
+}  // namespace tanktread::surface
