@@ -156,7 +156,7 @@ COPIES = """
 Tanktread:
   Flow: {type: simple shear}
   Particles:
-    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 2}}
+    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 3}}
     one: {center: [0.0, 0.0, 9.0]}
     many: {radius: 0.5, copies: {%s}}
   Time: {final time: 0.01}

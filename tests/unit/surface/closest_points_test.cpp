@@ -34,9 +34,9 @@ ClosestPoints closest(const Shape& shape, const Net& a, const Net& b, double bey
   return closest_points(ElementBoxes(first), ElementBoxes(second), 1e-8, beyond);
 }
 
-/// Over a grid of each element, so fine that it errs by less than 1e-3 between these shapes.
+/// Over a grid of each element, so fine that it errs by less than 5e-3 between these shapes.
 double by_brute_force(const Shape& shape, const Net& a, const Net& b) {
-  constexpr int n = 24;
+  constexpr int n = 12;
   const auto points = [&](const Net& net) {
     const Patches patches(shape.map, net);
     std::vector<Vec3> all;
@@ -62,7 +62,7 @@ TEST(ClosestPoints, OfRandomSurfacesAreThoseOfAFineGrid) {
     const ClosestPoints found = closest(shape, a, b);
     const double on_grid = by_brute_force(shape, a, b);
     EXPECT_LE(found.gap, on_grid + 1e-12) << trial;
-    EXPECT_GE(found.gap, on_grid - 2e-3) << trial;
+    EXPECT_GE(found.gap, on_grid - 5e-3) << trial;
     EXPECT_NEAR((found.second - found.first).norm(), found.gap, 1e-14);
     EXPECT_NEAR(closest(shape, b, a).gap, found.gap, 2e-8);
   }
