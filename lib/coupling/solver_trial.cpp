@@ -108,7 +108,7 @@ void try_iterative(const SolverOptions& solvers) {
 
 void try_direct(const membrane::DirectSolverOptions& options) {
   const auto trial = [&options](const List& list) {
-    membrane::DirectSolver solver({options.name, std::make_shared<List>(list)});
+    membrane::DirectSolver solver({"direct", options.name, std::make_shared<List>(list)});
     solver.factor(system_matrix());
     return true;
   };

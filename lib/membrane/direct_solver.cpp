@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include <Amesos2.hpp>
@@ -15,6 +16,7 @@
 
 #include "base/errors.hpp"
 #include "deck/foreign.hpp"
+#include "membrane/incomplete_solver.hpp"
 
 namespace tanktread::membrane {
 namespace {
@@ -24,11 +26,14 @@ using Matrix = Tpetra::CrsMatrix<>;
 using MultiVector = Tpetra::MultiVector<>;
 using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr double residual_allowed = 1e-8;
+constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 
 // Rows up to which the inverse is kept, and multiplied by: what Amesos2 does about a solve, maps and an import for several columns, takes
 // longer than the product. Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
+
+// Rows from which iteration is as fast as substitution, and set up in a small part of the time. Measured likewise.
+constexpr Eigen::Index worth_iterating = 5000;
 
 std::string solvers_of_this_build() {
   std::string names;
@@ -66,6 +71,11 @@ struct DirectSolver::Impl {
   std::array<Teuchos::RCP<MultiVector>, 3> x, b;  // of one, two and three columns
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
   Eigen::MatrixXd inverse;  // of a small matrix, else empty
+  std::optional<IncompleteSolver> iterative;  // in place of the factors
+
+  bool iterates() const {
+    return options.sparse_systems == "iterative" || (options.sparse_systems == "auto" && a.rows() >= worth_iterating);
+  }
 
   // Everything that depends on the pattern only.
   void analyse() {
@@ -156,6 +166,12 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   rows.makeCompressed();
   const bool known = impl_->solver != Teuchos::null && same_pattern(rows, impl_->a);
   impl_->a = std::move(rows);
+  impl_->iterative.reset();
+  if (impl_->iterates()) {
+    impl_->inverse.resize(0, 0);
+    if (impl_->iterative.emplace().factor(impl_->a) && impl_->residual(*this) < residual_of_iteration) return;
+    impl_->iterative.reset();  // complete factors serve any matrix
+  }
   std::string trouble;
   try {
     if (known)
@@ -180,6 +196,12 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
 }
 
 void DirectSolver::solve(const Columns& b, Columns& x) const {
+  if (impl_->iterative) {
+    const Eigen::MatrixXd right = b;  // by columns
+    x.resize(b.rows(), b.cols());
+    for (Eigen::Index c = 0; c < b.cols(); ++c) x.col(c) = impl_->iterative->solve(right.col(c));
+    return;
+  }
   if (impl_->inverse.size() > 0) {
     const Eigen::MatrixXd right = b;  // by columns
     x.resize(b.rows(), b.cols());

@@ -39,8 +39,9 @@ struct Options {
   double bending(double modulus, double radius) const;
 };
 
-/// The direct solver of the sparse systems (mass matrices, collocation matrix): keys of `Solvers/*`.
+/// The solver of the sparse systems (mass matrices, collocation matrix): keys of `Solvers/*`.
 struct DirectSolverOptions {
+  std::string sparse_systems = "auto";              ///< direct, iterative, auto
   std::string name = "KLU2";                        ///< as Amesos2 names it
   std::shared_ptr<Teuchos::ParameterList> amesos2;  ///< its list, as it is
 

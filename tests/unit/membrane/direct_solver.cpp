@@ -34,6 +34,34 @@ DirectSolverOptions named(const std::string& name) {
   return options;
 }
 
+DirectSolverOptions by(const std::string& way) {
+  DirectSolverOptions options;
+  options.sparse_systems = way;
+  return options;
+}
+
+TEST(DirectSolver, IterationGivesWhatFactorsGive) {
+  for (const double skew : {0., 0.3}) {
+    const auto a = banded(1000, 5, skew);
+    const Net b = right_hand_side(1000);
+    DirectSolver direct(by("direct")), iterative(by("iterative"));
+    direct.factor(a), iterative.factor(a);
+    EXPECT_LT((direct.solve(b) - iterative.solve(b)).norm(), 1e-12 * direct.solve(b).norm()) << skew;
+    EXPECT_GT((direct.solve(b) - iterative.solve(b)).norm(), 0) << "the same solver twice";
+  }
+}
+
+/// The circle's shift: its incomplete factors are those of no use, its complete ones are exact.
+TEST(DirectSolver, AMatrixThatIterationDoesNotSolveIsFactored) {
+  const int n = 400;
+  Eigen::SparseMatrix<double> shift(n, n);
+  for (int i = 0; i < n; ++i) shift.insert(i, (i + 1) % n) = 1;
+  DirectSolver solver(by("iterative"));
+  solver.factor(shift);
+  const Net b = right_hand_side(n);
+  EXPECT_LT((shift * solver.solve(b) - b).norm(), 1e-12);
+}
+
 TEST(DirectSolver, AgreesWithEigenOnSymmetricAndOtherMatrices) {
   for (double skew : {0., 0.3}) {
     const auto a = banded(100, 5, skew);
