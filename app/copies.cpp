@@ -39,8 +39,8 @@ std::vector<Copy> in_file(const std::string& file, const std::string& list) {
   for (const CsvRow& row : csv_rows(text_of_file(file, name, 100'000'000), "x1")) {
     const std::string where = name + formatted(", line %d: ", row.line);
     if (row.fields.size() != 3 && row.fields.size() != 6)
-      throw UserError(where + formatted("a row holds a centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees, but this one holds %zu %s.",
-                                        row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
+      throw UserError(where + "a row holds a centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees, but this one holds " +
+                      formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
     Copy& copy = copies.emplace_back();
     for (std::size_t c = 0; c < row.fields.size(); ++c)
       (c < 3 ? copy.centre : copy.orientation)[static_cast<Eigen::Index>(c % 3)] = csv_number(row.fields[c], where);
@@ -62,7 +62,8 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 /// Places that are drawn one after the other, of which those too close to an earlier one are thrown away.
-std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<Ball>& taken, const std::string& list) {
+std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<Ball>& taken,
+                            const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
   const Vec3 half = how.box ? Vec3(*how.box / 2) : Vec3::Constant(*how.ball);
   std::vector<Copy> copies;
@@ -114,15 +115,16 @@ std::vector<Copy> places(const ParticleKind& kind, std::vector<Ball>& taken) {
 
 void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
-              "comma-separated values: a copy a row, its centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees; the first row may name "
-              "the columns; looked for where the program is started and beside the deck");
+              "comma-separated values: a copy a row, its centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees; the first row may "
+              "name the columns; looked for where the program is started and beside the deck");
   section.key("lattice", lattice, deck::at_least(1), "1", "how many along x1, x2 and x3, about the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length", "of the lattice, between centres");
   section.key("number", number, deck::at_least(1), "1", "how many at random in `box` or `ball`");
   section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1", "of `box` or `ball`, in place of their number");
   section.key("box", box, deck::positive(), "length", "side lengths of the box about the particle's centre that they lie in");
   section.key("ball", ball, deck::positive(), "length", "radius of the ball about the particle's centre that they lie in");
-  section.key("least gap", least_gap, deck::not_negative(), "R", "between the spheres around two particles at random, over the radius R of the larger one");
+  section.key("least gap", least_gap, deck::not_negative(), "R",
+              "between the spheres around two particles at random, over the radius R of the larger one");
   section.key("seed", seed, deck::at_least(0), "1", "of the random places: the same seed gives the same places");
 }
 
@@ -134,7 +136,8 @@ void CopiesOptions::check(const std::string& list) const {
   if (spacing && !lattice) throw UserError(list + "/spacing belongs to a `lattice`.");
   if (lattice && !lattice->isApprox(lattice->array().round().matrix(), 0)) throw UserError(list + "/lattice must be three whole numbers.");
   const bool random = number || volume_fraction;
-  if (random != (box || ball)) throw UserError(list + (random ? " needs a `box` or a `ball` for places at random." : "/box and ball are for places at random."));
+  if (random != (box || ball))
+    throw UserError(list + (random ? " needs a `box` or a `ball` for places at random." : "/box and ball are for places at random."));
   if (box && ball) throw UserError(list + "/box and " + list + "/ball contradict each other.");
 }
 

@@ -83,8 +83,8 @@ void Scene::declare(deck::Section& root) {
   if (several) {
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
       if (root.given(list))
-        throw UserError(std::string(list) + " and Particles contradict each other: each particle has its own, in Particles/<name>, and what they share "
-                                            "is said once in Particles/defaults.");
+        throw UserError(std::string(list) + " and Particles contradict each other: each particle has its own, in Particles/<name>, and what "
+                                            "they share is said once in Particles/defaults.");
   } else {
     root.section("Particle", particle, "the particle at rest");
     declare_lists(root);

@@ -63,7 +63,7 @@ struct Scene : ParticleKind {
   output::Options output;
   deck::Expectations expect;
   bool volume_given = false;  ///< whether the deck has this list at all
-  std::vector<std::pair<std::string, std::string>> files;  ///< that the deck names and a run goes on without: where they are, and what it keeps them as
+  std::vector<std::pair<std::string, std::string>> files;  ///< that the deck names: where they are, and what the run keeps them as
 
   void declare(deck::Section& root);
 

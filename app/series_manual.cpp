@@ -31,6 +31,7 @@ constexpr Entry fields[] = {
     {"smallest tension", "force/length", "capsule, drop", "smaller principal tension (3.2)"},
     {"largest tension", "force/length", "capsule, drop", "larger principal tension (3.2)"},
     {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
+    {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
     {"pressure", "force/length^2", "prescribed body",
      "p = -t.n of the traction t on the body, its mean over the surface as of the exact solution"},
     {"pressure error", "force/length^2", "prescribed body", "p - p_exact, where the exact solution is known"},
@@ -83,6 +84,10 @@ std::string owners(std::string_view name) {
     if (!alone && !inside) continue;
     list += (list.empty() ? "" : ", ") + std::string(kind) + (alone ? "" : " in a tube");
   }
+  Scene several;
+  several.particles.resize(2);
+  for (ParticleKind& one : several.particles) one.particle.shape.radius = 1;
+  if (has(deforming_columns(several), name)) list += list.empty() ? "several particles" : ", several particles together";
   return list;
 }
 
@@ -108,7 +113,7 @@ std::string series_manual() {
   circle.radius = 1;
   std::string text =
       "# What comes out\n\nPrinted by `tanktread --reference-series`. Units are those of the deck; equation numbers are those of "
-      "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, a value a finished step and one for the start; "
+      "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, of one of several particles `/series/<particle>/<name>`, a value a finished step and one for the start; "
       "`Expect` takes all of "
       "these names. D, inclination and tank-treading are measured in the plane of the flow, which the plan names: x1 x3 but for a `linear` "
       "flow "

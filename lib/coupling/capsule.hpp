@@ -107,7 +107,7 @@ class Capsule : public Dynamics {
     return fluid_velocity(about ? latest_.x : x);
   }
 
-  /// Stresslet of particle p (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force times length.
+  /// Stresslet of particle p (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force x length.
   /// The fluids' velocity v is `slope`, that of the control points, or is evaluated where it matters and they slide along an interface.
   /// Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(const Net& x, const Net& slope, std::size_t p = 0);

@@ -69,8 +69,8 @@ double Options::bending(double modulus, double radius) const {
 
 void DirectSolverOptions::declare(deck::Section& section) {
   section.key("sparse systems", sparse_systems, deck::Choice{"auto", "direct", "iterative"},
-              "mass and collocation matrices: factored by the `direct solver`; `iterative`: BiCGSTAB with incomplete factors, to rounding, whose set-up "
-              "grows with the number of control points where a direct solver's grows like its power 1.7; `auto`: that from 5000 unknowns on");
+              "mass and collocation matrices: factored by the `direct solver`; `iterative`: BiCGSTAB with incomplete factors, to rounding, whose "
+              "set-up grows with the number of control points where a direct solver's grows like its power 1.7; `auto`: that from 5000 unknowns on");
   section.key("direct solver", name, deck::Choice{},
               "Amesos2's name of the solver of the sparse systems: `KLU2`, or another that it was built with");
   section.foreign("Amesos2", amesos2, "list handed to the direct solver as it is");

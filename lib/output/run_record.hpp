@@ -18,7 +18,8 @@ struct Series {
   std::vector<double> values;  ///< one a row; row 0 is the initial state
 };
 
-/// `/series/<name>`, of one of several particles `/series/<particle>/<name>`, 1-D doubles of equal length with attributes `unit` and `description`; `/deck`, the effective deck as text;
+/// `/series/<name>`, of one of several particles `/series/<particle>/<name>`, 1-D doubles of equal length with attributes `unit` and `description`;
+/// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks) and which `run` it is of.
 ///
 /// The rows live here, and `write` puts all of them on disk in one step (write_whole): HDF5 1.10 cannot append to a file so that a process killed
