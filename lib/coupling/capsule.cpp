@@ -48,7 +48,10 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_reference(unstressed);
   layer_.set_symmetry(symmetry);
   layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
-  if (parameters.viscosity_ratio != 1) double_layer_.emplace(space, parameters.quadrature);
+  if (parameters.viscosity_ratio != 1) {
+    double_layer_.emplace(space, parameters.quadrature);
+    double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
+  }
   if (by_sites()) sites_ = collocation_matrix(space);
   if (tube_) {
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
@@ -271,7 +274,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     } else {
       double_layer_->apply(x, v, own_points_, hv);
     }
-    replicate(hv);
+    !assembled && double_layer_->shared() ? add(hv) : replicate(hv);
     return viscous(v, hv);
   };
   if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);
