@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iterator>
 #include <optional>
 
@@ -22,7 +23,7 @@ namespace tanktread {
 namespace {
 
 /// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque.
-Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const Net& u, const Net& f, const Vec3& centre) {
+Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {
   std::vector<Net> z;
   for (int k = 0; k < 6; ++k) {
     coupling::RigidMotion unit;
@@ -43,19 +44,15 @@ double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
   const Vec3& centre = scene.particle.shape.center;
   const coupling::RigidMotion motion = prescribed_motion(scene);
-  Net u = coupling::rigid_velocity(body.rest, motion, centre);
-  if (body.flow.affine())
-    for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) -= body.flow.velocity(body.rest.row(a).transpose()).transpose();
-  else
-    u -= resistance.ambient(body.flow);
+  const auto relative_velocity = [&](const Net& x) -> Net { return coupling::rigid_velocity(x, motion, centre) - body.flow.velocities(x); };
 
   RigidSolution s;
-  s.density = resistance.force_density(u);
+  s.density = resistance.force_density(resistance.interpolated(relative_velocity));
   s.iterations = resistance.last_iterations();
   s.integral = s.force = -resistance.force(s.density);
   s.torque = -resistance.torque(s.density, centre);
   if (scene.reciprocal_forces()) {
-    const Eigen::VectorXd lacking = reciprocal_correction(resistance, u, s.density, centre);
+    const Eigen::VectorXd lacking = reciprocal_correction(resistance, relative_velocity, s.density, centre);
     s.force -= lacking.head<3>();
     s.torque -= lacking.tail<3>();
   }

@@ -58,8 +58,10 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_reference(unstressed);
   layer_.set_symmetry(symmetry);
   layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
-  if (auto contrasts = viscosity_contrasts(particles()); !contrasts.empty())
+  if (auto contrasts = viscosity_contrasts(particles()); !contrasts.empty()) {
     double_layer_.emplace(space, parameters.quadrature, std::move(contrasts));
+    double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
+  }
   if (by_sites()) sites_ = collocation_matrix(space);
   if (tube_) {
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
@@ -291,7 +293,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     } else {
       double_layer_->apply(x, v, own_points_, hv);
     }
-    replicate(hv);
+    !assembled && double_layer_->shared() ? add(hv) : replicate(hv);
     return viscous(v, hv);
   };
   if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);

@@ -27,7 +27,7 @@ class Session {
 };
 
 /// The ranks of the run. Control nets are replicated; work is split by their rows. A rank fills the rows of its own control points, which
-/// `replicate` gives to all by a Tpetra import. Far sums by clusters alone are added up (SingleLayer::share), and depend on the ranks by rounding.
+/// `replicate` gives to all by a Tpetra import. Far sums by clusters alone are added up (`share` of the layers), and depend on the ranks by rounding.
 class Ranks {
  public:
   Ranks();

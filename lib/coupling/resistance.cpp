@@ -89,7 +89,7 @@ stokes::Evaluations Resistance::kernel_evaluations() const {
   return {assembly.far + residual_evaluations_.far, assembly.near + residual_evaluations_.near, assembly.self + residual_evaluations_.self};
 }
 
-Eigen::VectorXd Resistance::residual_work(const Net& u, const Net& f, std::span<const Net> z) {
+Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
   const auto clock = phases_.time("reciprocal correction");
   std::vector<spline::Site> sites;
   std::vector<double> weights;
@@ -101,6 +101,13 @@ Eigen::VectorXd Resistance::residual_work(const Net& u, const Net& f, std::span<
       weights.push_back(rule.weights[q]);
     }
   }
+  Net x(sites.size(), 3);
+  for (size_t k = 0; k < sites.size(); ++k) {
+    const surface::Point p = surface::point(space_, surface_, sites[k]);
+    x.row(static_cast<Eigen::Index>(k)) = p.x.transpose();
+    weights[k] *= p.jacobian;
+  }
+  const Net given = u(x);
   // The layer has as many targets as control points: the sites take their turns.
   const size_t n = static_cast<size_t>(space_.n_points);
   Eigen::VectorXd work = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(z.size()));
@@ -110,10 +117,10 @@ Eigen::VectorXd Resistance::residual_work(const Net& u, const Net& f, std::span<
     for (size_t i = 0; i < n; ++i) turn.collocation[i] = {sites[std::min(first + i, sites.size() - 1)]};
     stokes::SingleLayer layer(turn, quadrature_);
     layer.set_reference(surface_);
-    Net v(u.rows(), 3);
+    Net v(space_.n_points, 3);
     layer.apply(surface_, f, stokes::Measure::reference, own_points_, v);
     if (tube_) {
-      Net at(u.rows(), 3), answer(u.rows(), 3);
+      Net at(v.rows(), 3), answer(v.rows(), 3);
       for (const int i : own_points_)
         at.row(i) = surface::value(space_, place_, turn.collocation[static_cast<size_t>(i)].front()).transpose();
       tube_->velocity_at(at, response, own_points_, answer);
@@ -124,10 +131,9 @@ Eigen::VectorXd Resistance::residual_work(const Net& u, const Net& f, std::span<
     residual_evaluations_.near += layer.evaluations().near;
     residual_evaluations_.self += layer.evaluations().self;
     for (size_t i = 0; i < n && first + i < sites.size(); ++i) {
-      const spline::Site& site = sites[first + i];
-      const Vec3 rest = surface::value(space_, u, site) - v.row(static_cast<Eigen::Index>(i)).transpose() / viscosity_;
-      const double area = weights[first + i] * surface::point(space_, surface_, site).jacobian;
-      for (size_t k = 0; k < z.size(); ++k) work[static_cast<Eigen::Index>(k)] += area * surface::value(space_, z[k], site).dot(rest);
+      const Vec3 rest = (given.row(static_cast<Eigen::Index>(first + i)) - v.row(static_cast<Eigen::Index>(i)) / viscosity_).transpose();
+      for (size_t k = 0; k < z.size(); ++k)
+        work[static_cast<Eigen::Index>(k)] += weights[first + i] * surface::value(space_, z[k], sites[first + i]).dot(rest);
     }
   }
   return work;

@@ -47,10 +47,10 @@ Vec3 angular_velocity(const Mat3& l) { return 0.5 * Vec3(l(2, 1) - l(1, 2), l(0,
 
 }  // namespace
 
-Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& centre) {
-  Net u(surface.rows(), 3);
+Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) {
+  Net u(x.rows(), 3);
   for (Eigen::Index a = 0; a < u.rows(); ++a)
-    u.row(a) = (motion.velocity + motion.angular_velocity.cross(surface.row(a).transpose() - centre)).transpose();
+    u.row(a) = (motion.velocity + motion.angular_velocity.cross(x.row(a).transpose() - centre)).transpose();
   return u;
 }
 

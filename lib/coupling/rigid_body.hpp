@@ -15,8 +15,8 @@ struct RigidMotion {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
 };
 
-/// Control values of U + Omega x (x - centre) on the surface with control net `surface`: exact, for the basis sums to one.
-Net rigid_velocity(const Net& surface, const RigidMotion& motion, const Vec3& centre);
+/// U + Omega x (x - centre) at points, a row each; also its control values from a control net, exactly, for the basis sums to one.
+Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre);
 
 /// Resistance to the six rigid motions, the five strains of unit size and, where `quadratic`, the fields y_j y_k e_i with y = x - centre, in the axes
 /// that the body has in `surface`. Whatever an affine flow does to the body is a combination of the first eleven solutions, whatever a flow (2.20)

@@ -23,6 +23,12 @@ DoubleLayer::DoubleLayer(const spline::Space& space, const quadrature::Options& 
   if (sums_by_tree(space, options)) tree_.emplace(options.tolerance / 2);  // measured: the largest error is a quarter of the tolerance
 }
 
+void DoubleLayer::share(int part, int parts, std::vector<int> everybody) {
+  if (!tree_ || parts == 1) return;
+  everybody_ = std::move(everybody);
+  tree_->share(part, parts);
+}
+
 void DoubleLayer::place(const Net& x, std::span<const int> targets) {
   surface_.place(x);
   node_normals(surface_.panels, surface_.bezier, normal_);
@@ -33,17 +39,21 @@ void DoubleLayer::place(const Net& x, std::span<const int> targets) {
   if (tree_) x_ = x;
 }
 
-void DoubleLayer::take(const Net& v) {
-  surface_.panels.bezier(v, bezier_v_);
-  node_values(surface_.panels, bezier_v_, velocity_);
-}
-
 void DoubleLayer::apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv) {
   place(x, targets);
-  take(v);
+  surface_.panels.bezier(v, bezier_v_);
+  node_values(surface_.panels, bezier_v_, velocity_);
+  const std::span<const int> rows = shared() ? everybody_ : targets;
+  tree_ ? add_by_tree(rows, hv) : add_far(rows, hv);
+  add_near(targets, hv);
+  for (const int i : rows) hv.row(i) /= 8 * std::numbers::pi;
+}
+
+/// v(x_i), which is subtracted from the integrand.
+std::vector<Vec3> DoubleLayer::values(std::span<const int> targets) const {
   std::vector<Vec3> v0;
   for (const int i : targets) v0.push_back(surface_.self_field.value(i, surface_.panels, bezier_v_));
-  integrate(targets, v0, hv);
+  return v0;
 }
 
 Stresslets DoubleLayer::nodes() const {
@@ -52,10 +62,10 @@ Stresslets DoubleLayer::nodes() const {
           velocity_[1].data(),       velocity_[2].data(), normal_[0].data(), normal_[1].data(), normal_[2].data()};
 }
 
-void DoubleLayer::add_far(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv) {
+void DoubleLayer::add_far(std::span<const int> targets, Net& hv) {
   const Stresslets all = nodes();
   Net sums(targets.size(), 3);
-  far_sums(all, at_, v0, sums.data());
+  far_sums(all, at_, values(targets), sums.data());
   for (std::size_t k = 0; k < targets.size(); ++k) hv.row(targets[k]) = sums.row(static_cast<Eigen::Index>(k));
   evaluations_.far += static_cast<long long>(targets.size()) * all.n;
 }
@@ -64,16 +74,18 @@ void DoubleLayer::add_far(std::span<const int> targets, const std::vector<Vec3>&
 void DoubleLayer::place_tree(std::span<const int> targets) {
   if (tree_x_.rows() == x_.rows() && tree_x_ == x_ && std::ranges::equal(targets, tree_targets_)) return;
   surface_.place(*tree_);
+  tree_->want(targets);
   stress_.resize(static_cast<std::size_t>(6) * surface_.n_points);
-  tree_->sum<NormalStressKernel>({normal_[0].data(), normal_[1].data(), normal_[2].data()}, targets, stress_.data());
+  tree_->sum<NormalStressKernel>({normal_[0].data(), normal_[1].data(), normal_[2].data()}, stress_.data());
   evaluations_.far += tree_->interactions();
   tree_x_ = x_;
   tree_targets_.assign(targets.begin(), targets.end());
 }
 
 /// sum_q (v - m)_j T_ijk n_k - (v0 - m)_j sum_q T_ijk n_k with the mean velocity m, so that a translation gives 0 exactly.
-void DoubleLayer::add_by_tree(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv) {
+void DoubleLayer::add_by_tree(std::span<const int> targets, Net& hv) {
   place_tree(targets);
+  const std::vector<Vec3> v0 = values(targets);
   const int n_nodes = surface_.panels.n_nodes();
   Vec3 mean;
   for (int c = 0; c < 3; ++c) mean[c] = Eigen::Map<const Eigen::VectorXd>(velocity_[c].data(), n_nodes).mean();
@@ -85,8 +97,7 @@ void DoubleLayer::add_by_tree(std::span<const int> targets, const std::vector<Ve
       moment_[c][k] = ((velocity_[i][k] - mean[i]) * normal_[j][k] + (velocity_[j][k] - mean[j]) * normal_[i][k]) / 2;
   }
   tree_->sum<StressletKernel>(
-      {moment_[0].data(), moment_[1].data(), moment_[2].data(), moment_[3].data(), moment_[4].data(), moment_[5].data()}, targets,
-      hv.data());
+      {moment_[0].data(), moment_[1].data(), moment_[2].data(), moment_[3].data(), moment_[4].data(), moment_[5].data()}, hv.data());
   evaluations_.far += tree_->interactions();
   for (std::size_t k = 0; k < targets.size(); ++k) {
     const double* s = &stress_[static_cast<std::size_t>(6) * targets[k]];
@@ -96,15 +107,13 @@ void DoubleLayer::add_by_tree(std::span<const int> targets, const std::vector<Ve
   }
 }
 
-/// (1 / 8 pi) int (v_j - v0_j) T_ijk n_k dG at the targets of place().
-void DoubleLayer::integrate(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv) {
-  Panels& panels = surface_.panels;
+/// What the rules of close panels, and of those that a target of place() lies on, give beyond the far sum.
+void DoubleLayer::add_near(std::span<const int> targets, Net& hv) {
   const Stresslets all = nodes();
-  const int n = static_cast<int>(targets.size());
-  tree_ ? add_by_tree(targets, v0, hv) : add_far(targets, v0, hv);
-  for (int k = 0; k < n; ++k) {
+  const std::vector<Vec3> v0 = values(targets);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
     const auto replace = [&](int e, const PointTable& table, long long& count) {
-      const Panel& panel = panels[e];
+      const Panel& panel = surface_.panels[e];
       Vec3 own, far;
       double_sum(table, &surface_.bezier[panel.first_bezier], &bezier_v_[panel.first_bezier], at_[k].data(), v0[k].data(), own.data());
       node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), v0[k].data(), far.data());
@@ -113,8 +122,7 @@ void DoubleLayer::integrate(std::span<const int> targets, const std::vector<Vec3
     };
     for (const int e : surface_.near(targets[k], at_[k])) replace(e, surface_.near_field.rule(e, at_[k]), evaluations_.near);
     for (SelfPair& pair : surface_.own(targets[k]))
-      replace(pair.panel, surface_.self_field.rule(pair, panels, surface_.bezier), evaluations_.self);
-    hv.row(targets[k]) /= 8 * std::numbers::pi;
+      replace(pair.panel, surface_.self_field.rule(pair, surface_.panels, surface_.bezier), evaluations_.self);
   }
 }
 

@@ -27,6 +27,10 @@ class DoubleLayer {
   /// `factor`: k of each element; 1 where there are none.
   DoubleLayer(const spline::Space& space, const quadrature::Options& options, std::vector<double> factor = {});
 
+  /// Shares the far sums of the rows `everybody` among callers, as SingleLayer::share does.
+  void share(int part, int parts, std::vector<int> everybody);
+  bool shared() const { return !everybody_.empty(); }
+
   /// Rows `targets` of H v, shape (N, 3), for the velocity with control values v on the surface x.
   void apply(const Net& x, const Net& v, std::span<const int> targets, Net& hv);
 
@@ -43,19 +47,20 @@ class DoubleLayer {
  private:
   struct Moments;
   void place(const Net& x, std::span<const int> targets);
-  void take(const Net& v);
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
-  void integrate(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
-  void add_far(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
-  void add_by_tree(std::span<const int> targets, const std::vector<Vec3>& v0, Net& hv);
+  void add_far(std::span<const int> targets, Net& hv);
+  void add_by_tree(std::span<const int> targets, Net& hv);
   void place_tree(std::span<const int> targets);
+  void add_near(std::span<const int> targets, Net& hv);
   Stresslets nodes() const;
+  std::vector<Vec3> values(std::span<const int> targets) const;
 
   LayerSurface surface_;
   std::vector<double> factor_;                              // k of each panel
   std::vector<double> bezier_v_, velocity_[3], normal_[3];  // of the far nodes; normals times weights and k
   std::vector<Vec3> at_;
   std::optional<TreeSum> tree_;  // where clusters are faster
+  std::vector<int> everybody_;   // rows that far sums are shared of; empty: they are not
   Net x_, tree_x_;               // shape; that of the tree and of stress_
   std::vector<int> tree_targets_;
   std::vector<double> stress_;     // 8 pi times the solid angle of the far nodes at tree_targets_, six numbers each

@@ -51,14 +51,14 @@ def _compare_pictures(one, many):
         check(off <= 1e-9 * max(1, numpy.max(abs(one[name]))), f"{name} differs by {off:.2e}")
 
 
-def _compare(*settings, most=1.3):
+def _compare(*settings):
     """One, two and three ranks agree to 1e-10; to the last bit is what is measured."""
     words = [word for setting in settings for word in ("--set", setting)]
     for ranks in 1, 2, 3:
         run(deck(DECK), *words, "--output", f"on_{ranks}", "--overwrite", "--quiet", ranks=ranks)
     for ranks in 2, 3:
         alone, together = _kernel_evaluations("on_1"), _kernel_evaluations(f"on_{ranks}")  # parts that every rank needs are made by each
-        check(0.95 * alone <= together <= most * alone, f"{alone} kernel evaluations on one rank, {together} on {ranks}")
+        check(0.95 * alone <= together <= 1.3 * alone, f"{alone} kernel evaluations on one rank, {together} on {ranks}")
         _compare_pictures(_pictures("on_1"), _pictures(f"on_{ranks}"))
         check(_names("on_1") == _names(f"on_{ranks}"), "other series")
         for name in _names("on_1"):
@@ -94,7 +94,7 @@ def far_sums_by_clusters():
     for symmetry in "auto", "none":
         _compare(*LONG, "Quadrature/far sum=tree", f"Symmetry/use={symmetry}", "Time/fixed step=0.01", "Time/final time=0.02")
     _compare(*LONG, "Quadrature/far sum=tree", "Membrane/law=surface tension", "Membrane/load measure=current", "Particle/viscosity ratio=3",
-             "Time/scheme=bs3", "Time/fixed step=0.002", "Time/final time=0.004", most=3)  # each rank sums the double layer for its own rows, over all clusters
+             "Time/scheme=bs3", "Time/fixed step=0.002", "Time/final time=0.004")
 
 
 def a_red_cell():

@@ -2,9 +2,13 @@
 // the errors themselves. Quadrature 1e-8 and solver 1e-10, as the decks have them: what is left is the mesh.
 
 #include <cmath>
+#include <numbers>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "app/exact_body.hpp"
+#include "quadrature/gauss.hpp"
 #include "tests/rigid.hpp"
 
 namespace tanktread {
@@ -71,6 +75,53 @@ TEST(RigidSpheroid, FeelsOnlyItsMotionRelativeToTheFlow) {
       on_cube(3, {"Flow/type=uniform", "Flow/velocity=[0.7071067811865476, 0, 0.7071067811865476]", "Particle/velocity=[0, 0, 0]"});
   EXPECT_LT((moving.force - held.force).norm() / held.force.norm(), 1e-9);  // the solver's tolerance
   EXPECT_NEAR(moving.error, held.error, 1e-9);
+}
+
+/// Force and torque of the flow of a deck on a body that is held in it, by the reciprocal theorem: int z.v_inf dG, z the density of a rigid motion.
+/// On an ellipsoid z h^-1 is a polynomial, h dG = abc dOmega over the unit sphere, and Gauss points integrate the product with v_inf exactly. Of a sphere
+/// that is Faxen's law.
+std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vector<std::string>& settings) {
+  Scene scene;
+  deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/spheroid_cube.yaml"}, settings);
+  deck.declare(scene);
+  const stokes::AmbientFlow flow(scene.flow);
+  const Mat3 axes = scene.particle.shape.rotation();
+  const stokes::Ellipsoid ellipsoid(semi_axes);
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  const quadrature::GaussRule& height = quadrature::gauss(4);
+  constexpr int around = 8;
+  for (int i = 0; i < height.size(); ++i)
+    for (int j = 0; j < around; ++j) {
+      const double z = 2 * height.nodes[i] - 1, angle = 2 * std::numbers::pi * j / around, r = std::sqrt(1 - z * z);
+      const Vec3 x = semi_axes.cwiseProduct(Vec3(r * std::cos(angle), r * std::sin(angle), z));
+      const double h = x.dot(ellipsoid.normal(x)), weight = 4 * std::numbers::pi / around * height.weights[i] * semi_axes.prod() / h;
+      const Vec3 v = axes.transpose() * flow.velocity(scene.particle.shape.center + axes * x);
+      for (int k = 0; k < 3; ++k) {
+        force[k] += weight * v.dot(ellipsoid.force_density(scene.flow.viscosity, Vec3::Unit(k), Vec3::Zero(), x));
+        torque[k] += weight * v.dot(ellipsoid.force_density(scene.flow.viscosity, Vec3::Zero(), Vec3::Unit(k), x));
+      }
+    }
+  return {axes * force, axes * torque};
+}
+
+TEST(RigidBody, HeldInAParabolicFlowFeelsFaxensForce) {
+  for (const Vec3& semi_axes : {Vec3(0.6, 0.6, 0.6), Vec3(0.5, 0.5, 0.75), Vec3(0.75, 0.5, 0.4)}) {
+    const auto text = [](const Vec3& v) { return "[" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " + std::to_string(v[2]) + "]"; };
+    const std::vector<std::string> settings = {"Flow/type=parabolic",          "Flow/half width=1.3",         "Particle/shape=ellipsoid",
+                                               "Particle/velocity=[0, 0, 0]",  "Particle/semi-axes=" + text(semi_axes),
+                                               "Particle/center=[1, 0.2, -0.3]", "Particle/orientation=[20, 0, 40]"};
+    const auto [force, torque] = on_a_held_ellipsoid(semi_axes, settings);
+    double of_force[2], of_torque[2];
+    for (const int k : {0, 1}) {
+      const RigidSolution s = on_cube(k ? 6 : 3, settings);
+      of_force[k] = (s.force - force).norm() / force.norm(), of_torque[k] = (s.torque - torque).norm() / torque.norm();
+    }
+    std::printf("semi-axes %.2f %.2f %.2f: force off by %.1e, %.1e, order %.1f; torque by %.1e, %.1e, order %.1f\n", semi_axes[0], semi_axes[1],
+                semi_axes[2], of_force[0], of_force[1], order(of_force[0], of_force[1]), of_torque[0], of_torque[1], order(of_torque[0], of_torque[1]));
+    EXPECT_LT(of_force[1], 3e-7);
+    EXPECT_LT(of_torque[1], 1e-6);
+    EXPECT_GE(order(of_force[0], of_force[1]), 5);
+  }
 }
 
 }  // namespace

@@ -206,6 +206,25 @@ TEST(TreeSum, MakesTheDoubleLayerOfAVelocityToTheTolerance) {
   }
 }
 
+TEST(TreeSum, PartsOfTheDoubleLayerAddUpAndAreOfEqualWork) {
+  const auto& [space, x, v, all] = surface_of_clusters();
+  DoubleLayer one(space, {.far_sum = "tree"});
+  Net whole = Net::Zero(space.n_points, 3), sum = whole;
+  one.apply(x, v, all, whole);
+  for (int part = 0; part < 3; ++part) {
+    DoubleLayer layer(space, {.far_sum = "tree"});
+    layer.share(part, 3, all);
+    std::vector<int> mine;
+    for (int i = part; i < space.n_points; i += 3) mine.push_back(i);
+    Net u = Net::Zero(space.n_points, 3);
+    layer.apply(x, v, mine, u);
+    const auto all_parts = static_cast<double>(one.evaluations().far);
+    EXPECT_NEAR(3 * static_cast<double>(layer.evaluations().far), all_parts, 0.02 * all_parts);
+    sum += u;
+  }
+  EXPECT_LT(difference(sum, whole), 1e-13);  // round-off
+}
+
 TEST(TreeSum, DoubleLayerOfATranslationVanishes) {
   const auto& [space, x, v, all] = surface_of_clusters();
   DoubleLayer layer(space, {.far_sum = "tree"});
