@@ -2,110 +2,182 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
-#include <queue>
-
-#include "spline/bernstein.hpp"
+#include <utility>
+#include <vector>
 
 namespace tanktread::surface {
 
 namespace {
 
-/// Part [s, s + size] x [t, t + size] of an element, no point of which is nearer to the outline than `bound`.
-struct Piece {
-  int element;
-  double s, t, size, bound;
-  bool operator<(const Piece& other) const { return bound > other.bound; }  // the first of a queue is the nearest
+constexpr std::array coordinates{0, 1, 2};
+
+/// A disc that the outline does not enter, as far as a piece is concerned: no place of the piece is nearer to the outline than `gap` says.
+struct Disc {
+  Vec2 centre;
+  double radius;
+  double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
+/// The disc for pieces within r of x that touches the outline at the foot of x and is as curved as the outline is there, or more, so that no place that
+/// may be nearest to such a piece is inside: each trial passes through the place that is farthest inside the one before.
+Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
+  if (foot.distance < tolerance) return {foot.x, 0};
+  const PlaneJet at = outline.at(foot.side, foot.u);
+  const double curvature = (at.d[0] * at.dd[1] - at.d[1] * at.dd[0]) / std::pow(at.d.norm(), 3);
+  const Vec2 inward = (x - foot.x) / foot.distance;
+  double radius = 1 / std::max(curvature, 1e-3 / outline.radius());
+  for (int trial = 0; trial < 20 && radius > 0; ++trial) {
+    const Vec2 centre = foot.x + radius * inward;
+    const Nearest reached = outline.nearest_around(x, foot, r, centre);
+    if (reached.distance > radius - tolerance) return {centre, reached.distance};
+    const Vec2 chord = reached.x - foot.x;
+    radius = std::min(radius, chord.squaredNorm() / (2 * chord.dot(inward)));
+  }
+  return {foot.x, 0};
+}
+
+/// Part of an element, by its Bezier points.
+struct Piece {
+  std::array<Eigen::MatrixXd, 3> points;  // a matrix for each coordinate
+  Disc disc{Vec2::Zero(), 0};
+  double bound = -std::numeric_limits<double>::infinity();  // no place of the piece is nearer to the outline
+  Vec3 corner = Vec3::Zero();                               // the one farthest from the disc's centre
+  bool bends_across = false;                                // along the columns' index more than along the rows'
+
+  /// No place of the piece is farther from x.
+  double reach(const Vec2& x) const {
+    return std::sqrt(((points[1].array() - x[0]).square() + (points[2].array() - x[1]).square()).maxCoeff());
+  }
+};
+
+/// The product of the Bernstein polynomials i and k of degree p is this times the polynomial i + k of degree 2p.
+Eigen::MatrixXd products(Eigen::Index p) {
+  const auto binomial = [](Eigen::Index n, Eigen::Index k) {
+    double value = 1;
+    for (Eigen::Index i = 1; i <= k; ++i) value = value * static_cast<double>(n - k + i) / static_cast<double>(i);
+    return value;
+  };
+  return Eigen::MatrixXd::NullaryExpr(
+      p + 1, p + 1, [&](Eigen::Index i, Eigen::Index k) { return binomial(p, i) * binomial(p, k) / binomial(2 * p, i + k); });
+}
+
+/// De Casteljau's halves along the rows' index.
+std::array<Eigen::MatrixXd, 2> halves(Eigen::MatrixXd points) {
+  Eigen::MatrixXd first = points;
+  for (Eigen::Index r = 1, p = points.rows() - 1; r <= p; ++r) {
+    for (Eigen::Index i = 0; i <= p - r; ++i) points.row(i) = (points.row(i) + points.row(i + 1)) / 2;
+    first.row(r) = points.row(0);
+  }
+  return {first, points};
+}
+
+std::array<Piece, 2> halves(const Piece& piece) {
+  std::array<Piece, 2> parts;
+  for (Piece& part : parts) part.disc = piece.disc, part.bound = piece.bound;
+  for (const int c : coordinates) {
+    auto points = piece.bends_across ? halves(piece.points[c].transpose()) : halves(piece.points[c]);
+    for (const int k : {0, 1}) parts[k].points[c] = std::move(points[k]);
+  }
+  return parts;
+}
+
+/// The search halves pieces, those of the least bound first, until none can be nearer than the best place found.
 class Search {
  public:
-  Search(const Patches& surface, const Outline& outline)
-      : surface_(surface), outline_(outline), convex_(outline.convex()), inner_(outline.distance(outline.centroid())) {
-    best_.gap = std::numeric_limits<double>::infinity();
-  }
+  Search(const Patches& surface, const Outline& outline) : surface_(surface), outline_(outline) {}
 
   Clearance nearest() {
-    std::priority_queue<Piece> pieces;
-    for (int e = 0; e < surface_.size(); ++e) pieces.push(bounded({e, 0, 0, 1, 0}));
-    while (!pieces.empty() && near(pieces.top())) {
-      const Piece piece = pieces.top();
-      pieces.pop();
-      if (piece.size <= smallest) {
-        descend(piece);
-        continue;
-      }
-      const double half = piece.size / 2;
-      for (const double s : {piece.s, piece.s + half})
-        for (const double t : {piece.t, piece.t + half})
-          if (const Piece part = bounded({piece.element, s, t, half, 0}); near(part)) pieces.push(part);
+    begin();
+    while (!pieces_.empty() && near(pieces_.front().bound)) {
+      std::ranges::pop_heap(pieces_, std::ranges::greater(), &Piece::bound);
+      Piece piece = std::move(pieces_.back());
+      pieces_.pop_back();
+      look_at_corner(piece);
+      if (near(piece.bound))
+        for (Piece& half : halves(piece)) add(std::move(half));
     }
     return best_;
   }
 
  private:
-  static constexpr double smallest = 0.25;
+  bool near(double gap) const { return gap < best_.gap - tolerance(); }
+  double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  bool near(const Piece& piece) const { return piece.bound < best_.gap - 1e-9 * outline_.radius(); }
-
-  /// With the bound that follows from the Bezier points of the piece, in whose hull it lies: the distance changes no faster than the place does,
-  /// and it is concave inside a convex outline.
-  Piece bounded(Piece piece) const {
-    const Eigen::Matrix2Xd hull = points(piece);
-    piece.bound = inner_ - (hull.colwise() - outline_.centroid()).colwise().norm().maxCoeff();
-    if (!near(piece)) return piece;
-    double closer = std::numeric_limits<double>::infinity();
-    if (convex_) {
-      for (Eigen::Index i = 0; i < hull.cols(); ++i) closer = std::min(closer, outline_.distance(hull.col(i)));
-    } else {
-      const Vec2 middle = hull.rowwise().mean();
-      closer = outline_.distance(middle) - (hull.colwise() - middle).colwise().norm().maxCoeff();
+  /// The elements that a disc about the outline's centroid does not rule out.
+  void begin() {
+    const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
+    const auto squared = [&](const Patch& patch, int b) {
+      return (Vec2(patch.coordinate(1, b), patch.coordinate(2, b)) - central.centre).squaredNorm();
+    };
+    double farthest = -1;
+    for (int e = 0; e < surface_.size(); ++e)
+      if (const double there = squared(surface_[e], 0); there > farthest) {
+        farthest = there;
+        for (const int c : coordinates) best_.x[c] = surface_[e].coordinate(c, 0);
+      }
+    best_.gap = outline_.distance(best_.x.tail<2>());
+    for (int e = 0; e < surface_.size(); ++e) {
+      const Patch& patch = surface_[e];
+      double reach = 0;
+      for (int b = 0; b < patch.n_bezier(); ++b) reach = std::max(reach, squared(patch, b));
+      if (!near(central.gap(reach))) continue;
+      Piece element;
+      element.disc = central;
+      for (const int c : coordinates)
+        element.points[c] = Eigen::Map<const Eigen::MatrixXd>(patch.points + c * patch.n_bezier(), patch.degree + 1, patch.degree + 1);
+      add(std::move(element));
     }
-    piece.bound = std::max(piece.bound, closer);
-    return piece;
   }
 
-  /// x2 and x3 of the Bezier points of a piece.
-  Eigen::Matrix2Xd points(const Piece& piece) const {
-    const Patch& patch = surface_[piece.element];
-    const int m = patch.degree + 1;
-    const Eigen::MatrixXd in_s = spline::restriction(patch.degree, piece.s, piece.s + piece.size),
-                          in_t = spline::restriction(patch.degree, piece.t, piece.t + piece.size);
-    Eigen::Matrix2Xd result(2, m * m);
-    for (const int c : {0, 1}) {
-      const Eigen::Map<const Eigen::MatrixXd> net(patch.points + (c + 1) * m * m, m, m);  // s fastest
-      const Eigen::MatrixXd part = in_s * net * in_t.transpose();
-      result.row(c) = Eigen::Map<const Eigen::RowVectorXd>(part.data(), part.size());
-    }
-    return result;
+  void add(Piece piece) {
+    ++best_.pieces;
+    bound(piece);
+    if (!near(piece.bound)) return;
+    pieces_.push_back(std::move(piece));
+    std::ranges::push_heap(pieces_, std::ranges::greater(), &Piece::bound);
   }
 
-  Clearance at(int element, double s, double t) const {
-    const Vec3 x = place(surface_[element], s, t);
-    return {x, outline_.distance({x[1], x[2]})};
+  /// Perhaps the best place. Where it is farther from the outline than the disc says, the piece gets a disc that fits.
+  void look_at_corner(Piece& piece) {
+    const Vec2 x = piece.corner.tail<2>();
+    const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());
+    if (!near(expected)) return;
+    const Nearest foot = outline_.nearest(x);
+    if (foot.distance < best_.gap) best_.x = piece.corner, best_.gap = foot.distance;
+    if (foot.distance < expected + tolerance() / 2) return;
+    piece.disc = touching(outline_, x, foot, piece.reach(x), tolerance() / 4);
+    bound(piece);
   }
 
-  /// Downhill from the middle of a piece by steps along the grid and across it, halved where none leads on.
-  void descend(const Piece& piece) {
-    double s = piece.s + piece.size / 2, t = piece.t + piece.size / 2;
-    Clearance lowest = at(piece.element, s, t);
-    for (double step = piece.size / 2; step > 1e-5;) {
-      const double from_s = s, from_t = t;
-      for (const int a : {-1, 0, 1})
-        for (const int b : {-1, 0, 1}) {
-          const double trial_s = std::clamp(from_s + a * step, piece.s, piece.s + piece.size),
-                       trial_t = std::clamp(from_t + b * step, piece.t, piece.t + piece.size);
-          if (const Clearance there = at(piece.element, trial_s, trial_t); there.gap < lowest.gap) lowest = there, s = trial_s, t = trial_t;
+  /// The Bezier points of the squared distance to the disc's centre bound it, and show along which index it bends.
+  void bound(Piece& piece) {
+    const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
+    if (products_.rows() != m) products_ = products(m - 1);
+    const Eigen::MatrixXd y = piece.points[1].array() - piece.disc.centre[0], z = piece.points[2].array() - piece.disc.centre[1];
+    Eigen::MatrixXd q = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index j = 0; j < m; ++j)
+      for (Eigen::Index l = 0; l < m; ++l)
+        for (Eigen::Index i = 0; i < m; ++i)
+          for (Eigen::Index k = 0; k < m; ++k) q(i + k, j + l) += products_(i, k) * products_(j, l) * (y(i, j) * y(k, l) + z(i, j) * z(k, l));
+    piece.bound = std::max(piece.bound, piece.disc.gap(q.maxCoeff()));
+    const auto bend = [](const auto& a, const auto& b, const auto& c) { return (a - 2 * b + c).cwiseAbs().maxCoeff(); };
+    piece.bends_across = bend(q.leftCols(n - 2), q.middleCols(1, n - 2), q.rightCols(n - 2)) >
+                         bend(q.topRows(n - 2), q.middleRows(1, n - 2), q.bottomRows(n - 2));
+    double farthest = -1;
+    for (const Eigen::Index i : {Eigen::Index(0), last})
+      for (const Eigen::Index j : {Eigen::Index(0), last})
+        if (q(i, j) > farthest) {
+          farthest = q(i, j);
+          for (const int c : coordinates) piece.corner[c] = piece.points[c](i / 2, j / 2);
         }
-      if (s == from_s && t == from_t) step /= 2;
-    }
-    if (lowest.gap < best_.gap) best_ = lowest;
   }
 
   const Patches& surface_;
   const Outline& outline_;
-  bool convex_;
-  double inner_;  // distance of the outline's centroid
+  std::vector<Piece> pieces_;  // a heap
+  Eigen::MatrixXd products_;   // of the degree last used
   Clearance best_;
 };
 

@@ -9,13 +9,13 @@ namespace tanktread::surface {
 
 /// A place of a surface and its distance to the outline of a straight tube along x1; negative outside of the tube.
 struct Clearance {
-  Vec3 x;
+  Vec3 x = Vec3::Zero();
   double gap = 0;
+  int pieces = 0;  ///< of the surface that were looked at: the work
 };
 
-/// The place of the surface that is nearest to the outline, or farthest outside of it. Pieces of the surface are quartered, those of the
-/// smallest possible distance first, until none can be nearer than the best place found by 1e-9 of the outline's radius; on a sixteenth of an
-/// element the distance has one minimum.
+/// The place of the surface that is nearest to the outline, or farthest outside of it. No other place is nearer by 1e-8 of the outline's radius, or
+/// farther outside by 1e-3 of it: for each piece of the surface a disc that osculates the outline bounds the distance from below.
 Clearance clearance(const Patches& surface, const Outline& outline);
 
 }  // namespace tanktread::surface

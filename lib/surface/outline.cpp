@@ -127,15 +127,6 @@ double Outline::corner_angle(int k) const {
   return std::numbers::pi - std::atan2(cross(in, out), in.dot(out));
 }
 
-bool Outline::convex() const {
-  for (std::size_t i = 0; i < chords_.size(); ++i) {
-    const Chord &here = chords_[i], &next = chords_[(i + 1) % chords_.size()];
-    const Vec2 before = here.b - here.a, after = next.b - next.a;
-    if (cross(before, after) < -1e-12 * before.norm() * after.norm()) return false;
-  }
-  return true;
-}
-
 double Outline::radius() const { return std::sqrt(area_ / std::numbers::pi); }
 
 /// Newton's method for the foot of the perpendicular, kept on the chord's piece of the curve; the ends count as well.
@@ -144,9 +135,8 @@ Nearest Outline::nearest_on(const Chord& chord, const Vec2& p) const {
   double u = chord.begin + h * foot(p, chord.a, chord.b);
   for (int k = 0; k < 20; ++k) {
     const PlaneJet j = at(chord.side, u);
-    const double slope = j.d.squaredNorm() + (j.x - p).dot(j.dd), before = u;
-    if (slope <= 0) break;
-    u = std::clamp(u - (j.x - p).dot(j.d) / slope, chord.begin, chord.end);
+    const double squared = j.d.squaredNorm(), slope = squared + (j.x - p).dot(j.dd), before = u;
+    u = std::clamp(u - (j.x - p).dot(j.d) / (slope > 0 ? slope : squared), chord.begin, chord.end);
     if (std::abs(u - before) < 1e-14 * h) break;
   }
   Nearest best;
@@ -158,12 +148,14 @@ Nearest Outline::nearest_on(const Chord& chord, const Vec2& p) const {
   return best;
 }
 
+double Outline::distance_to(const Chord& chord, const Vec2& p) { return (chord.a + foot(p, chord.a, chord.b) * (chord.b - chord.a) - p).norm(); }
+
 Nearest Outline::nearest(const Vec2& p) const {
   double bound = std::numeric_limits<double>::infinity();
   std::vector<double> distances;
   distances.reserve(chords_.size());
   for (const Chord& c : chords_) {
-    distances.push_back((c.a + foot(p, c.a, c.b) * (c.b - c.a) - p).norm());
+    distances.push_back(distance_to(c, p));
     bound = std::min(bound, distances.back() + c.sag);
   }
   Nearest best;
@@ -173,6 +165,18 @@ Nearest Outline::nearest(const Vec2& p) const {
     if (const Nearest candidate = nearest_on(chords_[i], p); candidate.distance < best.distance) best = candidate;
   }
   if (!within(p, best)) best.distance = -best.distance;
+  return best;
+}
+
+/// What is nearest to a point within r of x is no farther from it than `its` is: a place y with |y - x|^2 - |its - x|^2 > 2 r |y - its| is farther.
+Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const {
+  Nearest best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for (const Chord& c : chords_) {
+    const double near = std::max(distance_to(c, x) - c.sag, 0.), along = std::max((c.a - its.x).norm(), (c.b - its.x).norm()) + c.sag;
+    if (near * near - its.distance * its.distance > 2 * r * along || distance_to(c, p) - c.sag > best.distance) continue;
+    if (const Nearest candidate = nearest_on(c, p); candidate.distance < best.distance) best = candidate;
+  }
   return best;
 }
 

@@ -36,8 +36,6 @@ class Outline {
   /// Angle inside the outline where side k begins, 0 .. 2 pi; pi where nothing turns.
   double corner_angle(int k) const;
 
-  bool convex() const;  ///< as far as short chords tell
-
   double length() const { return length_; }
   double side_length(int k) const { return lengths_[static_cast<std::size_t>(k)]; }
   double area() const { return area_; }
@@ -48,6 +46,9 @@ class Outline {
   Nearest nearest(const Vec2& p) const;
   double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
   bool inside(const Vec2& p) const { return distance(p) > 0; }
+
+  /// The nearest to p of the places that may be nearest to a point within r of x, whose own nearest place is `its`; the distance has no sign.
+  Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
   /// The number of elements of each side when `elements` are shared out by length, at least `least` on each.
   std::vector<int> shares(int elements, int least = 1) const;
@@ -71,6 +72,7 @@ class Outline {
   void add_chords(int k);
   void measure();
   std::optional<Vec2> first_crossing() const;
+  static double distance_to(const Chord& chord, const Vec2& p);
   Nearest nearest_on(const Chord& chord, const Vec2& p) const;
   bool within(const Vec2& p, const Nearest& nearest) const;
 
