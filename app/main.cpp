@@ -109,6 +109,10 @@ int run(const Arguments& arguments, bool speaks) {
   if (resume) check_changes(stored, deck, before);
   if (auto& outline = scene.tube.outline) outline = found(*outline, kept_outline(scene), arguments);
   if (auto& file = scene.particle.shape.file) file = found(*file, kept_surface, arguments);
+  if (auto& history = scene.flow.history; history && history->file) {
+    history->file = found(*history->file, kept_flow_history, arguments);
+    history->read();
+  }
   scene.particle.shape.read();
   auto& initial = scene.particle.shape.initial;
   if (resume && initial && (initial->file || initial->run)) initial.reset();  // which may be gone; the checkpoint has what became of it

@@ -113,7 +113,8 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 
 void check_vacant(const RunRequest& request) {
   const coupling::Ranks ranks;
-  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output), [&] {
+  std::error_code absent;
+  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output, absent), [&] {
     const output::Occupation occupation(request.output);
     output::check_vacant(request.output);
   });
@@ -148,6 +149,7 @@ void Results::begin() {
   output::start_directory(directory_);
   run_ = identifier();
   if (scene_.tube.outline) keep(*scene_.tube.outline, kept_outline(scene_));
+  if (const auto& history = scene_.flow.history; history && history->file) keep(*history->file, kept_flow_history);
   if (scene_.particle.shape.imported) keep(*scene_.particle.shape.file, kept_surface);
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
@@ -157,9 +159,10 @@ void Results::begin() {
 
 void Results::keep(const std::filesystem::path& file, const std::filesystem::path& name) {
   const std::filesystem::path place = directory_ / name;
-  std::error_code absent;
-  if (!std::filesystem::equivalent(file, place, absent))
-    std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing);
+  std::error_code error;
+  if (std::filesystem::equivalent(file, place, error)) return;
+  if (!std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing, error))
+    throw RunFailure("cannot copy " + file.string() + " to " + place.string() + ": " + error.message());
 }
 
 void Results::declare_columns() {

@@ -22,7 +22,7 @@
 namespace tanktread {
 
 /// What a run keeps in its directory of the files that its deck names, for it goes on without them.
-constexpr const char* kept_surface = "particle.iga";
+constexpr const char *kept_surface = "particle.iga", *kept_flow_history = "flow_history.csv";
 std::string kept_outline(const Scene& scene);  ///< the name of Tube/outline, without its folder
 
 /// What a run says of itself when it ends.

@@ -1,0 +1,21 @@
+#pragma once
+// Comma-separated values.
+
+#include <string>
+#include <vector>
+
+namespace tanktread {
+
+/// What stands between the commas of one line, without blanks around it.
+struct CsvRow {
+  int line;
+  std::vector<std::string> fields;
+};
+
+/// All lines of a text with something on them: `#` begins a comment, and a first row that begins with `heading` names columns and is left out.
+std::vector<CsvRow> csv_rows(const std::string& text, const std::string& heading);
+
+/// Throws UserError, a sentence after `where`, unless the field is a number below 1e75 in size.
+double csv_number(const std::string& field, const std::string& where);
+
+}  // namespace tanktread
