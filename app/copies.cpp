@@ -115,8 +115,8 @@ std::vector<Copy> places(const ParticleKind& kind, std::vector<Ball>& taken) {
 
 void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
-              "comma-separated values: a copy a row, its centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees; the first row may "
-              "name the columns; looked for where the program is started and beside the deck");
+              "comma-separated values: a copy a row, its centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees; the first row "
+              "may name the columns; looked for where the program is started and beside the deck");
   section.key("lattice", lattice, deck::at_least(1), "1", "how many along x1, x2 and x3, about the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length", "of the lattice, between centres");
   section.key("number", number, deck::at_least(1), "1", "how many at random in `box` or `ball`");

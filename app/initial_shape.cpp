@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/document.hpp"
+#include "deck/words.hpp"
 #include "spline/iga.hpp"
 #include "surface/geometry.hpp"
 
@@ -53,15 +54,19 @@ void check_surface(const Scene& scene, const output::Checkpoint& run, const std:
 std::optional<output::Checkpoint> run_before(const Scene& scene) try {
   const auto& initial = scene.particle.shape.initial;
   if (!initial || !initial->run) return {};
+  const std::string name = deck::shortened(*initial->run, 80);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(*initial->run, error);
+  if (error) throw UserError(key + "run: cannot read " + name + ": " + error.message());
   output::Checkpoint run;
-  if (std::filesystem::is_directory(*initial->run)) {
+  if (std::filesystem::is_directory(status)) {
     auto saved = output::newest_checkpoint(*initial->run);
-    if (!saved) throw UserError(key + "run: there is no checkpoint in " + *initial->run + ".");
+    if (!saved) throw UserError(key + "run: there is no checkpoint in " + name + ".");
     run = std::move(saved->checkpoint);
   } else {
     run = output::read_checkpoint(*initial->run);
   }
-  check_surface(scene, run, *initial->run);
+  check_surface(scene, run, name);
   return run;
 } catch (const std::runtime_error& error) {
   if (dynamic_cast<const UserError*>(&error)) throw;

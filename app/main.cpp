@@ -127,6 +127,10 @@ int run(const Arguments& arguments, bool speaks) {
   deck.declare(scene);
   if (resume) check_changes(stored, deck, before);
   if (auto& outline = scene.tube.outline) find(*outline, kept_outline(scene), arguments, scene);
+  if (auto& history = scene.flow.history; history && history->file) {
+    find(*history->file, kept_flow_history, arguments, scene);
+    history->read();
+  }
   find_shapes(scene, arguments, scene);
   for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
   scene.particles = with_copies(scene.particles);

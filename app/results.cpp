@@ -87,7 +87,8 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 
 void check_vacant(const RunRequest& request) {
   const coupling::Ranks ranks;
-  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output), [&] {
+  std::error_code absent;
+  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output, absent), [&] {
     const output::Occupation occupation(request.output);
     output::check_vacant(request.output);
   });
@@ -130,9 +131,10 @@ void Results::begin() {
 
 void Results::keep(const std::filesystem::path& file, const std::filesystem::path& name) {
   const std::filesystem::path place = directory_ / name;
-  std::error_code absent;
-  if (!std::filesystem::equivalent(file, place, absent))
-    std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing);
+  std::error_code error;
+  if (std::filesystem::equivalent(file, place, error)) return;
+  if (!std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing, error))
+    throw RunFailure("cannot copy " + file.string() + " to " + place.string() + ": " + error.message());
 }
 
 void Results::declare_columns() {

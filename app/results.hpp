@@ -22,6 +22,7 @@
 namespace tanktread {
 
 /// What a run keeps in its directory of the files that its deck names, for it goes on without them.
+constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< of a particle's file
 std::string kept_places(const ParticleKind& kind);   ///< of its copies
 std::string kept_outline(const Scene& scene);        ///< the name of Tube/outline, without its folder

@@ -28,8 +28,8 @@ constexpr Entry fields[] = {
     {"traction", "force/length^2", "all", "the load per present area; of a rigid body the traction of the fluid on it"},
     {"displacement", "length", "capsule, drop", "x - X from the unstressed shape"},
     {"velocity", "length/time", "capsule, drop, free body", "of the fluids on the surface; of a free body its own"},
-    {"smallest tension", "force/length", "capsule, drop", "smaller principal tension (3.2)"},
-    {"largest tension", "force/length", "capsule, drop", "larger principal tension (3.2)"},
+    {"smallest tension", "1", "capsule, drop", "smaller principal tension (3.2) over G_s, of a drop over sigma"},
+    {"largest tension", "1", "capsule, drop", "larger principal tension (3.2) over G_s, of a drop over sigma"},
     {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
     {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
     {"pressure", "force/length^2", "prescribed body",
@@ -113,7 +113,8 @@ std::string series_manual() {
   circle.radius = 1;
   std::string text =
       "# What comes out\n\nPrinted by `tanktread --reference-series`. Units are those of the deck; equation numbers are those of "
-      "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, of one of several particles `/series/<particle>/<name>`, a value a finished step and one for the start; "
+      "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, of one of several particles "
+      "`/series/<particle>/<name>`, a value a finished step and one for the start; "
       "`Expect` takes all of "
       "these names. D, inclination and tank-treading are measured in the plane of the flow, which the plan names: x1 x3 but for a `linear` "
       "flow "

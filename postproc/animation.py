@@ -35,11 +35,12 @@ def main():
     arguments = parser.parse_args()
 
     run = read.run(arguments.results)
-    shots = run.snapshots() if arguments.frame is None else [run.snapshot_at(arguments.frame)]
+    every = [shot.scaled(run) for shot in run.snapshots()]
+    shots = every if arguments.frame is None else [run.snapshot_at(arguments.frame).scaled(run)]
     field = arguments.field
     if field not in shots[0].fields:
         sys.exit(f"{shots[0].path} holds no field {arguments.field}; there are: {', '.join(sorted(shots[0].fields))}")
-    film = Film(run, run.snapshots(), field, arguments.view, arguments.width * 2 // 3)
+    film = Film(run, every, field, arguments.view, arguments.width * 2 // 3)
     if arguments.frame is not None:
         film.show(shots[0])
         style.save(film.figure, arguments.output)
@@ -64,7 +65,7 @@ class Film:
         self.surface = self.figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
         bar = self.figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
         vector = numpy.ndim(shots[0].fields[field]) > 1
-        self.figure.colorbar(ScalarMappable(self.norm, self.colours), cax=bar, label=f"|{field}|" if vector else field)
+        self.figure.colorbar(ScalarMappable(self.norm, self.colours), cax=bar, label=run.label(field, "|{}|" if vector else "{}"))
         upper = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
         self.panels = [upper, self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper)]
         self.shown = DEFORMABLE if "taylor_inertia" in run.series else RIGID

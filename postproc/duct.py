@@ -33,11 +33,11 @@ def main():
     for axis, d, run in zip(axes[0], ducts, runs):
         filled = draw_section(axis, d, levels)
         if not arguments.no_path:
-            draw_path(axis, run)
+            draw_path(axis, run, d["radius"])
         axis.set_xlim(low[0], high[0])
         axis.set_ylim(low[1], high[1])
         axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
-    axes[0][0].set_ylabel("x₃")
+    axes[0][0].set_ylabel("x₃ / R$_T$")
     axes[0][0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
     figure.colorbar(filled, ax=list(axes[0]), label="velocity of the empty tube over its mean", shrink=0.8, ticks=levels[:-1:2],
                     spacing="proportional")
@@ -45,10 +45,14 @@ def main():
 
 
 def duct(directory):
-    """The arrays of duct.h5 by name."""
+    """The arrays of duct.h5 by name, places over R_T, the `radius`."""
     try:
         with h5py.File(f"{directory}/duct.h5", "r") as file:
-            return {name: data[()] for name, data in file.items()}
+            arrays = {name: data[()] for name, data in file.items()}
+        for name in "outline", "x2", "x3":
+            arrays[name] = arrays[name] / arrays["radius"]
+        arrays["maximum"][:2] /= arrays["radius"]
+        return arrays
     except OSError:
         sys.exit(f"{directory} holds no duct.h5: give the directory of a run in a tube")
 
@@ -66,7 +70,7 @@ def draw_section(axis, d, levels):
     axis.set_aspect("equal")
     axis.grid(False)
     axis.spines[:].set_visible(False)
-    axis.set_xlabel("x₂")
+    axis.set_xlabel("x₂ / R$_T$")
     return filled
 
 
@@ -88,10 +92,10 @@ def spread(velocity):
     return v
 
 
-def draw_path(axis, run):
+def draw_path(axis, run, radius):
     if "centroid_x2" not in run.series:
         return
-    x2, x3 = run.series["centroid_x2"], run.series["centroid_x3"]
+    x2, x3 = (run.series[name] / radius for name in ("centroid_x2", "centroid_x3"))
     axis.plot(x2, x3, color=style.RUNS[1], linewidth=1.6, label="path of the centroid")
     axis.plot(x2[0], x3[0], color=style.RUNS[1], marker="o", markersize=4)
 

@@ -28,7 +28,7 @@ def main():
 
     runs = [read.run(directory) for directory in ([arguments.refined, *arguments.fixed] if arguments.refined else made())]
     end = min(run.series["time"][-1] for run in runs)
-    shots = [run.snapshot_at(end) for run in runs]
+    shots = [run.snapshot_at(end).scaled(run) for run in runs]
     names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
     extent = shots[0].points.max(0) - shots[0].points.min(0)
     columns = max(3, len(runs))
@@ -41,7 +41,7 @@ def main():
         shape.draw_surface(axis, shot, arguments.field, norm, colours, *shape.VIEW)
         axis.set_title(name)
     vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
-    words = f"|{arguments.field}|" if vector else arguments.field
+    words = read.field_label(runs, arguments.field, "|{}|" if vector else "{}")
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal", label=words)
 
     outline, tip, along = (figure.add_subplot(grid[2, k]) for k in range(3))
@@ -62,10 +62,10 @@ def main():
     outline.add_patch(plt.Rectangle((0.9 * reach, -0.11 * reach), 0.11 * reach, 0.22 * reach, fill=False, edgecolor=style.FAINT, linewidth=0.8))
     for axis, title in (outline, "the section x₂ = 0"), (tip, "its tip"):
         axis.set_title(title)
-        axis.set_xlabel("x₁")
-        axis.set_ylabel("x₃")
-    along.set_title(f"{words} on the section near the tip")
-    along.set_xlabel("x₃")
+        axis.set_xlabel("x₁ / R$_C$")
+        axis.set_ylabel("x₃ / R$_C$")
+    along.set_title(f"{arguments.field} on the section near the tip")
+    along.set_xlabel("x₃ / R$_C$")
     along.set_ylabel(words)
     along.set_xlim(-0.11 * reach, 0.11 * reach)
     along.set_ylim(bottom=0)

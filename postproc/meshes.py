@@ -23,14 +23,15 @@ def main():
     parser.add_argument("-o", "--output", default="meshes.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--times", type=float, nargs="+", help="simulated times (default: the start, the middle and the end)")
     parser.add_argument("--field", default="traction", help="field whose variation is drawn (default: %(default)s)")
-    parser.add_argument("--reference", type=float, nargs="+", help="reference value of its variation, a circle in the lower row; one, or one a panel")
+    parser.add_argument("--reference", type=float, nargs="+", help="reference value of its variation, in the deck's unit: a circle in the lower row; one, or one a panel")
     parser.add_argument("--view", type=float, nargs=2, default=shape.VIEW, metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in arguments.results]
     end = runs[0].series["time"][-1]
     times = arguments.times or ([None] if len(runs) > 1 else [0, end / 2, end])
-    shots = [(run, run.snapshot_at(times[-1])) for run in runs] if len(runs) > 1 else [(runs[0], runs[0].snapshot_at(time)) for time in times]
+    pairs = [(run, times[-1]) for run in runs] if len(runs) > 1 else [(runs[0], time) for time in times]
+    shots = [(run, run.snapshot_at(time).scaled(run)) for run, time in pairs]
 
     seen = [(shot.points - (shot.points.min(0) + shot.points.max(0)) / 2) @ shape.view_axes(*arguments.view)[:2].T for _, shot in shots]
     tall = 1.15 * numpy.ptp(numpy.concatenate(seen)[:, 1]) / numpy.ptp(numpy.concatenate(seen)[:, 0])
@@ -44,7 +45,8 @@ def main():
         points = run.series["n_control_points"][numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1]
         surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
         polar = figure.add_subplot(grid[2, k], projection="polar")
-        reference = arguments.reference and arguments.reference[min(k, len(arguments.reference) - 1)]
+        unit = run.scale(read.DIMENSIONS.get(arguments.field))[0] / run.scale("length")[0]
+        reference = arguments.reference and arguments.reference[min(k, len(arguments.reference) - 1)] / unit
         tops.append((draw_variation(polar, shot, arguments.field, reference), polar))
         if reference and (k == 0 or len(set(arguments.reference)) > 1):
             polar.legend(loc="upper left", bbox_to_anchor=(-0.1, 0.04))
@@ -53,7 +55,7 @@ def main():
         polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
     vector = numpy.ndim(shots[0][1].fields[arguments.field]) > 1
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]), orientation="horizontal",
-                    label=f"|{arguments.field}|" if vector else arguments.field)
+                    label=read.field_label(runs, arguments.field, "|{}|" if vector else "{}"))
     style.save(figure, arguments.output)
 
 
@@ -108,7 +110,7 @@ def draw_variation(axis, shot, field, reference):
     axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
     axis.set_rlabel_position(55)
     axis.tick_params(labelsize=7.5)
-    axis.set_title(f"|d {field}/dl| on the section x₂ = 0", fontsize=8.5, loc="center")
+    axis.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
     print(f"{shot.path}: largest variation {variation.max():.3g}")
     return top
 

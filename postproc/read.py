@@ -8,6 +8,7 @@
     last = run.snapshots()[-1]         # a saved step
     last.fields["traction"]            # at the nodes of its cells
     run.time, run.time_label           # of the series, times the rate of the flow
+    last.scaled(run).fields["traction"], run.label("traction")    # the same without units, as pictures have it
 """
 
 import argparse
@@ -24,6 +25,10 @@ import yaml
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(os.environ.get("TANKTREAD") or SOURCE / "build" / "release" / "app" / "tanktread")
+
+
+DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress", "displacement": "length", "velocity": "velocity",
+              "smallest tension": "tension", "largest tension": "tension", "mean curvature": "curvature"}  # of fields
 
 
 class Run:
@@ -70,6 +75,34 @@ class Run:
     def time_label(self):
         name = self.rate[1]
         return f"time · {name}" if name else "time, in the deck's unit"
+
+    @property
+    def radius(self):
+        """R_C, of the sphere of equal volume."""
+        if self.summary and "numbers" in self.summary:
+            return float(self.summary["numbers"]["radius"])
+        return self.snapshots()[0].volume() ** (1 / 3) * (3 / (4 * numpy.pi)) ** (1 / 3)
+
+    def scale(self, dimension):
+        """What a length, velocity, stress or curvature is divided by to be a number, and how that is written: R_C, and the viscosity times the rate of the
+        flow; where it has no rate the modulus over R_C, or of a rigid body the viscosity times its speed over R_C. Tensions are numbers already."""
+        radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))
+        rate, words = self.rate
+        symbol = "σ" if self.value("Membrane/law") == "surface tension" else "G$_s$"
+        modulus = float(self.value("Membrane/shear modulus") or self.value("Membrane/surface tension") or 0)
+        if words:
+            stress, velocity = f"(μ · {words})", f"({words} · R$_C$)"
+        elif modulus:
+            rate, stress, velocity = modulus / (viscosity * radius), f"({symbol} / R$_C$)", f"({symbol} / μ)"
+        else:
+            speeds = [numpy.linalg.norm(self.value(f"Particle/{key}", 0)) for key in ("velocity", "angular velocity")]
+            rate, stress, velocity = float(max(speeds[0] / radius, speeds[1]) or 1), "(μ · speed / R$_C$)", "speed"
+        return {"length": (radius, " / R$_C$"), "curvature": (1 / radius, " · R$_C$"), "velocity": (rate * radius, " / " + velocity),
+                "stress": (viscosity * rate, " / " + stress), "tension": (1.0, " / " + symbol)}.get(dimension, (1.0, ""))
+
+    def label(self, field, pattern="{}"):
+        """What is on the axis of a field without units; `pattern` such as `|{}|`."""
+        return pattern.format(field) + self.scale(DIMENSIONS.get(field))[1]
 
     def value(self, path, default=None):
         """One key of the deck: `value("Membrane/capillary number")`."""
@@ -121,6 +154,19 @@ class Snapshot:
     points = property(lambda self: self._read()[0])
     cells = property(lambda self: self._read()[1])
     fields = property(lambda self: self._read()[2])
+
+    def scaled(self, run):
+        """The same without units: lengths over R_C, fields as `run.label` says."""
+        copy = Snapshot(self.path, self.time)
+        points = self.points / run.scale("length")[0]
+        copy._content = points, self.cells, {name: values / run.scale(DIMENSIONS.get(name))[0] for name, values in self.fields.items()}
+        return copy
+
+    def volume(self, k=16):
+        """By k^2 facets a cell."""
+        grid = self.sampled(self.points, k)
+        a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
+        return abs(sum(numpy.einsum("...i,...i", x, numpy.cross(y, z)).sum() for x, y, z in ((a, b, c), (a, c, d)))) / 6
 
     def checkpoint(self):
         """What the run goes on from: {"arrays": {...}, "numbers": {...}, "texts": {...}}."""
@@ -180,6 +226,11 @@ def results_of(deck, name=None, settings=None, accepted=(0, 1)):
 def time_label(runs):
     """What is on the axis of time of several runs."""
     return " or ".join(dict.fromkeys(one.time_label for one in runs))
+
+
+def field_label(runs, field, pattern="{}"):
+    """What is on the axis of a field of several runs, without units."""
+    return " or ".join(dict.fromkeys(one.label(field, pattern) for one in runs))
 
 
 def _text(value):

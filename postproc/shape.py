@@ -29,7 +29,7 @@ def main():
     arguments = parser.parse_args()
 
     runs = [read.run(directory) for directory in arguments.results]
-    shots = [run.snapshot_at(arguments.time) for run in runs]
+    shots = [run.snapshot_at(arguments.time).scaled(run) for run in runs]
     for shot in shots:
         if arguments.field not in shot.fields:
             sys.exit(f"{shot.path} holds no field {arguments.field}; there are: {', '.join(sorted(shot.fields))}")
@@ -42,7 +42,7 @@ def main():
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
     figure.colorbar(ScalarMappable(norm, colours), cax=axes[0][0].inset_axes([0.3, -0.08, 0.5, 0.03]), orientation="horizontal",
-                    label=("magnitude of the " if vector else "") + arguments.field)
+                    label=read.field_label(runs, arguments.field, "magnitude of the {}" if vector else "{}"))
     draw_sections(axes[0][n], runs, shots)
     style.save(figure, arguments.output)
 
@@ -118,7 +118,7 @@ def section(shot, place, across=1):
 def draw_sections(axis, runs, shots):
     for run, shot, color in zip(runs, shots, style.RUNS * len(runs)):
         x2 = (shot.points[:, 1].min() + shot.points[:, 1].max()) / 2
-        rest = run.snapshots()[0]
+        rest = run.snapshots()[0].scaled(run)
         if rest.time < shot.time and run is runs[0]:
             axis.add_collection(LineCollection(section(rest, x2), colors=style.FAINT, linewidths=1, linestyles="-"))
         pieces = section(shot, x2)
@@ -138,8 +138,8 @@ def draw_sections(axis, runs, shots):
         axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
-    axis.set_xlabel("x₁")
-    axis.set_ylabel("x₃")
+    axis.set_xlabel("x₁ / R$_C$")
+    axis.set_ylabel("x₃ / R$_C$")
     axis.set_title("section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
 

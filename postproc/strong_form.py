@@ -65,7 +65,8 @@ def draw_sections(axis, runs):
     (_, weak, blue), (_, strong, orange) = runs
     last = strong.snapshots()[-1]
     regular = [shot for shot in strong.snapshots() if shot.time < last.time][-1]
-    shots = [("weak form", weak.snapshot_at(regular.time), blue, 1.6), ("strong form", regular, orange, 1.6), ("strong form", last, orange, 0.7)]
+    shots = [("weak form", weak.snapshot_at(regular.time).scaled(weak), blue, 1.6), ("strong form", regular.scaled(strong), orange, 1.6),
+             ("strong form", last.scaled(strong), orange, 0.7)]
     for name, shot, color, width in shots:
         x2 = (shot.points[:, 1].min() + shot.points[:, 1].max()) / 2
         axis.add_collection(LineCollection(section(shot, x2), colors=color, linewidths=width, capstyle="round", label=f"{name}, t = {shot.time:.4g}"))
@@ -74,8 +75,8 @@ def draw_sections(axis, runs):
     low, high = axis.get_ylim()
     axis.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     axis.set_title("section in the x₁x₃ plane")
-    axis.set_xlabel("x₁")
-    axis.set_ylabel("x₃")
+    axis.set_xlabel("x₁ / R$_C$")
+    axis.set_ylabel("x₃ / R$_C$")
     axis.legend(loc="upper left")
 
 

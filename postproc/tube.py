@@ -48,8 +48,10 @@ def shots_of(run, times):
     return list(found.values())
 
 
-def centroid(run, shot):
-    return numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
+def section(run, d, shot, across):
+    """Of the particle in the plane x_{across+1} = centroid, and the centroid, over R_T."""
+    c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
+    return shape.section(shot, c[across], across) / d["radius"], c / d["radius"]
 
 
 def shapes(runs, ducts, times):
@@ -75,23 +77,20 @@ def shapes(runs, ducts, times):
 
 def along(axis, run, d, shots, colours):
     """Sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid along x1."""
-    widths = [numpy.ptp(shot.points[:, 0]) for shot in shots]
     place = 0.0
-    for shot, colour, width in zip(shots, colours, widths):
-        c = centroid(run, shot)
-        pieces = shape.section(shot, c[1]) - [c[0] - place, 0]
-        axis.add_collection(LineCollection(pieces, colors=[colour], linewidths=1.6, capstyle="round"))
+    for shot, colour in zip(shots, colours):
+        pieces, c = section(run, d, shot, 1)
+        axis.add_collection(LineCollection(pieces - [c[0] - place, 0], colors=[colour], linewidths=1.6, capstyle="round"))
         axis.plot(place, c[2], marker=".", color=colour, markersize=4)
-        place += width + 0.12
-    x2 = centroid(run, shots[-1])[1]
-    low, high = wall_heights(d["outline"], x2)
+        place += numpy.ptp(shot.points[:, 0]) / d["radius"] + 0.12
+    low, high = wall_heights(d["outline"], c[1])
     for height in low, high:
         axis.axhline(height, color=style.INK, linewidth=1.4)
     axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
     axis.set_aspect("equal")
     axis.autoscale_view()
     axis.set_xlabel("x₁, flow to the right")
-    axis.set_ylabel("x₃")
+    axis.set_ylabel("x₃ / R$_T$")
     axis.set_xticks([])
     axis.grid(False)
     axis.set_title("section x₂ = centroid")
@@ -110,13 +109,13 @@ def across(axis, run, d, shots, colours):
     """Sections in the plane x1 = centroid inside of the wall."""
     axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     for shot, colour in zip(shots, colours):
-        pieces = shape.section(shot, centroid(run, shot)[0], 0)
+        pieces, _ = section(run, d, shot, 0)
         axis.add_collection(LineCollection(pieces, colors=[colour], linewidths=1.6, capstyle="round"))
     axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.set_xlabel("x₂")
-    axis.set_ylabel("x₃")
+    axis.set_xlabel("x₂ / R$_T$")
+    axis.set_ylabel("x₃ / R$_T$")
     axis.set_title("section x₁ = centroid")
 
 
@@ -127,11 +126,11 @@ def motion(runs, ducts):
         speed, radius = d["mean_velocity"], d["radius"]
         s = run.series
         time = run.time
-        axes[0].plot(*d["outline"].T / radius, color=colour, linewidth=1)
+        axes[0].plot(*d["outline"].T, color=colour, linewidth=1)
         axes[0].plot(s["centroid_x2"] / radius, s["centroid_x3"] / radius, color=colour, label=run.name)
         axes[0].plot(s["centroid_x2"][0] / radius, s["centroid_x3"][0] / radius, color=colour, marker="o", markersize=3.5)
-        axes[0].plot(*d["maximum"][:2] / radius, color=colour, marker="+", markersize=8)
-        off = numpy.hypot(s["centroid_x2"] - d["maximum"][0], s["centroid_x3"] - d["maximum"][1]) / radius
+        axes[0].plot(*d["maximum"][:2], color=colour, marker="+", markersize=8)
+        off = numpy.hypot(s["centroid_x2"] / radius - d["maximum"][0], s["centroid_x3"] / radius - d["maximum"][1])
         axes[1].semilogy(time, numpy.maximum(off, FLOOR), color=colour)
         for axis, (name, label) in zip(axes[2:], PANELS):
             scale = run.value("Flow/viscosity", 1) * speed / radius if "pressure" in name else speed

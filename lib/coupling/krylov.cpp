@@ -119,10 +119,12 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
     impl_->list->set("Implicit Residual Scaling", "Norm of RHS");
     impl_->list->set("Explicit Residual Scaling", "Norm of RHS");
   }
-  if (list) impl_->list->setParameters(*list);
   try {
     Belos::SolverFactory<double, MultiVector, Operator> factory;
-    if (list) deck::check_foreign("Solvers/Belos", *list, *factory.create(impl_->name, Teuchos::parameterList())->getValidParameters());
+    if (list) {
+      deck::check_foreign("Solvers/Belos", *list, *factory.create(impl_->name, Teuchos::parameterList())->getValidParameters());
+      impl_->list->setParameters(*list);
+    }
     impl_->solver = factory.create(impl_->name, impl_->list);
   } catch (const UserError&) {
     throw;

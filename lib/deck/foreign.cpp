@@ -36,8 +36,8 @@ void check_foreign(const std::string& path, const Teuchos::ParameterList& given,
                       (meant.empty() ? "." : "; was " + path + "/" + meant + " meant?"));
     }
     const std::string wanted = kind(*known);
-    if (!wanted.empty() && wanted != kind(item.second))
-      throw UserError(here + " must be " + wanted + ", but is " + description(item.second) + ".");
+    if (wanted.empty()) throw UserError(here + " is a parameter that no deck can hold.");
+    if (wanted != kind(item.second)) throw UserError(here + " must be " + wanted + ", but is " + description(item.second) + ".");
     if (item.second.isList())
       check_foreign(here, Teuchos::getValue<Teuchos::ParameterList>(item.second), Teuchos::getValue<Teuchos::ParameterList>(*known));
   }

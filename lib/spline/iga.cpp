@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
+#include "deck/words.hpp"
 #include "spline/closed_surface.hpp"
 
 namespace tanktread::spline {
@@ -23,7 +24,7 @@ constexpr int least_degree = 2, largest_degree = 6, most_functions = 64;
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file)
-      : name_(file.string()), stream_(text_of_file(file, "Surface file " + name_, 1'000'000'000)) {}
+      : name_(deck::shortened(file.string(), 80)), stream_(text_of_file(file, "Surface file " + name_, 1'000'000'000)) {}
 
   [[noreturn]] void fail(const std::string& what) const {
     throw UserError("Surface file " + name_ + ", line " + std::to_string(line_) + ": " + what);

@@ -7,8 +7,12 @@
 
 #include <Eigen/Geometry>
 
+#include "base/csv.hpp"
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
 #include "deck/section.hpp"
+#include "deck/words.hpp"
 
 namespace tanktread::stokes {
 
@@ -23,6 +27,9 @@ void FlowHistory::declare(deck::Section& section) {
               "of the `table`, in order; two equal ones make a jump, say where the flow stops; before the first and after the last nothing changes");
   section.key("amplitudes", amplitudes, deck::any(), "1", "at `times`: what the velocity of the flow is multiplied by; 1 if not given");
   section.key("angles", angles, deck::any(), "degree", "at `times`: by which the flow is turned about `axis`; 0 if not given");
+  section.key("file", file, deck::Choice{},
+              "of the `table`, instead of these three: rows of a time, its amplitude and, if all have one, its angle, with commas in between, below "
+              "a row of names that begins with `time` or none; looked for where the program is started and beside the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
               "through the origin, about which `angles` turn the flow, by the right hand; `x2` if not given");
@@ -33,12 +40,36 @@ void FlowHistory::declare(deck::Section& section) {
   section.key("phase", phase, deck::any(), "degree", "of the `sine` at time 0; 0 if not given");
 }
 
+void FlowHistory::read() {
+  if (!file) return;
+  for (const auto& [key, given] : {std::pair{"times", &times}, {"amplitudes", &amplitudes}, {"angles", &angles}})
+    if (*given) throw UserError(std::string("Flow/history/file and Flow/history/") + key + " contradict each other: the file holds all of them.");
+  const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(*file, 80));
+  const std::vector<CsvRow> rows = csv_rows(text_of_file(*file, name, 10'000'000), "time");
+  if (rows.empty()) throw UserError(name + " holds no row of a time and an amplitude.");
+  const std::size_t columns = rows.front().fields.size();
+  times.emplace(), amplitudes.emplace();
+  if (columns == 3) angles.emplace(), axis = axis.value_or("x2");
+  for (const CsvRow& row : rows) {
+    const std::string where = name + formatted(", line %d: ", row.line);
+    if (columns < 2 || columns > 3 || row.fields.size() != columns)
+      throw UserError(where + "a row holds a time, an amplitude and, in all rows or in none, an angle, but this one holds " +
+                      formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
+    times->push_back(csv_number(row.fields[0], where));
+    amplitudes->push_back(csv_number(row.fields[1], where));
+    if (angles) angles->push_back(csv_number(row.fields[2], where));
+    if (times->back() < 0 || (times->size() > 1 && times->back() < times->end()[-2]))
+      throw UserError(where + "times must not be negative, and in order, the earliest first.");
+  }
+}
+
 void FlowHistory::check() const {
   const std::string own = "Flow/history/type `" + type + "`";
   const auto belongs = [&](const char* key, bool given, const char* owner) {
     if (given && type != owner)
       throw UserError(std::string("Flow/history/") + key + " belongs to the type `" + owner + "`, but is given with " + own + ".");
   };
+  belongs("file", file.has_value(), "table");
   belongs("times", times.has_value(), "table");
   belongs("amplitudes", amplitudes.has_value(), "table");
   belongs("angles", angles.has_value(), "table");
@@ -50,7 +81,7 @@ void FlowHistory::check() const {
     if (!frequency) throw UserError(own + " needs Flow/history/frequency.");
     return;
   }
-  if (!times) throw UserError(own + " needs Flow/history/times.");
+  if (!times) throw UserError(own + " needs Flow/history/times or Flow/history/file.");
   if (!amplitudes && !angles) throw UserError(own + " needs Flow/history/amplitudes or Flow/history/angles.");
   if (axis && !angles) throw UserError("Flow/history/axis needs Flow/history/angles.");
   const auto as_many = [&](const char* key, const std::optional<std::vector<double>>& values) {

@@ -19,10 +19,14 @@ struct FlowHistory {
   std::optional<std::vector<double>> times;       ///< of the table, in order; two equal ones are a jump
   std::optional<std::vector<double>> amplitudes;  ///< at these times, straight in between, constant before and after; 1 where there are angles only
   std::optional<std::vector<double>> angles;      ///< at these times, in degrees; 0 where there are none
+  std::optional<std::string> file;                ///< that holds these three
   std::optional<std::string> axis;                ///< about which the flow is turned; set with angles
   std::optional<double> mean, amplitude, frequency, phase;  ///< of the sine: mean + amplitude sin(2 pi frequency t + phase), phase in degrees
 
   void declare(deck::Section& section);
+
+  /// The table of `file`, if it is given, into times, amplitudes and angles.
+  void read();
 
   /// One sentence (UserError) for keys that contradict each other or are missing.
   void check() const;

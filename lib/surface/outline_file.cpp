@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
+#include "base/csv.hpp"
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
+#include "deck/words.hpp"
 #include "surface/outline.hpp"
 
 namespace tanktread::surface {
@@ -18,29 +18,10 @@ struct Row {
   bool corner;
 };
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-std::vector<std::string> fields(const std::string& line) {
-  std::vector<std::string> out;
-  std::stringstream in(line);
-  for (std::string field; std::getline(in, field, ',');) out.push_back(trimmed(field));
-  return out;
-}
-
 class File {
  public:
-  explicit File(const std::string& path) : name_("Tube/outline \"" + path + "\"") {
-    std::istringstream in(text_of_file(path, name_, 10'000'000));
-    int number = 0;
-    for (std::string line; std::getline(in, line);) {
-      ++number;
-      line = trimmed(line.substr(0, line.find('#')));
-      const bool heading = rows_.empty() && line.rfind("x2", 0) == 0;
-      if (!line.empty() && !heading) rows_.push_back(row(number, line));
-    }
+  explicit File(const std::string& path) : name_("Tube/outline \"" + deck::shortened(path, 80) + "\"") {
+    for (const CsvRow& row : csv_rows(text_of_file(path, name_, 10'000'000), "x2")) rows_.push_back(point(row));
     if (rows_.size() > 1 && (rows_.front().x - rows_.back().x).norm() <= same_point * longest_step()) rows_.pop_back();
     check();
   }
@@ -51,27 +32,15 @@ class File {
  private:
   std::string at(int line) const { return name_ + ", line " + std::to_string(line) + ": "; }
 
-  double number(int line, const std::string& text) const {
-    std::size_t used = 0;
-    double value = NAN;
-    try {
-      value = std::stod(text, &used);
-    } catch (const std::logic_error&) {
-    }
-    if (used != text.size() || !(std::abs(value) < 1e75))
-      throw UserError(at(line) + "\"" + text + "\" is not a number below 1e75 in size.");
-    return value;
-  }
-
-  Row row(int line, const std::string& text) const {
-    const auto field = fields(text);
+  Row point(const CsvRow& row) const {
+    const auto& field = row.fields;
+    const std::string here = at(row.line);
     if (field.size() < 2 || field.size() > 3)
-      throw UserError(at(line) + "a point is two numbers x2,x3 and, where two sides meet, the word `corner`, but this line holds " +
+      throw UserError(here + "a point is two numbers x2,x3 and, where two sides meet, the word `corner`, but this line holds " +
                       std::to_string(field.size()) + (field.size() == 1 ? " entry." : " entries."));
     const bool third = field.size() == 3 && !field[2].empty();
-    if (third && field[2] != "corner")
-      throw UserError(at(line) + "the third entry must be `corner` or nothing, but is \"" + field[2] + "\".");
-    return {line, {number(line, field[0]), number(line, field[1])}, third};
+    if (third && field[2] != "corner") throw UserError(here + "the third entry must be `corner` or nothing, but is \"" + field[2] + "\".");
+    return {row.line, {csv_number(field[0], here), csv_number(field[1], here)}, third};
   }
 
   /// Between points that follow each other in the file.

@@ -12,7 +12,9 @@ import numpy
 from harness import PROGRAM, SOURCE, check, close, deck, main, run
 
 sys.path.append(str(SOURCE / "postproc"))
+import animation
 import deformation
+import meshes
 import read
 import refinement
 import render
@@ -69,6 +71,33 @@ def axis_and_label_of_time_agree():
         lowest = _drawn_by(module, "fast").axes[-1]
         check(lowest.get_xlabel() == "time · shear rate", module.__name__, lowest.get_xlabel())
         close(lowest.lines[0].get_xdata()[-1], 0.2, 1e-12, f"end of the curve of {module.__name__}")
+
+
+def pictures_are_without_units():
+    run(deck(DECK), "--output", "plain", "--quiet")
+    micrometres = DECK.replace("simple shear", "simple shear, shear rate: 40, viscosity: 2.0e-2").replace("sphere", "sphere, radius: 3.0e-6")
+    run(deck(micrometres.replace("final time: 0.2", "final time: 5.0e-3").replace("interval: 0.1", "interval: 2.5e-3")), "--output", "si", "--quiet")
+    plain, si = (read.run(name) for name in ("plain", "si"))
+    for field in "traction", "load", "displacement", "velocity", "smallest tension", "mean curvature":
+        one, other = (run.snapshots()[-1].scaled(run).fields[field] for run in (plain, si))
+        close(abs(one - other).max() / abs(one).max(), 0, 1e-4, field)
+        check(plain.label(field) == si.label(field) != field, plain.label(field))
+    for module in shape, animation, meshes:
+        one, other = (_drawn_by(module, name, *(["--frame", "0"] if module is animation else [])).axes for name in ("plain", "si"))
+        for this, that in zip(one, other):
+            for limits in "get_xlim", "get_ylim":
+                a, b = numpy.array(getattr(this, limits)()), numpy.array(getattr(that, limits)())
+                check(abs(a - b).max() <= 1e-3 * numpy.ptp(a), module.__name__, a, b)
+            check(this.get_xlabel() == that.get_xlabel() and this.get_ylabel() == that.get_ylabel(), module.__name__, this.get_xlabel(), that.get_xlabel())
+    quiet = "Tanktread:\n  Flow: {type: quiescent, viscosity: 3}\n  Particle: {%s}\n%s  Surface: {elements per side: 4}\n  Time: {final time: 0.01}\n"
+    for name, text, label in (("drop", quiet % ("radius: 2", "  Membrane: {law: surface tension, surface tension: 5}\n"), "traction / (σ / R$_C$)"),
+                              ("body", quiet % ("radius: 2, motion: prescribed, velocity: [7, 0, 0]", ""), "traction / (μ · speed / R$_C$)")):
+        run(deck(text), "--output", name, "--quiet")
+        found = read.run(name)
+        close(found.snapshots()[0].volume(), 32 * numpy.pi / 3, 0.05, "volume")
+        check(found.label("traction") == label, found.label("traction"))
+        traction = numpy.linalg.norm(found.snapshots()[0].scaled(found).fields["traction"], axis=1)
+        close(traction.mean(), {"drop": 2, "body": 1.5}[name], 0.02, name)  # 2 sigma/R, and 3 mu U/(2 R)
 
 
 def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():

@@ -108,6 +108,15 @@ SETTINGS = [
     (["Solvers/Belos/Maximum Iteration=30"], ["Solvers/Belos/Maximum Iteration", "was Solvers/Belos/Maximum Iterations meant?"]),
     (["Solvers/Belos/Maximum Iterations=many"], ["Solvers/Belos/Maximum Iterations", "whole number", "many"]),
     (["Solvers/Amesos2/Foo=1"], ["Solvers/Amesos2/Foo", "not a parameter"]),
+    # numbers for lists and lists for numbers, in lists of others
+    (["Solvers/Belos/Num Blocks/Verbosity=1"], ["Solvers/Belos/Num Blocks must be a whole number", "a list of keys"]),
+    (["Solvers/Belos/Orthogonalization/Foo/Bar=1"], ["Solvers/Belos/Orthogonalization must be text", "a list of keys"]),
+    (["Solvers/Belos/Output Stream/Foo=1"], ["Solvers/Belos/Output Stream", "no deck can hold"]),
+    (["Solvers/Amesos2/Transpose/Foo=1"], ["Solvers/Amesos2/Transpose must be true or false", "a list of keys"]),
+    (["Solvers/Belos=1"], ["Solvers/Belos must be a list of keys", "1"]),
+    (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Nonlinear Solver/Foo=1"], ["Solvers/NOX/Nonlinear Solver", "cannot solve"]),
+    (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Direction=1"], ["Solvers/NOX/Direction, which is 1", "cannot solve"]),
+    (["Time/nonlinear solver=anderson", "Solvers/NOX/Anderson Parameters/Storage Depth/Foo=1"], ["Solvers/NOX/Anderson Parameters/Storage Depth"]),
     # not of the form Section/key=value
     (["Flow/viscosity"], ["Flow/viscosity", "Section/key=value"]),
     (["viscosity=1"], ["viscosity=1", "Section/key=value"]),
@@ -148,7 +157,7 @@ def _refused(words, *arguments):
     check(len(lines) == 1, f"{len(lines)} lines on standard error:\n{result.stderr}")
     for word in words:
         check(word in lines[0], f"no '{word}' in: {lines[0]}")
-    for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp"):
+    for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp", "filesystem error"):
         check(word not in lines[0], f"'{word}' in: {lines[0]}")
     check(len(lines[0]) < 400, f"{len(lines[0])} characters: {lines[0]}")
     check(result.stdout == "", f"on standard output: {result.stdout}")
@@ -213,8 +222,14 @@ def wrong_files_are_refused():
     _refused(["Tube/outline", "no regular file"], _tube("pipe"))
     _refused(["Surface file pipe", "no regular file"], _imported("pipe"))
     _refused(["too long"], "x" * 300)
-    _refused(["Tube/outline", "too long"], _tube("x" * 300))
-    _refused(["Surface file", "too long"], _imported("x" * 300))
+    for name in "x" * 300, "x/" * 3000:
+        _refused(["Tube/outline", "too long"], _tube(name))
+        _refused(["Surface file", "too long"], _imported(name))
+        for key, said in ("Particle/initial shape/file", "Surface file"), ("Particle/initial shape/run",) * 2, ("Flow/history/file",) * 2:
+            section, inner, last = key.split("/")
+            _refused([said, "too long"], deck(GOOD), deck(f"Tanktread: {{{section}: {{{inner}: {{{last}: {name}}}}}}}\n", "naming.yaml"))
+    said = run(deck(GOOD), "--output", "x" * 300, code=2).stderr
+    check(len(said.splitlines()) == 1 and "too long" in said and "filesystem" not in said, said)
     _refused(["deep.xml", "deep in each other"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
     _refused(["deep.yaml", "deep in each other"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
     _refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))

@@ -61,6 +61,17 @@ TEST(GuardedDynamics, WhatCannotBeEvaluatedMakesAStepShorterUnderEveryScheme) {
   }
 }
 
+TEST(GuardedDynamics, AFirstTrialWithoutAVelocityLeavesAStepToBeginWith) {
+  Decay decay;
+  GuardedDynamics motion(decay, never);
+  State state = start(0);
+  const double step = first_step(motion, state, TimeOptions());
+  decay.fails = [&](const Net& x) {
+    if (x(0, 0) < state.x(0, 0)) throw std::logic_error("no basis");
+  };
+  EXPECT_GT(first_step(motion, state, TimeOptions()), 0.1 * step);
+}
+
 TEST(GuardedDynamics, AFailureOfOneRankIsOneOfAll) {
   const coupling::Ranks ranks;
   Decay decay;
