@@ -20,8 +20,8 @@ struct Disc {
   double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
-/// The disc for pieces within r of x that touches the outline at the foot of x and is as curved as the outline is there, or more, so that no place that
-/// may be nearest to such a piece is inside: each trial passes through the place that is farthest inside the one before.
+/// The disc for pieces within r of x that touches the outline at the foot of x and is as curved as the outline is there, or more, so that no place
+/// that may be nearest to such a piece is inside: each trial passes through the place that is farthest inside the one before.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);

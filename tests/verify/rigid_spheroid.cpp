@@ -78,8 +78,8 @@ TEST(RigidSpheroid, FeelsOnlyItsMotionRelativeToTheFlow) {
 }
 
 /// Force and torque of the flow of a deck on a body that is held in it, by the reciprocal theorem: int z.v_inf dG, z the density of a rigid motion.
-/// On an ellipsoid z h^-1 is a polynomial, h dG = abc dOmega over the unit sphere, and Gauss points integrate the product with v_inf exactly. Of a sphere
-/// that is Faxen's law.
+/// On an ellipsoid z h^-1 is a polynomial, h dG = abc dOmega over the unit sphere, and Gauss points integrate the product with v_inf exactly. Of a
+/// sphere that is Faxen's law.
 std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vector<std::string>& settings) {
   Scene scene;
   deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/spheroid_cube.yaml"}, settings);
@@ -117,7 +117,8 @@ TEST(RigidBody, HeldInAParabolicFlowFeelsFaxensForce) {
       of_force[k] = (s.force - force).norm() / force.norm(), of_torque[k] = (s.torque - torque).norm() / torque.norm();
     }
     std::printf("semi-axes %.2f %.2f %.2f: force off by %.1e, %.1e, order %.1f; torque by %.1e, %.1e, order %.1f\n", semi_axes[0], semi_axes[1],
-                semi_axes[2], of_force[0], of_force[1], order(of_force[0], of_force[1]), of_torque[0], of_torque[1], order(of_torque[0], of_torque[1]));
+                semi_axes[2], of_force[0], of_force[1], order(of_force[0], of_force[1]), of_torque[0], of_torque[1],
+                order(of_torque[0], of_torque[1]));
     EXPECT_LT(of_force[1], 3e-7);
     EXPECT_LT(of_torque[1], 1e-6);
     EXPECT_GE(order(of_force[0], of_force[1]), 5);
