@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/body.hpp"
+#include "app/member.hpp"
 #include "app/scene.hpp"
 #include "deck/document.hpp"
 #include "motion/integrator.hpp"
@@ -21,10 +21,11 @@ class Evolution {
     deck::Document deck = deck::read({}, all);
     deck.declare(scene);
     scene.check();
-    body = tanktread::body(scene);
-    capsule = tanktread::capsule(scene, body, ranks_, phases_, nullptr);
+    members_ = members(scene);
+    arrange(members_);
+    capsule = tanktread::capsule(members_, body(), ranks_, phases_, nullptr);
     scheme_ = motion::integrator(scene.time);
-    state.x = body.initial;
+    state.x = body().initial;
     motion::begin(*capsule, state);
     state.step = motion::first_step(*capsule, state, scene.time);
   }
@@ -42,16 +43,17 @@ class Evolution {
     while (state.time < time) step(time);
   }
 
+  const Body& body() const { return *members_.front().body; }
   surface::Deformation deformation() const { return capsule->geometry().deformation(state.x); }
   double energy() const { return capsule->membrane().energy(state.x); }
 
   Scene scene;
-  Body body;
   std::unique_ptr<coupling::Capsule> capsule;
   motion::State state;
   int steps = 0;
 
  private:
+  std::vector<Member> members_;
   coupling::Ranks ranks_;
   Phases phases_;
   std::unique_ptr<motion::Integrator> scheme_;

@@ -19,11 +19,11 @@ namespace {
 double lowest_wave(int n, double bending) {
   const Evolution run({"Surface/elements per side=" + std::to_string(n)});
   const double shrunk = 0.97;
-  const Net x = shrunk * run.body.rest;
+  const Net x = shrunk * run.body().rest;
   const membrane::Law law = membrane::NeoHookean{1};
-  const membrane::Membrane plain(run.body.space, run.body.rest, law), stiff(run.body.space, run.body.rest, law, 4, {bending, true});
+  const membrane::Membrane plain(run.body().space, run.body().rest, law), stiff(run.body().space, run.body().rest, law, 4, {bending, true});
   const Eigen::MatrixXd tense = assembled_tangent(plain, x), h = assembled_tangent(stiff, x);
-  membrane::MassMatrix mass(run.body.space);
+  membrane::MassMatrix mass(run.body().space);
   const Eigen::MatrixXd scalar = mass.update(x);
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(h.rows(), h.cols());
   for (Eigen::Index a = 0; a < scalar.rows(); ++a)

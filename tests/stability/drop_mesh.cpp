@@ -15,7 +15,7 @@ namespace {
 surface::Quality mesh_at(const std::string& motion, double time) {
   Evolution run({"Flow/type=uniaxial extension", "Membrane/law=surface tension", "Membrane/capillary number=0.1",
                  "Surface/elements per side=4", "Time/tolerance=1e-3", "Interface/motion=" + motion});
-  const surface::BezierMap map(run.body.space);
+  const surface::BezierMap map(run.body().space);
   try {
     run.to(time);
   } catch (const RunFailure&) {

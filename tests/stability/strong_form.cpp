@@ -27,8 +27,8 @@ double length(const Evolution& run) { return run.deformation().lengths.maxCoeff(
 /// Smallest mean curvature over the collocation sites: positive for an ellipsoid, negative in the valleys of a saw-tooth.
 double smallest_curvature(const Evolution& run) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (const auto& sites : run.body.space.collocation)
-    smallest = std::min(smallest, surface::mean_curvature(run.body.space, run.state.x, sites.front()));
+  for (const auto& sites : run.body().space.collocation)
+    smallest = std::min(smallest, surface::mean_curvature(run.body().space, run.state.x, sites.front()));
   return smallest;
 }
 

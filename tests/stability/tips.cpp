@@ -24,8 +24,8 @@ Tip tip(int n, double ca) {
                  "Time/tolerance=1e-3"});
   run.to(4);
   double curvature = std::numeric_limits<double>::infinity();
-  for (const auto& sites : run.body.space.collocation)
-    curvature = std::min(curvature, surface::mean_curvature(run.body.space, run.state.x, sites.front()));
+  for (const auto& sites : run.body().space.collocation)
+    curvature = std::min(curvature, surface::mean_curvature(run.body().space, run.state.x, sites.front()));
   return {run.capsule->membrane().tension_summary(run.state.x).smallest, curvature};
 }
 
@@ -48,14 +48,14 @@ Steady steady(int n, const std::vector<std::string>& settings) {
   all.insert(all.end(), settings.begin(), settings.end());
   Evolution run(all);
   run.to(8);
-  const spline::Space& space = run.body.space;
+  const spline::Space& space = run.body().space;
   const auto reach = [&](const auto& sites) { return surface::value(space, run.state.x, sites.front())[0]; };
   const spline::Site site = std::ranges::max_element(space.collocation, {}, reach)->front();
   const auto area = [&](const Net& net) {
     return surface::jacobian(surface::jet(surface::ElementPoints(space, net, site.element).patch(), site.s, site.t));
   };
   double traction = surface::value(space, run.capsule->load(run.state.x), site).norm();
-  if (run.capsule->measure() == stokes::Measure::reference) traction *= area(run.body.unstressed) / area(run.state.x);
+  if (run.capsule->measure() == stokes::Measure::reference) traction *= area(run.body().unstressed) / area(run.state.x);
   return {traction, run.deformation().taylor_inertia};
 }
 

@@ -80,9 +80,9 @@ TEST(FlowHistory, ATurnOfTheFlowTurnsTheCapsule) {
 }
 
 TEST(FlowHistory, OnlySymmetriesOfEveryDirectionAreUsed) {
-  EXPECT_EQ(Evolution(with(capsule_in_shear, {"Flow/type=planar hyperbolic"})).body.symmetry.description(), "mirror x1, mirror x2 and mirror x3");
+  EXPECT_EQ(Evolution(with(capsule_in_shear, {"Flow/type=planar hyperbolic"})).body().symmetry.description(), "mirror x1, mirror x2 and mirror x3");
   EXPECT_EQ(Evolution(with(capsule_in_shear, {"Flow/type=planar hyperbolic", "Flow/history/times=[0, 1]", "Flow/history/angles=[0, 30]"}))
-                .body.symmetry.description(),
+                .body().symmetry.description(),
             "mirror x2 and point symmetry");
 }
 

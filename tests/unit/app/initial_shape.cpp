@@ -19,7 +19,7 @@ std::vector<std::string> at_rest(std::vector<std::string> more) {
 
 TEST(InitialShape, RelaxesToTheRestingOneAndLosesEnergyInEveryStep) {
   Evolution run(at_rest({"Particle/initial shape/stretch=[1.4, 1, 0.8]"}));
-  const double first = run.energy(), volume = surface::volume(run.body.space, run.body.rest);
+  const double first = run.energy(), volume = surface::volume(run.body().space, run.body().rest);
   EXPECT_NEAR(run.deformation().taylor_inertia, 0.6 / 2.2, 1e-3);  // semi-axes 1.4 and 0.8 to a factor; the mesh of three elements a side
   while (run.state.time < 12) {
     const double energy = run.energy();
@@ -28,7 +28,7 @@ TEST(InitialShape, RelaxesToTheRestingOneAndLosesEnergyInEveryStep) {
   }
   EXPECT_LT(run.energy(), 1e-3 * first);
   EXPECT_LT(run.deformation().taylor_inertia, 0.02);
-  EXPECT_NEAR(surface::volume(run.body.space, run.state.x) / volume, 1, 1e-13);
+  EXPECT_NEAR(surface::volume(run.body().space, run.state.x) / volume, 1, 1e-13);
 }
 
 TEST(InitialShape, ThatIsTheRestingOneIsNoneToTheLastBit) {
@@ -46,17 +46,17 @@ TEST(InitialShape, ThatIsTheRestingOneIsNoneToTheLastBit) {
 TEST(InitialShape, HasTheRestingVolumeUnlessItsOwnIsAskedFor) {
   const std::vector<std::string> shear = at_rest({"Particle/initial shape/map=[1.2, 0, 0.5, 0, 1, 0, 0, 0, 0.7]"});
   Evolution kept(shear);
-  const double rest = surface::volume(kept.body.space, kept.body.rest);
-  EXPECT_NEAR(surface::volume(kept.body.space, kept.state.x) / rest, 1, 1e-14);
+  const double rest = surface::volume(kept.body().space, kept.body().rest);
+  EXPECT_NEAR(surface::volume(kept.body().space, kept.state.x) / rest, 1, 1e-14);
   std::vector<std::string> with_own = shear;
   with_own.push_back("Particle/initial shape/volume=own");
   Evolution own(with_own);
   own.to(0.1);
-  EXPECT_NEAR(surface::volume(own.body.space, own.state.x) / rest, 1.2 * 0.7, 1e-13) << "and keeps it";
+  EXPECT_NEAR(surface::volume(own.body().space, own.state.x) / rest, 1.2 * 0.7, 1e-13) << "and keeps it";
 }
 
 TEST(InitialShape, SaysWhatSymmetryThereIs) {
-  const auto description = [](const char* shape) { return Evolution(at_rest({shape})).body.symmetry.description(); };
+  const auto description = [](const char* shape) { return Evolution(at_rest({shape})).body().symmetry.description(); };
   EXPECT_EQ(description("Particle/initial shape/stretch=[1.4, 1, 0.8]"), "mirror x1, mirror x2 and mirror x3");
   EXPECT_EQ(description("Particle/initial shape/map=[1, 0, 0.5, 0, 1, 0, 0, 0, 1]"), "mirror x2 and point symmetry");
 }

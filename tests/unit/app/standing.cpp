@@ -21,7 +21,7 @@ TEST(Standing, ComesBackFromACheckpoint) {
   standing.coarsenings = 10;
   standing.kernel = {1LL << 40, 12, 13};
   standing.warnings = {0.1, 14, {{"gap", "at time 1 the gap: narrow"}, {"fold", "at time 2 it folds"}}};
-  standing.turning = {370, 0.5};
+  standing.turning = {{370, 0.5}, {-10, 0.25}};
   standing.seconds = {{"far field", 0.5}, {"output", 0.25}};
   output::Checkpoint checkpoint;
   store(standing, checkpoint);
@@ -29,7 +29,8 @@ TEST(Standing, ComesBackFromACheckpoint) {
   store(stored_standing(checkpoint), again);
   EXPECT_EQ(again.numbers, checkpoint.numbers);
   EXPECT_EQ(again.texts, checkpoint.texts);
-  EXPECT_EQ(checkpoint.numbers.size(), 15u + 2 + 2 + 2);
+  EXPECT_EQ(again.arrays.at("phase and tank-treading frequency"), checkpoint.arrays.at("phase and tank-treading frequency"));
+  EXPECT_EQ(checkpoint.numbers.size(), 15u + 2 + 2);
   EXPECT_EQ(stored_standing(checkpoint).kernel.far, 1LL << 40);
   EXPECT_EQ(stored_standing(checkpoint).warnings.said.at(1).sentence, "at time 2 it folds");
 }
