@@ -191,7 +191,7 @@ class Deforming : public Moving {
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
     if (body.flow.affine())
-      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, capsule_->flow().gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
+      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body.flow.gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
     add_treading(member.scene, body, geometry(member), x, member.own(v), now);
     std::optional<double> angle;
     if (!capsule_->particles()[p].slides()) angle = angle_in(body.plane, surface::value(body.nested(), x, member.followed) - now.centre);

@@ -132,7 +132,7 @@ TEST(Contradictions, OfFlowsAreOneSentenceEach) {
             "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 1]}}\n"),
             "Flow/history/type `table` needs Flow/history/amplitudes or Flow/history/angles.");
-  EXPECT_EQ(refusal("  Flow: {history: {amplitudes: [0, 1]}}\n"), "Flow/history/type `table` needs Flow/history/times.");
+  EXPECT_EQ(refusal("  Flow: {history: {amplitudes: [0, 1]}}\n"), "Flow/history/type `table` needs Flow/history/times or Flow/history/file.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2, 1], amplitudes: [0, 1, 2]}}\n"),
             "Flow/history/times must be in order, the earliest first.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2], amplitudes: [0, 1, 2]}}\n"),
