@@ -50,7 +50,8 @@ void ParticleKind::declare_lists(deck::Section& section) {
   if (particle.shape.shape != "file")
     section.section("Surface", surface, "the spline space of its surface");
   else if (section.given("Surface"))
-    throw UserError(section.path("Surface") + " and the particle's shape `file` contradict each other: the spline space is the file's.");
+    throw UserError(section.path("Surface") + " and " + (name.empty() ? "Particle/shape" : section.path("shape")) +
+                    " `file` contradict each other: the spline space is the file's.");
   section.section("Interface", interface, "how the mesh of a drop moves along its interface");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");

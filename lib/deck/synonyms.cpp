@@ -24,7 +24,9 @@ struct Meaning {
   std::string_view what;
 };
 
-constexpr std::array<Meaning, 23> synonyms{{
+constexpr std::array<Meaning, 24> synonyms{{
+    {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
+     "Particles"},
     {"|dt|delta t|time step|timestep|step|step size|stepsize|", "Time/fixed step or Time/initial step"},
     {"|tend|t end|end time|end|tfinal|t final|tmax|t max|max time|maximum time|stop time|duration|simulation time|", "Time/final time"},
     {"|tol|rtol|atol|reltol|abstol|accuracy|error tolerance|", "Time/tolerance"},
@@ -53,9 +55,7 @@ constexpr std::array<Meaning, 23> synonyms{{
 }};
 
 /// By the whole path, by a list, or by the name of the key alone.
-constexpr std::array<Meaning, 14> features{{
-    {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
-     "several particles are lists Particles/<name>, one each"},
+constexpr std::array<Meaning, 13> features{{
     {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
     {"|gravity|g|density|rho|density difference|density ratio|buoyancy|body force|", "gravity and buoyancy are not there"},
     {"|periodic|period|box|box size|domain|unit cell|periodicity|",

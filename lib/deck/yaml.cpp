@@ -121,8 +121,8 @@ class Walk {
         if (!out.back().IsScalar() || ++nodes_ > most_nodes)
           refuse(sequence, !missing_feature(path).empty()
                                ? path + " is not a key of the deck: " + missing_feature(path)
-                               : path + " is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists "
-                                        "of keys have names, as Particles/<name>");
+                               : path + " is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only" +
+                                     (out.back().IsMap() ? ", and lists of keys have names, as Particles/<name>" : ""));
       }
     }
     return out;

@@ -61,7 +61,8 @@ TEST(Sequences, HoldNumbersOrWords) {
   EXPECT_EQ(refusal("    center: [[1, 2], [3]]\n"),
             "deck.yaml, line 3: Kinds/center is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Kinds:\n    - law: soft\n    - law: hard\n"),
-            "deck.yaml, line 3: Kinds is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only.");
+            "deck.yaml, line 3: Kinds is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists of keys "
+            "have names, as Particles/<name>.");
 }
 
 TEST(Keys, WithoutAValueAreNothing) {
