@@ -3,11 +3,12 @@
 # A run whose mesh refines itself: two ranks make the mesh of one, and a run that is taken up after refinements goes on to the last bit.
 import pathlib
 import shutil
+import subprocess
 
 import h5py
 import numpy
 
-from harness import check, deck, main, run, series, summary
+from harness import check, command, deck, main, run, series, summary
 
 DECK = """
 Tanktread:
@@ -19,6 +20,19 @@ Tanktread:
   Output: { interval: 0.1 }
 """
 POLAR = DECK.replace("elements per side: 4, extraordinary points: catmull-clark", "mesh: polar, azimuthal elements: 12, meridional elements: 8")
+GROWING = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particle: { viscosity ratio: 2 }
+  Membrane: { law: surface tension, capillary number: 0.1 }
+  Surface: { elements per side: 3, extraordinary points: catmull-clark }
+  Adaptation: { enabled: true, indicator: variation, reference length: 0.05, levels: 3, largest number of points: %d }
+  Quadrature: { tolerance: 1.0e-2 }
+  Solvers: { double layer: assembled }
+  Symmetry: { use: none }
+  Time: { scheme: bs3, fixed step: 0.002, final time: 0.006 }
+  Output: { interval: 0.1 }
+"""
 NAMES = ["time", "taylor_inertia", "n_control_points", "energy", "smallest_tension", "evaluations"]
 
 
@@ -79,6 +93,23 @@ def the_volume_is_kept_through_every_change_of_the_mesh():
         check(numpy.max(abs(series(points, "volume_error") - (volume / volume[0] - 1))) < 1e-14, series(points, "volume_error"))
         check((numpy.diff(lost) >= 0).all() and 0 < lost[-1] < 1e-2, lost)
     check(lost[-1] > 1e-6, "spaces of `g1` are not nested: a refit moves the surface")
+
+
+def a_change_of_the_mesh_that_fails_is_undone():
+    """56, 218, 866 and 3458 points, of which the last need 860 MB for the double layer alone."""
+    run(deck(GROWING % 900), "--output", "whole", "--quiet")
+    check((_points("whole") == [56, 218, 866, 866]).all(), _points("whole"))
+    words = " ".join(f"'{word}'" for word in command(deck(GROWING % 4000), "--output", "out", "--quiet"))
+    result = subprocess.run(["bash", "-c", f"ulimit -v 700000; {words}"], capture_output=True, text=True, timeout=600)
+    check(result.returncode == 3 and result.stderr.count("\n") == 1, result.returncode, result.stderr)
+    check("not enough memory" in result.stderr and "step 2; the checkpoint of the last good step" in result.stderr, result.stderr)
+    counts = summary("out")["counts"]
+    check(counts["steps"] == 2 and counts["refinements"] == 2, counts)
+    with h5py.File("out/snapshot_000002.hdf", "r") as file:
+        check(len(file["checkpoint/arrays/x"]) == 866, "a checkpoint on another mesh")
+    run("--resume", "out", "--set", "Adaptation/largest number of points=900", "--quiet")
+    for name in NAMES:
+        check(series("whole", name).tobytes() == series("out", name).tobytes(), f"{name} differs")
 
 
 main()
