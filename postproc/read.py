@@ -32,14 +32,15 @@ DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pre
 
 
 class Run:
-    """`series`, `units`, `descriptions` by name; `deck`, the effective deck as nested dicts; `provenance`; `summary` (None before the end)."""
+    """`series`, `units`, `descriptions` by name, `<particle>/<name>` of one of several particles; `deck`, the effective deck as nested dicts; `provenance`; `summary` (None before the end)."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
         with h5py.File(self.directory / "run.h5", "r") as file:
-            self.series = {name: data[:] for name, data in file["series"].items()}
-            self.units = {name: _text(data.attrs["unit"]) for name, data in file["series"].items()}
-            self.descriptions = {name: _text(data.attrs["description"]) for name, data in file["series"].items()}
+            found = _datasets(file["series"])
+            self.series = {name: data[:] for name, data in found.items()}
+            self.units = {name: _text(data.attrs["unit"]) for name, data in found.items()}
+            self.descriptions = {name: _text(data.attrs["description"]) for name, data in found.items()}
             self.deck_text = _text(file["deck"][()])
             self.provenance = {key: _text(value) for key, value in file["provenance"].attrs.items()}
         self.deck = (yaml.safe_load(self.deck_text) or {}).get("Tanktread", {})
@@ -49,6 +50,15 @@ class Run:
     @property
     def name(self):
         return self.directory.resolve().name
+
+    @property
+    def particles(self):
+        """The names of several particles, in the order of the deck; none where there is one."""
+        names = {name.split("/")[0] for name in self.series if "/" in name}
+        kinds = list(self.deck.get("Particles", {}))
+        return sorted(names, key=lambda name: min(((k, int(name[len(kind):] or 0)) for k, kind in enumerate(kinds)
+                                                   if name == kind or (name.startswith(kind + " ") and name[len(kind):].strip().isdigit())),
+                                                  default=(len(kinds), 0)))
 
     @property
     def rate(self):
@@ -78,7 +88,9 @@ class Run:
 
     @property
     def radius(self):
-        """R_C, of the sphere of equal volume."""
+        """R_C, of the sphere of equal volume; of several particles the first one's."""
+        if self.particles:
+            return float(3 * self.series[f"{self.particles[0]}/volume"][0] / (4 * numpy.pi)) ** (1 / 3)
         if self.summary and "numbers" in self.summary:
             return float(self.summary["numbers"]["radius"])
         return self.snapshots()[0].volume() ** (1 / 3) * (3 / (4 * numpy.pi)) ** (1 / 3)
@@ -231,6 +243,13 @@ def time_label(runs):
 def field_label(runs, field, pattern="{}"):
     """What is on the axis of a field of several runs, without units."""
     return " or ".join(dict.fromkeys(one.label(field, pattern) for one in runs))
+
+
+def _datasets(group):
+    """All below a group of HDF5, by their paths."""
+    found = {}
+    group.visititems(lambda name, item: found.update({name: item}) if isinstance(item, h5py.Dataset) else None)
+    return found
 
 
 def _text(value):

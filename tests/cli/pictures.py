@@ -151,6 +151,29 @@ def a_rigid_particle_is_drawn_and_what_it_does_not_have_is_named():
         check("no series taylor_inertia" in said and said.count("\n") == 1, said)
 
 
+def several_particles_are_drawn_and_read_by_name():
+    deck("""
+Tanktread:
+  Flow: { type: simple shear }
+  Particles:
+    defaults: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } }
+    upper: { center: [-1.5, 0.0, 0.5] }
+    lower: { center: [1.5, 0.0, -0.5] }
+  Time: { final time: 0.2 }
+""")
+    run("deck.yaml", "--output", "pair", "--quiet")
+    check("smallest gap 1." in _script("encounter.py", "pair"), "the gap of the pair")
+    check("upper/taylor_inertia" in _script("read.py", "pair"), "the series of a particle")
+    _script("shape.py", "pair")
+    check("two particles" in _script("encounter.py", _alone(), code=1), "an encounter of one")
+
+
+def _alone():
+    deck(DECK, "alone.yaml")
+    run("alone.yaml", "--output", "alone", "--quiet")
+    return "alone"
+
+
 def the_readme_names_every_script_and_its_commands_name_what_is_there():
     text = (SOURCE / "README.md").read_text()
     scripts = {path.name for path in (SOURCE / "postproc").glob("*.py") if os.access(path, os.X_OK)}
