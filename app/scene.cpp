@@ -57,6 +57,11 @@ void ParticleKind::declare_lists(deck::Section& section) {
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
 }
 
+void ContactOptions::declare(deck::Section& section) {
+  section.key("limit", limit, deck::between(1e-6, 1), "R_C",
+              "smallest gap between two particles, over the R_C of the smallest one, at which the run goes on; below, it ends with a checkpoint");
+}
+
 namespace {
 
 /// The list Particles.
@@ -94,6 +99,8 @@ void Scene::declare(deck::Section& root) {
     root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
+  if (several || root.documenting())
+    root.section("Contact", contact, "what happens where several particles come close");
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
   tube.present = root.given("Tube");
@@ -334,7 +341,7 @@ bool Scene::lands_on_snapshots() const {
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 
 bool may_change_on_resume(const std::string& path) {
-  if (path == "Tube/contact gap") return true;
+  if (path == "Tube/contact gap" || path == "Contact/limit") return true;
   if (path.starts_with("Particles/")) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
     return of_particle.starts_with("Interface/") || of_particle.starts_with("Adaptation/");

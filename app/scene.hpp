@@ -50,10 +50,18 @@ struct ParticleKind {
   void declare_lists(deck::Section& section);  ///< Membrane, Surface, Interface and Adaptation
 };
 
+/// `Contact/*`: of several particles.
+struct ContactOptions {
+  double limit = 1e-3;  ///< smallest gap, over the R_C of the smallest particle, at which a run goes on
+
+  void declare(deck::Section& section);
+};
+
 /// The options of every room; one list of the deck each.
 struct Scene : ParticleKind {
   stokes::FlowOptions flow;
   std::vector<ParticleKind> particles;  ///< Particles/<name>; none: the one particle that the scene itself is of
+  ContactOptions contact;
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <new>
 #include <optional>
@@ -310,6 +311,17 @@ class Run {
     if (!error.empty()) fail(error);
   }
 
+  /// Of two of several particles.
+  void end_at_contact() {
+    double radius = std::numeric_limits<double>::infinity();
+    for (const ParticleKind& one : scene_.particles) radius = std::min(radius, one.particle.shape.equivalent_radius());
+    const double gap = entry("smallest_gap"), least = scene_.contact.limit * radius;
+    if (gap >= least) return;
+    const auto name = [&](const char* which) { return scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name; };
+    fail("Particles/" + name("first_of_gap") + " and Particles/" + name("second_of_gap") +
+         formatted(" touch: the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
+  }
+
   /// After a step that is done.
   std::string reason_to_stop() {
     if (scene_.tube.present) {
@@ -317,6 +329,7 @@ class Run {
       if (!touching.empty()) fail(touching);
       warn_of_coarse_wall(entry("gap"));
     }
+    if (!scene_.particles.empty()) end_at_contact();
     if (coupling::largest(told_to_stop()) > 0) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;
     if (limit && ranks_.first(watch_.here()) > *limit) return by_clock;

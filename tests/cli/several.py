@@ -141,6 +141,25 @@ Tanktread:
     check(found["status"] == "done" and "first/taylor_inertia" in found["final"], found)
 
 
+def a_run_ends_where_particles_touch_and_goes_on_with_a_smaller_limit():
+    deck("""
+Tanktread:
+  Flow: {type: planar hyperbolic}
+  Particles:
+    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 3}}
+    above: {center: [0.0, 0.0, 1.1]}
+    below: {center: [0.0, 0.0, -1.1]}
+  Contact: {limit: 0.1}
+  Time: {final time: 0.4}
+""")
+    error = run("deck.yaml", "--output", "results", "--quiet", code=3).stderr
+    check("Particles/above and Particles/below touch" in error and "Contact/limit" in error and "checkpoint" in error, error)
+    rows = len(series("results", "time"))
+    run("--resume", "results", "--quiet", "--set", "Contact/limit=1e-3")
+    gap = series("results", "smallest_gap")
+    check(len(gap) > rows and gap.min() < 0.1 and gap[0] > 0.19, gap)
+
+
 def pictures_tell_particles_apart():
     import h5py
 
