@@ -18,7 +18,7 @@ TEST(Texts, KeepEveryCharacter) {
 
 TEST(Texts, InDoubleQuotesKeepTheirEscapes) {
   EXPECT_EQ(kinds("    note: \"a\\tb\\\\c\\\"d\\x41\\u00e9\\n\"\n").note, "a\tb\\c\"dA\xc3\xa9\n");
-  for (const std::string text : {"line\nline", "\ttab\\", std::string(1, '\x7f').c_str()}) {
+  for (const std::string text : {"line\nline", "\ttab\\", "\x7f"}) {
     Sample first, second;
     first.kinds.note = text;
     Document written = read_text("Tanktread: {}\n");
