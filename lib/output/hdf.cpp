@@ -31,11 +31,16 @@ Id text_type(const std::string& text) {
   return type;
 }
 
+/// Links that make the groups on their way.
+Id with_groups() {
+  Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "no list of link properties");
+  check(H5Pset_create_intermediate_group(links, 1), "cannot create groups");
+  return links;
+}
+
 void write_any(hid_t parent, const std::string& name, hid_t type, const Shape& shape, const void* data) {
   const Id space = space_of(shape);
-  const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "no list of link properties");
-  check(H5Pset_create_intermediate_group(links, 1), "cannot create groups");
-  const Id set(H5Dcreate2(parent, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, "cannot create " + name);
+  const Id set(H5Dcreate2(parent, name.c_str(), type, space, with_groups(), H5P_DEFAULT, H5P_DEFAULT), H5Dclose, "cannot create " + name);
   check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write " + name);
 }
 
@@ -61,9 +66,10 @@ Id::Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.cl
 
 Id new_file() {
   silence();
-  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list"), layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "no creation list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
-  return {H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory"};
+  check(H5Pset_istore_k(layout, 1), "no short index");  // a column is one chunk
+  return {H5Fcreate(memory_name().c_str(), H5F_ACC_TRUNC, layout, access), H5Fclose, "no file in memory"};
 }
 
 std::string image(const Id& file) {
@@ -116,6 +122,21 @@ void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> 
   write_any(parent, name, H5T_NATIVE_UINT8, {values.size()}, values.data());
 }
 void write(hid_t parent, const std::string& name, const std::string& text) { write_any(parent, name, text_type(text), {}, text.c_str()); }
+
+Id new_column(hid_t parent, const std::string& name, std::size_t capacity) {
+  const hsize_t none = 0, most = capacity;
+  const Id space(H5Screate_simple(1, &none, &most), H5Sclose, "no data space"), how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "no creation list");
+  check(H5Pset_chunk(how, 1, &most), "no chunk");
+  return {H5Dcreate2(parent, name.c_str(), H5T_NATIVE_DOUBLE, space, with_groups(), how, H5P_DEFAULT), H5Dclose, "cannot create " + name};
+}
+
+void grow(const Id& column, std::span<const double> values, std::size_t known) {
+  const hsize_t first = known, size = values.size(), fresh = size - first;
+  const Id from(H5Screate_simple(1, &fresh, nullptr), H5Sclose, "no data space"), to(H5Screate_simple(1, &size, nullptr), H5Sclose, "no data space");
+  check(H5Sselect_hyperslab(to, H5S_SELECT_SET, &first, nullptr, &fresh, nullptr), "no last places");
+  check(H5Dset_extent(column, &size), "cannot extend a column");
+  check(H5Dwrite(column, H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, values.data() + known), "cannot write to a column");
+}
 
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape) {
   const Id set = dataset(parent, name);

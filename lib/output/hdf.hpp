@@ -47,6 +47,10 @@ void write(hid_t parent, const std::string& name, std::span<const std::int64_t> 
 void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values);
 void write(hid_t parent, const std::string& name, const std::string& text);
 
+/// A column that can grow to `capacity` values, and its growth to these values, of which it holds the first `known` already.
+Id new_column(hid_t parent, const std::string& name, std::size_t capacity);
+void grow(const Id& column, std::span<const double> values, std::size_t known);
+
 std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape);
 std::string read_text(hid_t parent, const std::string& name);
 

@@ -10,8 +10,17 @@
 
 namespace tanktread::output {
 
+/// The file as it stands in memory.
+struct RunRecord::Image {
+  hdf::Id file;
+  std::vector<hdf::Id> columns;
+  std::size_t rows, capacity;
+};
+
 RunRecord::RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance)
     : path_(std::move(path)), deck_(std::move(deck)), provenance_(std::move(provenance)) {}
+RunRecord::~RunRecord() = default;
+RunRecord::RunRecord(RunRecord&&) noexcept = default;
 
 RunRecord RunRecord::load(const std::filesystem::path& path) try {
   const hdf::Id file = hdf::open(path);
@@ -30,6 +39,7 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
 }
 
 void RunRecord::declare(std::string name, std::string unit, std::string description) {
+  image_.reset();
   const auto old = std::ranges::find(series_, name, &Series::name);
   if (old == series_.end()) {
     const std::vector<double> unknown(rows(), std::numeric_limits<double>::quiet_NaN());
@@ -50,10 +60,12 @@ void RunRecord::append(std::span<const double> row) {
 }
 
 void RunRecord::truncate(std::size_t rows) {
+  image_.reset();
   for (Series& one : series_) one.values.resize(std::min(rows, one.values.size()));
 }
 
 void RunRecord::describe(std::string deck, std::map<std::string, std::string> provenance) {
+  image_.reset();
   deck_ = std::move(deck);
   provenance_ = std::move(provenance);
 }
@@ -64,19 +76,26 @@ const std::vector<double>& RunRecord::values(std::string_view name) const {
   return it->values;
 }
 
-void RunRecord::write(Durable durable) const {
-  const hdf::Id file = hdf::new_file();
-  {
-    hdf::write(file, "deck", deck_);
-    const hdf::Id provenance = hdf::new_group(file, "provenance"), series = hdf::new_group(file, "series");
-    for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
-    for (const Series& one : series_) {
-      hdf::write(series, one.name, one.values, {one.values.size()});
-      hdf::attribute(series, one.name, "unit", one.unit);
-      hdf::attribute(series, one.name, "description", one.description);
-    }
+void RunRecord::lay_out() {
+  image_.reset();
+  Image image{hdf::new_file(), {}, 0, rows() + std::max<std::size_t>(63, rows() / 8)};
+  hdf::write(image.file, "deck", deck_);
+  const hdf::Id provenance = hdf::new_group(image.file, "provenance"), series = hdf::new_group(image.file, "series");
+  for (const auto& [key, text] : provenance_) hdf::attribute(provenance, ".", key, text);
+  for (const Series& one : series_) {
+    image.columns.push_back(hdf::new_column(series, one.name, image.capacity));
+    hdf::attribute(series, one.name, "unit", one.unit);
+    hdf::attribute(series, one.name, "description", one.description);
   }
-  write_whole(path_, hdf::image(file), durable);
+  image_ = std::make_unique<Image>(std::move(image));
+}
+
+void RunRecord::write(Durable durable) {
+  if (!image_ || rows() > image_->capacity) lay_out();
+  if (rows() > image_->rows)
+    for (std::size_t i = 0; i < series_.size(); ++i) hdf::grow(image_->columns[i], series_[i].values, image_->rows);
+  image_->rows = rows();
+  write_whole(path_, hdf::image(image_->file), durable);
 }
 
 std::string RunRecord::checksum(std::size_t rows) const {

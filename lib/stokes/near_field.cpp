@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -21,6 +22,33 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
   const int n = degree + 1, n_b = n * n;
   const Vec3 a = point(bezier, n_b, 0), b = point(bezier, n_b, degree), c = point(bezier, n_b, n_b - 1), d = point(bezier, n_b, n_b - n);
   return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
+}
+
+/// Numbers the surfaces that panels make up by the control points that they share; how many there are.
+int connected(const Panels& panels, std::vector<int>& surface) {
+  std::vector<int> first;  // of each control point: a panel that has it, or -1
+  std::vector<int> root(static_cast<std::size_t>(panels.size()));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int e) {
+    while (root[e] != e) e = root[e] = root[root[e]];
+    return e;
+  };
+  for (int e = 0; e < panels.size(); ++e)
+    for (int a = 0; a < panels[e].functions; ++a) {
+      const auto point = static_cast<std::size_t>(panels.points(e)[a]);
+      if (point >= first.size()) first.resize(point + 1, -1);
+      if (first[point] < 0) first[point] = e;
+      root[find(e)] = find(first[point]);
+    }
+  std::vector<int> number(root.size(), -1);
+  int n = 0;
+  surface.resize(root.size());
+  for (int e = 0; e < panels.size(); ++e) {
+    int& mine = number[find(e)];
+    if (mine < 0) mine = n++;
+    surface[e] = mine;
+  }
+  return n;
 }
 
 /// Distance from the panel beyond which `order` points a direction are enough, wherever the target is: about, and not too short.
@@ -42,6 +70,7 @@ NearField::NearField(const Panels& panels, double tolerance, int smooth_order, b
       largest_order_(1 + quadrature::order_for(tolerance, quadrature::ellipse(0, 1))),
       views_(panels.size()),
       reach_(panels.size()) {
+  n_surfaces_ = connected(panels, surface_);
   for (auto& c : centre_) c.resize(panels.size());
 }
 
@@ -64,15 +93,17 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
   bezier_ = &bezier;
   for (int e = 0; e < panels_.size(); ++e)
     if (images.own(e)) view(e);
-  double total = 0;
-  for (const int source : images.source) total += views_[source].area;
-  demand_.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * total);
-  demand_.steep = steep_ ? std::sqrt(total / (4 * std::numbers::pi)) : 0;
+  std::vector<double> total(static_cast<std::size_t>(n_surfaces_), 0.);
+  for (int e = 0; e < panels_.size(); ++e) total[static_cast<std::size_t>(surface_[e])] += views_[images.source[e]].area;
   for (int e = 0; e < panels_.size(); ++e) {
     if (!images.own(e)) continue;
-    const View& view = views_[e];
+    View& view = views_[e];
+    const double area = total[static_cast<std::size_t>(surface_[e])];
+    view.demand = demand_;
+    view.demand.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * area);
+    view.demand.steep = steep_ ? std::sqrt(area / (4 * std::numbers::pi)) : 0;
     const double longest = std::max(view.flat.u.norm(), view.flat.v.norm());
-    const double reach = view.radius + clearance(view.area, longest, demand_, panels_[e].table->order);
+    const double reach = view.radius + clearance(view.area, longest, view.demand, panels_[e].table->order);
     reach_[e] = reach * reach;
   }
   for (int e = 0; e < panels_.size(); ++e) {
@@ -92,7 +123,7 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
 bool NearField::far_enough(const View& view, int order, const Vec3& target) const {
   const quadrature::Sight seen = quadrature::sight(view.flat, target);
   const double rho = std::min(seen.rho_u, seen.rho_v);
-  double power = demand_.error(view.area, seen.distance);
+  double power = view.demand.error(view.area, seen.distance);
   for (int k = 0; k < order && power < 1; ++k) power *= rho * rho;
   return power >= 1;
 }
@@ -112,7 +143,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target) {
   const NodeTable& t = *panels_[panel].table;
   const View& view = views_[panel];
   const quadrature::Sight seen = quadrature::sight(view.flat, target);
-  const int needed = quadrature::order_for(demand_.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
+  const int needed = quadrature::order_for(view.demand.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
   const int order = std::max(needed, t.order + 1);
   if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
     const auto [at, is_new] = whole_.try_emplace({t.degree, order});
@@ -125,7 +156,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target) {
   }
   points_.clear();
   const std::span<const double> bezier(bezier_->data() + panels_[panel].first_bezier, static_cast<std::size_t>(3) * t.n_bernstein);
-  quadrature::graded(bezier, t.degree, target, demand_, points_);
+  quadrature::graded(bezier, t.degree, target, view.demand, points_);
   tabulate(points_, t.degree, parts_);
   return parts_;
 }

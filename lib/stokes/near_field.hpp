@@ -18,7 +18,8 @@ namespace tanktread::stokes {
 /// Near rules by tolerance. A pure function of the present shape: no memory of earlier ones.
 class NearField {
  public:
-  /// `tolerance`: accuracy relative to int dG / r over the whole surface, about sqrt(4 pi area); `steep`: for kernels like 1 / r^2.
+  /// `tolerance`: accuracy relative to int dG / r over the closed surface that a panel belongs to, about sqrt(4 pi area), however many others there
+  /// are; `steep`: for kernels like 1 / r^2.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep);
 
   /// Takes the shape from the Bezier points of panels that are no images. They must outlive the calls below, which ask for those of `panel`, too.
@@ -34,12 +35,15 @@ class NearField {
   struct View {
     quadrature::Patch flat;
     double area = 0, bulge = 0, radius = 0;
+    quadrature::Demand demand;
   };
   void view(int e);
   bool far_enough(const View& view, int order, const Vec3& target) const;
 
   const Panels& panels_;
-  quadrature::Demand demand_;
+  quadrature::Demand demand_;  ///< but for what goes with the area
+  std::vector<int> surface_;   ///< of each panel: which of the surfaces it belongs to
+  int n_surfaces_ = 1;
   bool steep_;
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "spline/extraction.hpp"
+#include "spline/stacked.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 
@@ -45,6 +46,26 @@ const Scene& scene() {
 }
 
 double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
+
+/// What is near, and which rule it gets, goes with the surface's own size: eight of them are as accurate as one.
+TEST(SingleLayer, RulesOfASurfaceDoNotDependOnHowManyThereAre) {
+  const Scene one;
+  std::vector<const spline::Space*> spaces(8, &one.space);
+  const spline::Space space = spline::stacked(spaces);
+  Net x(space.n_points, 3), f(space.n_points, 3);
+  for (const spline::Block& block : spline::blocks(spaces)) {
+    block.rows(x) = one.x.rowwise() + Eigen::RowVector3d(0, 0, 0.1 * block.first_point);
+    block.rows(f) = one.f;
+  }
+  quadrature::Options options;
+  options.tolerance = 1e-5;
+  SingleLayer alone(one.space, options), among(space, options);
+  Net u(one.space.n_points, 3), v(space.n_points, 3);
+  alone.apply(one.x, one.f, Measure::current, one.all, u);
+  among.apply(x, f, Measure::current, one.all, v);
+  EXPECT_EQ(among.evaluations().near, alone.evaluations().near);
+  EXPECT_EQ(among.evaluations().self, alone.evaluations().self);
+}
 
 TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
   for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
