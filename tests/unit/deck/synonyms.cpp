@@ -25,8 +25,8 @@ TEST(UnknownKeys, AreRefusedWithWhatIsMissingOrMeant) {
             "Kinds/Gravity is not a key of the deck: gravity and buoyancy are not there (see Limits in README.md).");
   EXPECT_EQ(refusal("    tend: 1\n"), "Kinds/tend is not a key of the deck; was Time/final time meant?");
   EXPECT_EQ(refusal_of("Tanktread:\n  Particles:\n    - {a: 1}\n"),
-            "deck.yaml, line 3: Particles is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists of keys "
-            "have names, as Particles/<name>.");
+            "deck.yaml, line 3: Particles is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists of "
+            "keys have names, as Particles/<name>.");
 }
 
 }  // namespace
