@@ -76,7 +76,7 @@ Body body(const Scene& scene) {
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   if (scene.particle.rigid() || body.wall) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow);
+  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force());
 }
 
 stokes::Measure load_measure(const Scene& scene) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "app/adaptation.hpp"
 #include "app/drift.hpp"
 #include "app/gaps.hpp"
@@ -22,8 +24,20 @@ namespace tanktread {
 
 namespace {
 
-/// What is known of each particle.
+/// What is known of each rigid body.
+std::vector<Series> rigid_series(const Scene& scene) {
+  std::vector<Series> all = series({"inclination", "volume", "area", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13",
+                                    "stresslet_23", "length_x1", "length_x2", "length_x3", "n_control_points", "centroid_x1", "centroid_x2",
+                                    "centroid_x3", "velocity_x1", "velocity_x2", "velocity_x3", "angular_velocity_x1", "angular_velocity_x2",
+                                    "angular_velocity_x3", "quaternion_0", "quaternion_1", "quaternion_2", "quaternion_3", "drag_x1", "drag_x2",
+                                    "drag_x3", "torque_x1", "torque_x2", "torque_x3"});
+  if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
+  return all;
+}
+
+/// What is known of each other particle.
 std::vector<Series> particle_series(const Scene& scene) {
+  if (scene.particle.rigid()) return rigid_series(scene);
   std::vector<Series> all = series({"taylor_inertia", "taylor_surface", "inclination", "volume", "volume_error", "area", "energy",
                                     "smallest_tension", "compressed_area", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12",
                                     "stresslet_13", "stresslet_23", "length_x1", "length_x2", "length_x3", "normal_velocity", "shape_velocity",
@@ -185,6 +199,7 @@ class Deforming : public Moving {
   /// What a row is made of for particle p, where the fluids move by v.
   Moment moment(std::size_t p, const motion::State& state, const Net& v, const motion::StepReport& report) {
     Member& member = members_[p];
+    if (member.scene.particle.rigid()) return rigid_moment(p, state);
     const Body& body = *member.body;
     const Net x = member.own(state.x), slope = member.own(state.history.front());
     Moment now = tanktread::moment(member.scene, body, geometry(member), membrane(member), x, slope, ranks_);
@@ -197,6 +212,28 @@ class Deforming : public Moving {
     if (!capsule_->particles()[p].slides()) angle = angle_in(body.plane, surface::value(body.nested(), x, member.followed) - now.centre);
     member.turning.advance(report.step, now.treading.frequency, angle);
     now.phase = member.turning.degrees;
+    return now;
+  }
+
+  /// The same for a rigid body.
+  Moment rigid_moment(std::size_t p, const motion::State& state) {
+    const Member& member = members_[p];
+    const Body& body = *member.body;
+    const coupling::RigidParticles& rigid = capsule_->rigid_about(state.x, scene_.time.tolerance);
+    const Net x = member.own(state.x);
+    Moment now;
+    now.n_points = body.space.n_points;
+    now.measures = geometry(member).measures(x);
+    now.shape = deformation(geometry(member), body.plane, x, now.measures, ranks_);
+    now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
+    now.centre = now.measures.centroid;
+    const coupling::RigidMotion motion = rigid.motion(p);
+    now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
+    const Eigen::Quaterniond turn(rigid.turn(p));
+    now.quaternion << turn.w(), turn.vec();
+    now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
+    if (body.flow.affine())
+      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body.flow.gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
     return now;
   }
 
@@ -267,7 +304,10 @@ class Deforming : public Moving {
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto k = static_cast<size_t>(i);
       const std::size_t p = particle_of(nodes.mesh().sites[static_cast<size_t>(range.begin) + k].element);
-      tensions.row(i) = membrane::tensions(members_[p].body->law, std::span(&before[k], 1), std::span(&now[k], 1));
+      if (members_[p].scene.particle.rigid())
+        tensions.row(i).setZero();
+      else
+        tensions.row(i) = membrane::tensions(members_[p].body->law, std::span(&before[k], 1), std::span(&now[k], 1));
       curvature[i] = surface::mean_curvature(now[k]);
       particle[i] = static_cast<double>(p + 1);
     }

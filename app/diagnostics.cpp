@@ -229,7 +229,8 @@ std::vector<double> entries_of_particles(const std::vector<Column>& columns, con
   std::vector<double> found;
   for (size_t k = 0; k < columns.size(); ++k)
     if (columns[k].name.ends_with("/" + std::string(name))) found.push_back(row.at(k));
-  if (found.empty()) found.push_back(entry(columns, row, name));
+  if (const auto own = std::ranges::find(columns, name, &Column::name); found.empty() && own != columns.end())
+    found.push_back(row.at(static_cast<size_t>(own - columns.begin())));
   return found;
 }
 

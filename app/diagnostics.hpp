@@ -76,7 +76,7 @@ std::vector<double> row(std::span<const Series> of, const Moment& now);
 /// The value of one series in a row. Throws std::out_of_range where there is no such series.
 double entry(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name);
 
-/// Those of all particles, `name` and `<particle>/name`, in their order; without the run's own where particles have it. Throws as entry does.
+/// Those of all particles, `name` and `<particle>/name`, in their order; without the run's own where particles have it.
 std::vector<double> entries_of_particles(const std::vector<Column>& columns, const std::vector<double>& row, std::string_view name);
 
 /// What every capsule and drop has that its own shape x and slope tell. Collective.

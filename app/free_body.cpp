@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "app/member.hpp"
 #include "app/moving.hpp"
 #include "app/tube.hpp"
 #include "coupling/rigid_body.hpp"
@@ -42,9 +43,10 @@ class Free : public Moving {
         series_(free_series(scene)), columns_(tanktread::columns(series_)) {
     const Vec3& centre = scene.particle.shape.center;
     if (tube_)
-      free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers);
+      free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers,
+                                                         rigid(scene, body_));
     else
-      free_ = std::make_unique<coupling::FreeBody>(resistance_, centre, body_.radius, body_.flow);
+      free_ = std::make_unique<coupling::FreeBody>(resistance_, centre, body_.radius, body_.flow, rigid(scene, body_));
   }
 
   coupling::Dynamics& dynamics() override { return *free_; }

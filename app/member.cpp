@@ -16,6 +16,13 @@ membrane::Material material(const Scene& scene, const Body& body) {
 
 }  // namespace
 
+coupling::Rigid rigid(const Scene& scene, const Body& body) {
+  const ParticleOptions& particle = scene.particle;
+  const auto given = [](const std::optional<Vec3>& vector) { return vector.value_or(Vec3::Zero()); };
+  return {particle.motion == "prescribed", {given(particle.velocity), given(particle.angular_velocity)},
+          given(particle.force) + body.volume * scene.body_force(), given(particle.torque)};
+}
+
 std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
   for (Scene& one : scene.alone()) {
@@ -78,6 +85,8 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.viscosity_ratio = own.particle.viscosity_ratio;
     particle.material = material(own, body);
     particle.radius = body.radius;
+    particle.body_force = own.body_force();
+    if (own.particle.rigid()) particle.rigid = rigid(own, body);
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
     particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);

@@ -34,6 +34,9 @@ struct Member {
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }  ///< in the record
 };
 
+/// What drives a rigid body; its weight is a force.
+coupling::Rigid rigid(const Scene& scene, const Body& body);
+
 /// All particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 

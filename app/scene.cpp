@@ -20,10 +20,14 @@ void ParticleOptions::declare(deck::Section& section) {
               "lambda: viscosity inside over viscosity outside; at most 1e14 x Solvers/tolerance, and from 1e5 on the particle hardly deforms: "
               "one that does not at all is rigid, Particle/motion `free`");
   section.key("motion", motion, deck::Choice{"deforming", "prescribed", "free"},
-              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, a steady "
-              "problem; `free`: rigid, without force or torque");
+              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, of one particle a "
+              "steady problem; `free`: rigid, with `force` and `torque`, by themselves zero");
   section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
+  section.key("force", force, deck::any(), "force", "on a `free` body, three numbers; zero if not given");
+  section.key("torque", torque, deck::any(), "force x length", "on a `free` body, about the centre of its volume; zero if not given");
+  section.key("density difference", density_difference, deck::any(), "force/(length^3 x Flow/gravity)",
+              "density inside less that of the fluid: with Flow/gravity, a force on each unit of volume; zero if not given");
   section.key("drift", drift, deck::Choice{"free", "held"},
               "`held`: the centroid is put back after every step, which in an affine flow changes no shape; the default at the point of rest of a "
               "flow that draws away from it, where rounding grows into a drift; otherwise `free`");
@@ -200,6 +204,15 @@ void check_motion(const Scene& scene) {
   if (particle.motion != "prescribed" && (particle.velocity || particle.angular_velocity))
     throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
                     " belongs to Particle/motion `prescribed`, but Particle/motion is `" + particle.motion + "`.");
+  if (particle.motion != "free" && (particle.force || particle.torque))
+    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") + " is for Particle/motion `free`, but Particle/motion is `" +
+                    particle.motion + (particle.rigid() ? "`: a body that moves as told takes whatever force that needs."
+                                                        : "`: on what deforms a force is spread, by Particle/density difference and Flow/gravity."));
+  if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
+  if (particle.density_difference && particle.motion == "prescribed")
+    throw UserError("Particle/density difference and " + motion + " contradict each other: a body that moves as told takes whatever force that needs.");
+  if (particle.density_difference && scene.load_is_strong())
+    throw UserError("Particle/density difference and Membrane/load `strong` contradict each other: weight is part of the weak load.");
   if (!particle.rigid()) return;
   if (scene.membrane_given) throw UserError("Membrane and " + motion + " contradict each other: a rigid particle has no membrane.");
   if (scene.volume_given) throw UserError("Volume and " + motion + " contradict each other: a rigid particle keeps its volume.");
@@ -215,7 +228,7 @@ void check_motion(const Scene& scene) {
 
 void check_flow(const Scene& scene) {
   scene.flow.check();
-  if (scene.flow.history && scene.particle.motion == "prescribed")
+  if (scene.flow.history && scene.particle.motion == "prescribed" && scene.name.empty())
     throw UserError("Flow/history and Particle/motion `prescribed` contradict each other: it is a steady problem.");
   if (scene.flow.type == "parabolic" && scene.particle.drift == "held")
     throw UserError("Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
@@ -259,10 +272,9 @@ std::vector<Scene> Scene::alone() const {
 /// What cannot be done with several particles yet, and each of them by itself.
 void Scene::check_several() const {
   if (tube.present) throw UserError("Tube and Particles contradict each other: one particle at a time goes into a tube so far.");
-  for (const Scene& one : alone()) {
+  for (Scene one : alone()) {
+    one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
     const std::string list = "Particles/" + one.name;
-    if (one.particle.rigid())
-      throw UserError(list + "/motion `" + one.particle.motion + "`: of several particles all are `deforming` so far.");
     if (one.load_is_strong() != alone().front().load_is_strong())
       throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
     try {
@@ -329,6 +341,8 @@ double Scene::modulus() const {
   if (particle.rigid()) return 0;
   return tube.present ? membrane.modulus(flow.viscosity, speed(), 1.0) : membrane.modulus(flow.viscosity, flow.rate(), radius());
 }
+
+Vec3 Scene::body_force() const { return particle.density_difference.value_or(0.) * flow.gravity.value_or(Vec3::Zero()); }
 
 double Scene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
 

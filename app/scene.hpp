@@ -28,6 +28,8 @@ struct ParticleOptions {
   std::string motion = "deforming";
   std::optional<Vec3> velocity;          ///< of the centre, of a `prescribed` motion; zero if not given
   std::optional<Vec3> angular_velocity;  ///< about the centre; zero if not given
+  std::optional<Vec3> force, torque;     ///< on a `free` body; zero if not given
+  std::optional<double> density_difference;  ///< times `Flow/gravity` the body force per volume; zero if not given
   std::optional<std::string> drift;      ///< `free`, `held`; see holds_centre
   std::optional<std::string> forces;     ///< on a `prescribed` body: `reciprocal`, `integral`
 
@@ -88,6 +90,7 @@ struct Scene : ParticleKind {
   double rate() const;               ///< speed over radius; of the membrane at rest, modulus/(viscosity x radius), where nothing else moves
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
+  Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
   double bending_modulus() const;    ///< E_b, units force x length
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law
   bool lands_on_snapshots() const;   ///< whether steps are shortened to end there

@@ -359,9 +359,14 @@ class Run {
     return status;
   }
 
-  /// Of all particles.
-  double smallest(std::string_view name) const { return std::ranges::min(entries_of_particles(particle_->columns(), row_, name)); }
-  double largest(std::string_view name) const { return std::ranges::max(entries_of_particles(particle_->columns(), row_, name)); }
+  /// Of all particles that have it; 0 where none has.
+  double smallest(std::string_view name) const { return std::ranges::min(entries(name)); }
+  double largest(std::string_view name) const { return std::ranges::max(entries(name)); }
+  std::vector<double> entries(std::string_view name) const {
+    std::vector<double> all = entries_of_particles(particle_->columns(), row_, name);
+    if (all.empty()) all.push_back(0);
+    return all;
+  }
 
   double entry(std::string_view name) const { return tanktread::entry(particle_->columns(), row_, name); }
 

@@ -46,6 +46,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       mass_(parameters.solvers.direct, parameters.symmetry),
       krylov_(parameters.solvers.krylov, parameters.solvers.belos),
       inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos),
+      rigid_(parameters_.particles, initial, parameters.viscosity),
       tube_(std::move(tube)) {
   surface::Symmetry& symmetry = parameters_.symmetry;
   if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
@@ -137,9 +138,21 @@ const Net& Capsule::energy_gradient(const Net& x) {
   if (same(x, gradient_at_)) return gradient_;
   gradient_.resize(x.rows(), 3);
   membrane_.load(x, own_elements_, gradient_);
+  add_weight(x, gradient_);
   replicate_sums(gradient_);
   gradient_at_ = x;
   return gradient_;
+}
+
+/// -int f.x dV is the energy of a body force f.
+void Capsule::add_weight(const Net& x, Net& gradient) const {
+  for (const Particle& particle : particles()) {
+    if (particle.body_force.isZero(0) || particle.rigid) continue;
+    const spline::Block& block = particle.block;
+    const auto first = std::ranges::lower_bound(own_elements_, block.first_element);
+    const auto last = std::ranges::lower_bound(own_elements_, block.first_element + block.n_elements);
+    geometry_.add_moment_gradient(x, -particle.body_force, block.rows(x).colwise().mean().transpose(), {first, last}, gradient);
+  }
 }
 
 Net Capsule::load(const Net& x) { return same(x, latest_.x) ? latest_.load : load_there(x, nullptr); }
@@ -171,9 +184,10 @@ Net Capsule::flux_vector(const Net& x) {
   return b;
 }
 
-/// P v: of each particle what its volume allows.
+/// P v: of each particle that deforms what its volume allows.
 void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
   for (const Particle& particle : particles()) {
+    if (particle.rigid) continue;
     const auto rows = [&](const Net& net) { return particle.block.rows(net).array(); };
     particle.block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * particle.block.rows(c);
   }
@@ -213,14 +227,25 @@ void Capsule::place(const Net& x) {
 }
 
 Net Capsule::present_velocity(const Net& x, const Net& near) {
+  if (rigid_.empty()) return present_velocity_there(x, near);
+  Net placed = x;
+  rigid_.place(placed);
+  return present_velocity_there(placed, near);
+}
+
+Net Capsule::present_velocity_there(const Net& x, const Net& near) {
   if (!x.allFinite() || (tube_ && !enter_tube(x))) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
-  const Net f = latest_.load = load_there(x, constrained ? &c : nullptr);
+  Net f = load_there(x, constrained ? &c : nullptr);
+  rigid_.add_load(f);
+  latest_.load = f;
   Net v = load_velocity(x, f);
+  rigid_.subtract_told(v);
   if (constrained) constrain(v, b, c);
   if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
+  rigid_.move(v);
   if (!interface_) return v;
   latest_.fluid = symmetric(v);
   const auto clock = phases_.time("interface motion");
@@ -229,14 +254,21 @@ Net Capsule::present_velocity(const Net& x, const Net& near) {
   return v;
 }
 
-/// v_inf - R^-1 A f, and what the wall answers to the load where it is eliminated.
-Net Capsule::load_velocity(const Net& x, const Net& f) {
-  Net u(x.rows(), 3);
+/// A f, at the sites; nothing is summed of no load.
+Net Capsule::applied(const Net& x, const Net& f) {
+  Net u = Net::Zero(x.rows(), 3);
+  if (f.isZero(0)) return u;
   {
     const auto clock = phases_.time("single layer");
     layer_.apply(x, f, measure(), own_points_, u);
   }
   layer_.shared() ? add(u) : replicate(u);
+  return u;
+}
+
+/// v_inf - R^-1 A f, and what the wall answers to the load where it is eliminated.
+Net Capsule::load_velocity(const Net& x, const Net& f) {
+  Net u = applied(x, f);
   if (by_sites()) {
     u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
     if (tube_ && schur()) {
@@ -274,7 +306,8 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
   const auto contrast = [](const Particle& particle) { return std::abs(std::log(particle.viscosity_ratio)); };
   const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
-  if (v.allFinite()) require_convergence(report, formatted("the velocity at viscosity ratio %g", ratio), parameters_.solvers.tolerance);
+  const std::string system = rigid_.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
+  if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
 /// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
@@ -294,7 +327,10 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
       double_layer_->apply(x, v, own_points_, hv);
     }
     !assembled && double_layer_->shared() ? add(hv) : replicate(hv);
-    return viscous(v, hv);
+    if (rigid_.told()) hv -= applied(x, rigid_.completing_load(v)) / parameters_.viscosity;
+    Net bv = viscous(v, hv);
+    rigid_.complete(v, bv);
+    return bv;
   };
   if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);
   const auto project = [&](Net& v) {
@@ -309,7 +345,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     Eigen::Map<Net>(out, n, 3) = bv;
   };
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  Eigen::VectorXd v = near.size() > 0 ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
+  Eigen::VectorXd v = near.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
   note(krylov_.solve(apply, right, v, parameters_.solvers.tolerance), v);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
@@ -329,6 +365,7 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const
 
 /// V = b.x/3, for V is a cubic of x without lower terms. Where that leads nowhere, x is not finite any more.
 void Capsule::restore_volume(Net& x) {
+  rigid_.place(x);
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
   std::vector<double> missing(particles().size());  // over V0
@@ -338,7 +375,7 @@ void Capsule::restore_volume(Net& x) {
     for (std::size_t p = 0; p < missing.size(); ++p) {
       const auto rows = particles()[p].block.rows(x);
       const double volume = (rows.rowwise() - rows.colwise().mean()).cwiseProduct(particles()[p].block.rows(b)).sum() / 3;
-      missing[p] = 1 - volume / volume0_[p];
+      missing[p] = rigid_.holds(p) ? 0 : 1 - volume / volume0_[p];
     }
     if (k > 1 && !larger_than(2e-15)) return;
     if (k == 5) break;
@@ -370,10 +407,12 @@ double Capsule::norm(const Net& displacement) const {
 Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const Particle& particle = particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
-  Mat3 moment = own(energy_gradient(x)).transpose() * own(x);  // int df x dG, since x = sum N_A x_A
-  if (particle.viscosity_ratio != 1) {
-    const Net v = interface_ ? fluid_velocity(x) : slope;
-    moment -= 2 * (1 - particle.viscosity_ratio) * parameters_.viscosity * own(v).transpose() * own(geometry_.volume_gradient(x));
+  Mat3 moment = rigid_.holds(p) ? rigid_.load_moment(p) : Mat3(own(energy_gradient(x)).transpose() * own(x));  // int df x dG, x = sum N_A x_A
+  if (!particle.body_force.isZero(0) && !rigid_.holds(p))  // about the centroid
+    moment += volume0_[p] * particle.body_force * surface::measures(*particle.space, own(x)).centroid.transpose();
+  if (const double contrast = viscosity_contrast(particle); contrast != 0) {
+    const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
+    moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(geometry_.volume_gradient(x));
   }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A capsule or drop, in unbounded flow or in a tube: fluid and membrane meet here.
+// Capsules, drops and rigid bodies, in unbounded flow or one in a tube: fluid and membrane meet here.
 
 #include <functional>
 #include <memory>
@@ -17,6 +17,7 @@
 #include "coupling/options.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/rigid_particles.hpp"
 #include "coupling/tube.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
@@ -46,7 +47,7 @@ struct Work {
   long most_velocity_iterations = 0;  ///< of one of them
 };
 
-/// What capsules and drops are made of and how they are solved.
+/// What particles are made of and how they are solved.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
   std::vector<Particle> particles{1};                            ///< stacked in this order; one alone need not name its space
@@ -65,6 +66,8 @@ struct CapsuleParameters {
 /// A, H: layers over all surfaces, at all; H with the factor 1 - lambda of each. One condition b.v = 0, and one factor of P, a particle.
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
+///
+/// Rigid bodies among them move rigidly (RigidParticles): in their rows the unknown is w of (2.23), and in Jacobian and stiff steps they only follow.
 ///
 /// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
 ///
@@ -112,6 +115,12 @@ class Capsule : public Dynamics {
   /// Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(const Net& x, const Net& slope, std::size_t p = 0);
 
+  /// The rigid bodies among the particles, at the latest place that was asked about, if that is within `distance` (in `norm`) of x.
+  const RigidParticles& rigid_about(const Net& x, double distance) {
+    fluid_velocity_about(x, distance);
+    return rigid_;
+  }
+
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(const Net& x) const;  ///< of all volumes together
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
@@ -132,6 +141,8 @@ class Capsule : public Dynamics {
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   Net present_velocity(const Net& x, const Net& near);
+  Net present_velocity_there(const Net& x, const Net& near);
+  Net applied(const Net& x, const Net& f);
   Net load_there(const Net& x, Net* other);
   void place(const Net& x);
   Net load_velocity(const Net& x, const Net& f);
@@ -142,6 +153,7 @@ class Capsule : public Dynamics {
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
+  void add_weight(const Net& x, Net& gradient) const;
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
@@ -174,6 +186,7 @@ class Capsule : public Dynamics {
   Krylov krylov_, inner_krylov_;
   NodalOperator nodal_;                     // or frozen_, as the options say
   FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
+  RigidParticles rigid_;
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_;
   std::unique_ptr<Tube> tube_;

@@ -45,7 +45,7 @@ void Capsule::linearise(const Net& x) {
   if (by_sites()) gradients_ = flow_.gradients(sites_ * x);
 }
 
-/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta                                                    (4.3)
+/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta, and 0 of rigid bodies                             (4.3)
 Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3), u(delta.rows(), 3);
   tangent_.apply(delta, h);
@@ -61,17 +61,22 @@ Net Capsule::energy_part(const Net& delta) {
     if (tube_) u += tube_->frozen_response(f);
     const Net at_sites = sites_ * delta;
     for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
+    rigid_.clear(u);
     return solved(collocation_, std::move(u));
   }
-  return delta * flow_.gradient(Vec3::Zero()).transpose() - solved(collocation_, std::move(u)) / parameters_.viscosity;
+  Net change = delta * flow_.gradient(Vec3::Zero()).transpose() - solved(collocation_, std::move(u)) / parameters_.viscosity;
+  rigid_.clear(change);
+  return change;
 }
 
-/// B v with B frozen.
+/// B v with B frozen; rigid bodies keep what they have and do nothing to the others.
 Net Capsule::frozen_viscous(const Net& v) {
   if (!double_layer_) return v;
-  Net hv(v.rows(), 3);
-  frozen_double_.apply(v, hv);
+  Net hv(v.rows(), 3), deforming = v;
+  rigid_.clear(deforming);
+  frozen_double_.apply(deforming, hv);
   replicate(hv);
+  rigid_.clear(hv);
   if (!tube_) return viscous(v, hv);
   return v - collocation_.solve(hv + tube_->frozen_response({}, v));
 }

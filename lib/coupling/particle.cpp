@@ -21,10 +21,12 @@ membrane::Materials materials(std::span<const Particle> particles) {
   return result;
 }
 
+double viscosity_contrast(const Particle& particle) { return particle.rigid ? -1 : 1 - particle.viscosity_ratio; }
+
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
   std::vector<double> result;
-  if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.viscosity_ratio == 1; })) return result;
-  for (const Particle& particle : particles) result.insert(result.end(), particle.block.n_elements, 1 - particle.viscosity_ratio);
+  if (std::ranges::all_of(particles, [](const Particle& particle) { return viscosity_contrast(particle) == 0; })) return result;
+  for (const Particle& particle : particles) result.insert(result.end(), particle.block.n_elements, viscosity_contrast(particle));
   return result;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A capsule or drop among others.
+// A capsule, drop or rigid body among others.
 
 #include <optional>
 #include <span>
@@ -7,11 +7,19 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "coupling/rigid_motion.hpp"
 #include "membrane/material.hpp"
 #include "spline/space.hpp"
 #include "spline/stacked.hpp"
 
 namespace tanktread::coupling {
+
+/// What drives a rigid body: force and torque on it, about the centre of its volume; or it moves as told.
+struct Rigid {
+  bool told = false;
+  RigidMotion motion;                                  ///< as told
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< otherwise
+};
 
 /// What a particle is made of. Its rows of the stacked nets are those of `block`.
 struct Particle {
@@ -24,6 +32,9 @@ struct Particle {
   double interface_speed = 0;                 ///< of its relaxing motion, length/time
   std::optional<double> kept_volume;          ///< V0 to be kept, where it is not that of the initial net: on another mesh
 
+  Vec3 body_force = Vec3::Zero();             ///< on each unit of volume of what deforms: density difference x gravity
+  std::optional<Rigid> rigid;                 ///< of a body that does not deform; it has no fluid, no membrane and no interface
+
   bool slides() const { return interface_motion != "material"; }
 };
 
@@ -33,7 +44,10 @@ void place(std::span<Particle> particles);
 /// The materials of all their elements.
 membrane::Materials materials(std::span<const Particle> particles);
 
-/// 1 - lambda of each of their elements; none where all are 0.
+/// The factor of the particle's double layer, 1 - lambda; -1 of a rigid body, whose density is w of (2.23).
+double viscosity_contrast(const Particle& particle);
+
+/// The same of each of their elements; none where all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
 
 }  // namespace tanktread::coupling

@@ -87,9 +87,10 @@ Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
 
 Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
 
-FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow)
-    : RigidParticle(body.surface(), centre, radius, flow), modes_(body, centre, !flow.affine()) {
-  drift_ = modes_.response.leftCols<6>().partialPivLu().solve(modes_.response.rightCols(modes_.response.cols() - 6));
+FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+    : RigidParticle(body.surface(), centre, radius, flow, driven), modes_(body, centre, !flow.affine()) {
+  mobility_ = modes_.response.leftCols<6>().inverse();
+  drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
 }
 
 /// Amplitudes of the modes in the body's axes: what the body moves by relative to the flow, and the strain that it resists.
@@ -105,7 +106,9 @@ Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
       a[affine_modes + k] = -(b == c ? 1 : 2) * d[i] * h(b, c);
     }
   }
-  a.head<6>() = -drift_ * a.tail(a.size() - 6);
+  Eigen::Matrix<double, 6, 1> driven;
+  driven << turn.transpose() * driven_.force, turn.transpose() * driven_.torque;
+  a.head<6>() = mobility_ * driven - drift_ * a.tail(a.size() - 6);
   return a;
 }
 

@@ -1,22 +1,16 @@
 #pragma once
-// A rigid body that no force and no torque acts on, carried by an affine flow or in a tube.
+// A rigid body that a given force and torque act on, or none, carried by an unbounded flow or in a tube.
 
 #include <vector>
 
 #include "base/types.hpp"
 #include "coupling/dynamics.hpp"
+#include "coupling/particle.hpp"
 #include "coupling/resistance.hpp"
+#include "coupling/rigid_motion.hpp"
 #include "stokes/ambient_flow.hpp"
 
 namespace tanktread::coupling {
-
-/// v = U + Omega x (x - centre)
-struct RigidMotion {
-  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
-};
-
-/// U + Omega x (x - centre) at points, a row each; also its control values from a control net, exactly, for the basis sums to one.
-Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre);
 
 /// Resistance to the six rigid motions, the five strains of unit size and, where `quadratic`, the fields y_j y_k e_i with y = x - centre, in the axes
 /// that the body has in `surface`. Whatever an affine flow does to the body is a combination of the first eleven solutions, whatever a flow (2.20)
@@ -38,9 +32,9 @@ Mat3 rotation_of(const Net& place);
 /// Centre and orientation of a rigid body as dx/dt = v(x).
 class RigidParticle : public Dynamics {
  public:
-  /// `surface`: control net of the body at its initial place; `radius`: R_C.
-  RigidParticle(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow)
-      : surface_(surface), centre_(centre), radius_(radius), flow_(flow) {}
+  /// `surface`: control net of the body at its initial place; `radius`: R_C; `driven`: by which force, and torque about the centre.
+  RigidParticle(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+      : surface_(surface), centre_(centre), radius_(radius), flow_(flow), driven_(driven) {}
 
   void at(double time, double start) override { flow_.at(time, start); }
   double next_kink(double time) const override { return flow_.next_kink(time); }
@@ -66,16 +60,17 @@ class RigidParticle : public Dynamics {
   Vec3 centre_;
   double radius_;
   stokes::AmbientFlow flow_;  // at the time told last
+  Rigid driven_;
 
  private:
   long evaluations_ = 0;
 };
 
 /// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega', where (U', Omega')
-/// makes force and torque vanish in what else the flow is about x_c. A few small matrices a call.
+/// makes force and torque what they are, or vanish, in what else the flow is about x_c. A few small matrices a call.
 class FreeBody : public RigidParticle {
  public:
-  FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow);
+  FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
 
   RigidMotion motion(const Net& place) const override;
   Net force_density(const Net& place) const override;
@@ -85,12 +80,13 @@ class FreeBody : public RigidParticle {
   Eigen::VectorXd amplitudes(const Net& place) const;
 
   RigidModes modes_;
+  Eigen::Matrix<double, 6, 6> mobility_;            ///< rigid motion of unit forces and torques
   Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion relative to the flow, for each strain and quadratic field
 };
 
 /// A free body in a tube: at each place the traction and the rigid motion are solved for together,
 ///
-///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = 0,   int r x f dG = 0,
+///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
 /// with u the answer of wall and pressure drop. Belos starts from the solution before. Calls are collective, and those at one place
 /// after another cost one solve. The motion is not finite where the body reaches into the wall.
@@ -98,7 +94,7 @@ class FreeBodyInTube : public RigidParticle {
  public:
   /// `body`: with its tube. `solvers`: of the system above.
   FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
-                 const SolverOptions& solvers);
+                 const SolverOptions& solvers, const Rigid& driven = {});
 
   void at(double time, double start) override {
     if (flow_.at(time, start)) place_ = {};

@@ -29,11 +29,11 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
 }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow) {
+                           const stokes::AmbientFlow& flow, const Vec3& body_force) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
+    return image.signs.cwiseProduct(body_force) == body_force && std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }
 

@@ -22,6 +22,7 @@ void FlowOptions::declare(deck::Section& section) {
               "a of (P-48), for `four-roll`: 1 is planar hyperbolic flow, 0 simple shear turned by 45 degrees, -1 rotation");
   section.key("gradient", gradient, deck::any(), "1/time", "dv_i/dx_j of the `linear` flow, nine numbers row by row, without trace");
   section.key("velocity", velocity, deck::any(), "length/time", "of the `uniform` flow, three numbers");
+  section.key("gravity", gravity, deck::any(), "length/time^2", "acceleration, three numbers, that acts on Particle/density difference");
   if (type == "duct") mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
               "of the `duct` flow: flow rate over area of the section; 1 if not given");

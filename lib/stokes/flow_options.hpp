@@ -21,6 +21,7 @@ struct FlowOptions {
   std::optional<double> roll_parameter;  ///< a of (P-48); set for `four-roll`
   std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`
   std::optional<Vec3> velocity;          ///< set for `uniform`
+  std::optional<Vec3> gravity;           ///< acceleration, of particles with a density difference
   std::optional<double> mean_velocity;   ///< v_m = Q/(area of the section); set for `duct`
   std::optional<std::string> profile;      ///< round, plane; set for `parabolic`
   std::optional<double> maximum_velocity;  ///< of `parabolic`, at x2 = x3 = 0, units length/time

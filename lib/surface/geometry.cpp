@@ -97,6 +97,19 @@ void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Ne
   });
 }
 
+void Geometry::add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const {
+  kernel::Lanes gradient;
+  double one[3 * kernel::most_bezier];
+  each_group(map_, net.rowwise() - origin.transpose(), elements, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+    kernel::moment_gradient(degree, points, g.data(), gradient);
+    const int n = 3 * (degree + 1) * (degree + 1);
+    for (int l = 0; l < static_cast<int>(group.size()); ++l) {
+      for (int k = 0; k < n; ++k) one[k] = gradient.value[k * lanes + l];
+      map_.add_transposed(group[l], one, b);
+    }
+  });
+}
+
 Net Geometry::volume_gradient(const Net& net) const {
   Net b;
   volume_gradient(net, all_, b);

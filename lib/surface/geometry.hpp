@@ -58,6 +58,9 @@ class Geometry {
   void volume_gradient(const Net& net, std::span<const int> elements, Net& b) const;
   Net volume_gradient(const Net& net) const;
 
+  /// The derivative of int g.x dV, int N_A (g.x) n dG, exact; of these elements, added to b, complete as the flux vector is. x counts from `origin`.
+  void add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const;
+
   Measures measures(const Net& net) const;
 
   /// The same of each block of elements (element_blocks.hpp), block after block: those asked for, zero for the others; and measures from all.

@@ -84,15 +84,24 @@ struct Of {
     store(sum, result);
   }
 
-  static void volume_gradient(const Lanes& points, Lanes& gradient) {
+  static void volume_gradient(const Lanes& points, Lanes& gradient) { normal_integrals<n, false>(points, nullptr, gradient); }
+  static void moment_gradient(const Lanes& points, const double* g, Lanes& gradient) { normal_integrals<n_transport, true>(points, g, gradient); }
+
+  /// int B_b n dG, or with the factor g.x.
+  template <int n, bool with_place>
+  static void normal_integrals(const Lanes& points, const double* g, Lanes& gradient) {
     static const Table<p, n> table;
     auto* result = reinterpret_cast<Lane*>(gradient.value);
     for (int k = 0; k < 3 * (p + 1) * (p + 1); ++k) result[k] = Lane{};
     Lane over_t[3][p + 1];
-    each_node<p, n, false>(table, points, [&](int qs, int qt, const Lane(&)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
+    each_node<p, n, with_place>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
       Lane normal[3];
       cross(a1, a2, normal);
       const double weight = table.weight[qs] * table.weight[qt];
+      if constexpr (with_place) {
+        const Lane height = g[0] * x[0] + g[1] * x[1] + g[2] * x[2];
+        for (Lane& component : normal) component *= height;
+      }
       for (int c = 0; c < 3; ++c)
         for (int j = 0; j <= p; ++j) {
           const Lane term = (weight * table.value[qt][j]) * normal[c];
@@ -184,6 +193,10 @@ void volume(int degree, const Lanes& x, double (&volume)[lanes]) {
 
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient) {
   with_degree(degree, [&](auto p) { Of<p>::volume_gradient(x, gradient); });
+}
+
+void moment_gradient(int degree, const Lanes& x, const double* g, Lanes& gradient) {
+  with_degree(degree, [&](auto p) { Of<p>::moment_gradient(x, g, gradient); });
 }
 
 void moments(int degree, const Lanes& x, Moments& result) {

@@ -20,6 +20,9 @@ void volume(int degree, const Lanes& x, double (&volume)[lanes]);
 /// int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, the same points.
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient);
 
+/// int B_b (g.x) n dG, the derivative of int g.x over the interior. Exact, (4p - 1)/2 + 1 Gauss points a direction.
+void moment_gradient(int degree, const Lanes& x, const double* g, Lanes& gradient);
+
 /// Contributions of each element to the area, int dG, and to the integrals of 1, x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior,
 /// by the divergence theorem 1/3 int x.n, 1/4 int x_i x.n, 1/5 int x_i x_j x.n. All but the area exact, (5p - 1)/2 + 1 Gauss points a direction.
 struct Moments {

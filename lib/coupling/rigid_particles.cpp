@@ -1,0 +1,134 @@
+#include "coupling/rigid_particles.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "membrane/mass.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// r x as a matrix.
+Mat3 cross(const Vec3& r) {
+  Mat3 matrix;
+  matrix << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
+  return matrix;
+}
+
+}  // namespace
+
+RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity) {
+  for (const Particle& particle : particles) {
+    of_particle_.push_back(particle.rigid ? static_cast<int>(bodies_.size()) : -1);
+    if (!particle.rigid) continue;
+    Body& body = bodies_.emplace_back();
+    body.block = particle.block;
+    body.rigid = *particle.rigid;
+    body.traction = viscosity / particle.radius;
+    const Net x = particle.block.rows(rest);
+    body.rest_centre = body.centre = surface::measures(*particle.space, x).centroid;
+    body.rest = x.rowwise() - body.centre.transpose();
+    const Eigen::SparseMatrix<double> mass = membrane::MassMatrix(*particle.space, 8).update(x);
+    body.weight = mass * Eigen::VectorXd::Ones(x.rows());
+    body.moment = mass * body.rest;
+    body.first = body.moment.colwise().sum().transpose();
+    body.second = body.moment.transpose() * body.rest;
+    const Mat3 turning = body.second.trace() * Mat3::Identity() - body.second;
+    body.inertia << body.weight.sum() * Mat3::Identity(), -cross(body.first), cross(body.first), turning;
+  }
+}
+
+bool RigidParticles::told() const {
+  return std::ranges::any_of(bodies_, [](const Body& body) { return body.rigid.told; });
+}
+
+/// The rotation by the singular vectors of sum y r^T (Kabsch 1976).
+void RigidParticles::place(Net& x) {
+  if (!x.allFinite()) return;
+  for (Body& body : bodies_) {
+    auto rows = body.block.rows(x);
+    const Eigen::RowVector3d mean = rows.colwise().mean(), rest_mean = body.rest.colwise().mean();
+    const Mat3 product = (rows.rowwise() - mean).transpose() * (body.rest.rowwise() - rest_mean);
+    const Eigen::JacobiSVD<Mat3> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 right = svd.matrixV().transpose();
+    if ((svd.matrixU() * right).determinant() < 0) right.row(2) *= -1;
+    body.turn = svd.matrixU() * right;
+    body.centre = (mean - rest_mean * body.turn.transpose()).transpose();
+    rows = (body.rest * body.turn.transpose()).rowwise() + body.centre.transpose();
+  }
+}
+
+RigidMotion RigidParticles::Body::carrying(const Vec3& f, const Vec3& t) const {
+  Motions right;
+  right << turn.transpose() * f, turn.transpose() * t;
+  const Motions motions = inertia.partialPivLu().solve(right);
+  return {turn * motions.head<3>(), turn * motions.tail<3>()};
+}
+
+RigidMotion RigidParticles::Body::mean(const Net& w) const {
+  const auto rows = block.rows(w);
+  const Mat3 moments = turn * (moment.transpose() * rows);  // int r w
+  return carrying(rows.transpose() * weight, Vec3(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0)));
+}
+
+Net RigidParticles::Body::field(const RigidMotion& motion) const { return rigid_velocity(rest * turn.transpose(), motion, Vec3::Zero()); }
+
+RigidMotion RigidParticles::Body::load() const { return carrying(force, torque); }
+
+void RigidParticles::add_load(Net& load) const {
+  for (const Body& body : bodies_)
+    if (!body.rigid.told) body.block.rows(load) -= body.field(body.carrying(body.rigid.force, body.rigid.torque));
+}
+
+void RigidParticles::subtract_told(Net& v) const {
+  for (const Body& body : bodies_)
+    if (body.rigid.told) body.block.rows(v) -= body.field(body.rigid.motion);
+}
+
+void RigidParticles::complete(const Net& w, Net& v) const {
+  for (const Body& body : bodies_) {
+    body.block.rows(v) -= body.block.rows(w);
+    if (!body.rigid.told) body.block.rows(v) += body.field(body.mean(w));
+  }
+}
+
+Net RigidParticles::completing_load(const Net& w) const {
+  Net load = Net::Zero(w.rows(), 3);
+  for (const Body& body : bodies_)
+    if (body.rigid.told) body.block.rows(load) = body.traction * body.field(body.mean(w));
+  return load;
+}
+
+void RigidParticles::move(Net& v) {
+  for (Body& body : bodies_) {
+    const RigidMotion mean = body.mean(v);
+    body.density = body.block.rows(v);
+    body.force = body.rigid.force, body.torque = body.rigid.torque;
+    if (body.rigid.told) {
+      Motions of_body, integrals;
+      of_body << body.turn.transpose() * mean.velocity, body.turn.transpose() * mean.angular_velocity;
+      integrals = -body.traction * body.inertia * of_body;
+      body.force = body.turn * integrals.head<3>(), body.torque = body.turn * integrals.tail<3>();
+    }
+    body.motion = body.rigid.told ? body.rigid.motion : mean;
+    body.block.rows(v) = body.field(body.motion);
+  }
+}
+
+void RigidParticles::clear(Net& net) const {
+  for (const Body& body : bodies_) body.block.rows(net).setZero();
+}
+
+/// Of df = -(a + b x r).
+Mat3 RigidParticles::load_moment(std::size_t p) const {
+  const Body& of = body(p);
+  const RigidMotion load = of.load();
+  const Mat3 second = of.turn * of.second * of.turn.transpose();
+  return -(load.velocity * (of.turn * of.first).transpose() + cross(load.angular_velocity) * second);
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,80 @@
+#pragma once
+// Rigid bodies among capsules and drops.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "coupling/particle.hpp"
+#include "coupling/rigid_motion.hpp"
+
+namespace tanktread::coupling {
+
+/// The limit lambda -> infinity of (2.22). There v = V + w/(lambda - 1) on the body, V = U + Omega x r, and
+///
+///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + what the others' v and w do                            (2.23)
+///
+/// w takes the place of v in the unknowns. A rigid motion in it does nothing, so the nearest one, <w>, is free to say the rest: of a body on which
+/// force and torque are given, V = <w> and df = -(a + b x r), which has that force and torque on the fluid; of one whose V is given,
+/// df = (mu/R_C) <w>, and its force follows. Completed double layer: Power & Miranda 1987; Kim & Karrila 1991, chapter 15.
+///
+/// Nets are those of all particles. A body's rows of a net x are read as the rigid image of it at rest that is nearest to them.
+class RigidParticles {
+ public:
+  /// `rest`: net of all particles; of others than rigid ones nothing is kept. `viscosity`: mu of the outer fluid.
+  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity);
+
+  bool empty() const { return bodies_.empty(); }
+  bool told() const;  ///< whether any moves as told
+
+  /// Puts every body where its rows of x are nearest to it, and its rows there.
+  void place(Net& x);
+
+  void add_load(Net& load) const;            ///< the load of given forces and torques
+  void subtract_told(Net& v) const;          ///< V of the bodies that move as told
+  void complete(const Net& w, Net& v) const; ///< rows of v: w goes out of them, <w> comes in where force and torque are given
+  Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as told, 0 elsewhere
+  void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
+  void clear(Net& net) const;                ///< 0 in all rows of bodies
+
+  /// Whether particle p is one, and what it does and feels where velocities were asked for last.
+  bool holds(std::size_t p) const { return of_particle_[p] >= 0; }
+  const RigidMotion& motion(std::size_t p) const { return body(p).motion; }
+  const Net& density(std::size_t p) const { return body(p).density; }  ///< w, its own rows
+  Vec3 force(std::size_t p) const { return body(p).force; }            ///< on the fluid
+  Vec3 torque(std::size_t p) const { return body(p).torque; }          ///< on the fluid, about the centre
+  const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< of its volume
+  Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< from where it was at rest
+  Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
+
+ private:
+  using Motions = Eigen::Matrix<double, 6, 1>;
+  struct Body {
+    spline::Block block;
+    Rigid rigid;
+    double traction = 0;  // mu/R_C
+    Net rest;             // about the centre
+    Eigen::VectorXd weight;              // int N_A dG
+    Net moment;                          // int N_A r dG
+    Eigen::Matrix<double, 6, 6> inertia;  // of the surface: int and int r x of the six rigid motions
+    Mat3 second;                          // int r r dG
+    Vec3 first;                           // int r dG
+    Vec3 rest_centre, centre;
+    Mat3 turn = Mat3::Identity();
+    Net density;
+    RigidMotion motion;
+    Vec3 force, torque;
+
+    RigidMotion mean(const Net& w) const;      // <w>, w of all particles
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
+    Net field(const RigidMotion& motion) const;                         // its rows of it
+    RigidMotion load() const;                                           // a and b of the force on the fluid
+  };
+  const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
+
+  std::vector<Body> bodies_;
+  std::vector<int> of_particle_;  // its number among the bodies, or -1
+};
+
+}  // namespace tanktread::coupling
