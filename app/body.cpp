@@ -123,6 +123,11 @@ std::string time_line(const Scene& scene, double points, int n_evaluated, int ra
                           ranks, ranks > 1 ? "s" : ""));
 }
 
+std::string rigid_line(const Scene& scene, int n_points) {
+  return formatted("rigid, %s: no membrane, no mesh that moves; a double layer, in a system of %d unknowns a velocity (2.23)",
+                   scene.particle.motion == "free" ? "free" : "moving as told", 3 * n_points);
+}
+
 output::Entries<std::string> plan_of_several(const Scene& scene, const Body& all, int ranks) {
   const bool tree = stokes::sums_by_tree(all.space, scene.quadrature);
   output::Entries<std::string> lines = {{"particles", formatted("%d, in one system", static_cast<int>(scene.particles.size()))},
@@ -135,7 +140,8 @@ output::Entries<std::string> plan_of_several(const Scene& scene, const Body& all
                                         {"symmetry", "none looked for among several particles"}};
   std::string last;
   for (const Scene& one : scene.alone()) {
-    const std::string line = membrane_line(one) + "; " + viscosity_line(one, all.space.n_points, tree) + "; mesh " + mesh_line(one);
+    const std::string line = one.particle.rigid() ? rigid_line(one, all.space.n_points)
+                             : membrane_line(one) + "; " + viscosity_line(one, all.space.n_points, tree) + "; mesh " + mesh_line(one);
     if (lines.back().second == line)
       last = " … " + one.name;
     else

@@ -139,7 +139,7 @@ output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, in
                                     std::string(body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
                                     ", solved once, are all that it can meet"
                             : "rigid, its motion prescribed: no membrane, nothing moves in time"},
-          {"forces", free                                   ? "none"
+          {"forces", free ? scene.particle.force || scene.particle.torque || scene.particle.density_difference ? "as given" : "none"
                      : scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves"
                                                              : "integrals of the traction"},
           {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},

@@ -59,6 +59,7 @@ void ParticleKind::declare_lists(deck::Section& section) {
   section.section("Interface", interface, "how the mesh of a drop moves along its interface");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
+  if (particle.rigid() && !name.empty()) membrane_given = adaptation.enabled = false;  // what defaults say of them is for those that have them
 }
 
 void ContactOptions::declare(deck::Section& section) {

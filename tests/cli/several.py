@@ -18,6 +18,7 @@ Tanktread:
     capsule: {center: [-1.5, 0.0, 0.4]}
     drop: {center: [1.5, 0.0, -0.4], viscosity ratio: 5.0, Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 4}}
     small: {like: capsule, center: [0.0, 2.5, 0.0], radius: 0.8}
+    ball: {motion: free, center: [0.0, -2.0, 0.0], shape: ellipsoid, semi-axes: [0.8, 0.6, 0.7]}
   Time: {fixed step: 0.02, final time: 0.12}
   Solvers: {tolerance: 1.0e-12}
   Output: {interval: 0.04}
@@ -168,7 +169,7 @@ def pictures_tell_particles_apart():
     picture = sorted(pathlib.Path("mixed").glob("snapshot_*.hdf"))[-1]
     with h5py.File(picture, "r") as file:
         particle = file["VTKHDF/PointData/particle"][:]
-    check(set(particle) == {1, 2, 3}, set(particle))
+    check(set(particle) == {1, 2, 3, 4}, set(particle))
 
 
 COPIES = """
@@ -233,12 +234,15 @@ def mistakes_of_copies_are_named():
 def mistakes_are_named():
     deck(MIXED)
     for setting, words in (
-        ("Particles/small/center=[1.5, 0, 0]", ["Particles/drop and Particles/small overlap", "1.3"]),
+        ("Particles/small/center=[1.5, 0, 0]", ["Particles/drop and Particles/small overlap", "about ["]),
         ("Particles/small/center=[1.5, 0.0, -0.4]", ["Particles/small is inside of Particles/drop"]),
         ("Particles/small/like=drp", ["Particles/small/like", "drp"]),
         ("Particles/capsule/like=small", ["/like must be", "not made like this one"]),
         ("Particles/small/centre=[0, 0, 0]", ["Particles/small/centre", "Particles/small/center"]),
-        ("Particles/small/motion=free", ["Particles/small/motion", "deforming"]),
+        ("Particles/small/motion=rigid", ["Particles/small/motion", "prescribed"]),
+        ("Particles/ball/velocity=[1, 0, 0]", ["Particles/ball", "Particle/velocity", "prescribed"]),
+        ("Particles/small/force=[1, 0, 0]", ["Particles/small", "Particle/force", "free"]),
+        ("Particles/small/density difference=1", ["Particles/small", "Flow/gravity"]),
         ("Particles/small/Membrane/load=strong", ["Particles/small/Membrane/load"]),
         ("Particles/drop/Interface/motion=sideways", ["Particles/drop/Interface/motion", "relaxed"]),
         ("Membrane/law=Skalak", ["Membrane and Particles contradict", "Particles/defaults"]),
