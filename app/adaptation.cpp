@@ -1,7 +1,9 @@
 #include "app/adaptation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "coupling/agreement.hpp"
@@ -25,6 +27,7 @@ struct Subject {
   const spline::Block& block;
   const motion::State& state;
   Net x;  ///< its own shape
+  std::span<const double> films;
 };
 
 /// The body and the state carried over by `move`, which gives a net of this particle on the new space.
@@ -101,13 +104,42 @@ std::vector<Item> agreed(const std::vector<Item>& mine) {
   return items;
 }
 
+std::vector<std::array<double, 2>> lengths_of(const std::vector<std::array<surface::Resolution, 2>>& resolution) {
+  std::vector<std::array<double, 2>> lengths;
+  for (const auto& [along_s, along_t] : resolution) lengths.push_back({along_s.length, along_t.length});
+  return lengths;
+}
+
+std::vector<std::array<double, 2>> lengths_of(const std::vector<surface::ElementMetrics>& metrics) {
+  std::vector<std::array<double, 2>> lengths;
+  for (const surface::ElementMetrics& one : metrics) lengths.push_back({one.along[0].length, one.along[1].length});
+  return lengths;
+}
+
+/// Of elements(mesh), from those of the space.
+std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
+  std::vector<double> widths;
+  if (films.empty()) return widths;
+  const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
+  widths.assign(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, std::numeric_limits<double>::infinity());
+  for (size_t e = 0; e < films.size(); ++e) widths[static_cast<size_t>(tile[e])] = std::min(widths[static_cast<size_t>(tile[e])], films[e]);
+  return widths;
+}
+
 Findings findings(const Subject& particle, const surface::FieldAt& traction) {
-  const auto& [scene, body, block, state, x] = particle;
+  const auto& [scene, body, block, state, x, films] = particle;
   const motion::AdaptationOptions& options = scene.adaptation;
+  const std::vector<double> widths = widths_of_mesh(body, films);
   const auto of = [&](auto indicator) {
-    auto merges = agreed(motion::merges(indicator, options));
-    return Findings{[found = std::move(indicator)](const motion::AdaptationOptions& limits) { return agreed(motion::marks(found, limits)); },
-                    std::move(merges)};
+    const std::vector<std::array<double, 2>> lengths = lengths_of(indicator);
+    std::vector<spline::Merge> merges = motion::merges(indicator, options);
+    if (!widths.empty()) motion::keep_films(lengths, widths, options, merges);
+    return Findings{[found = std::move(indicator), lengths, widths](const motion::AdaptationOptions& limits) {
+                      std::vector<spline::Mark> marks = motion::marks(found, limits);
+                      if (!widths.empty()) motion::add_films(lengths, widths, limits, marks);
+                      return agreed(marks);
+                    },
+                    agreed(merges)};
   };
   if (options.indicator == "error")
     return of(surface::resolution(body.mesh, body.nested(), body.unstressed, x, options.load_tolerance ? traction : surface::FieldAt()));
@@ -131,7 +163,7 @@ void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>
 
 /// Cuts all that is marked; where that gives more points than allowed, what is marked with limits twice, four times, ... as large.
 Adapted refined(const Subject& of, const Findings& found) {
-  const auto& [scene, body, block, state, x] = of;
+  const auto& [scene, body, block, state, x, films] = of;
   const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
   const size_t before = spline::anchors(body.mesh).size();
   Adapted result;
@@ -164,7 +196,7 @@ std::vector<bool> elements_over(const Body& body, const std::vector<double>& def
 
 /// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
-  const auto& [scene, body, block, state, x] = of;
+  const auto& [scene, body, block, state, x, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
     spline::Coarsening coarsening = spline::coarsen(body.mesh, merges, rules(body));
     auto target = on_mesh(of, std::move(coarsening.mesh));
@@ -192,8 +224,8 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
 }  // namespace
 
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area) {
-  const Subject particle{scene, body, block, state, block.rows(state.x)};
+                bool per_unstressed_area, std::span<const double> films) {
+  const Subject particle{scene, body, block, state, block.rows(state.x), films};
   const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
                                                         : surface::field_of_net(body.nested(), load);
   const Findings found = findings(particle, traction);

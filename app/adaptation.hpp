@@ -2,6 +2,7 @@
 // The same particle on another mesh.
 
 #include <memory>
+#include <span>
 
 #include "app/body.hpp"
 #include "motion/integrator.hpp"
@@ -21,8 +22,9 @@ struct Adapted {
 
 /// Cuts what the indicator marks, or takes back what it allows to be longer. Every field of the state goes along: both surfaces, the scheme's
 /// slopes, the geometry of the frozen operator, whose rows of other particles than `block` stay. `load`: control values of this particle's load at
-/// state.x, per area of the unstressed surface if `per_unstressed_area`. The same on every rank.
+/// state.x, per area of the unstressed surface if `per_unstressed_area`. `films`: the width beside each element of body.nested(), or none. The same
+/// on every rank.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area);
+                bool per_unstressed_area, std::span<const double> films);
 
 }  // namespace tanktread

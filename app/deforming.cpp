@@ -18,6 +18,7 @@
 #include "spline/locate.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
+#include "surface/shapes.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {
@@ -116,6 +117,7 @@ class Deforming : public Moving {
     };
     if (std::ranges::none_of(members_, due)) return false;
     const auto clock = phases_.time("adaptation");
+    placed_ = capsule_->rigid_at(state.x);
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(capsule_->load(state.x)));
     for (std::size_t p = 0; p < members_.size(); ++p)
@@ -240,15 +242,29 @@ class Deforming : public Moving {
   /// Another mesh for particle p, if its present one asks for it.
   void adapt(std::size_t p, const Net& load, motion::State& state, Standing& standing) {
     Member& member = members_[p];
-    Adapted change = adapted(member.scene, *member.body, member.block, state, load, capsule_->measure() == stokes::Measure::reference);
+    std::vector<double> widths;
+    if (all_) widths = films(members_, p, state.x);
+    Adapted change = adapted(member.scene, *member.body, member.block, state, load, capsule_->measure() == stokes::Measure::reference, widths);
     remark_on(member, change, state.time);
     if (!change.body) return;
     const int more = change.body->space.n_points - member.block.n_points;
     before_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
     state = std::move(change.state);
     member.block.n_points += more;
+    if (placed_ && placed_->holds(p)) fit_again(p, state.x);
     for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
     (change.finer ? standing.refinements : standing.coarsenings) += 1;
+  }
+
+  /// The shape of a rigid body is known: on another mesh it is fitted again, and goes where it was.
+  void fit_again(std::size_t p, Net& x) {
+    const Member& member = members_[p];
+    Body& body = *member.body;
+    body.rest = surface::fitted_again(body.space, body.rest, member.scene.particle.shape);
+    body.initial = body.unstressed = body.rest;
+    const Vec3 centre = surface::measures(body.space, body.rest).centroid;
+    member.block.rows(x) =
+        ((body.rest.rowwise() - centre.transpose()) * placed_->turn(p).transpose()).rowwise() + placed_->centre(p).transpose();
   }
 
   /// Goes on with the members' present bodies, in the shape x.
@@ -280,7 +296,7 @@ class Deforming : public Moving {
          formatted("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all "
                    "their cuts",
                    options.largest_number_of_points));
-    remark(change.body && change.finer && change.change > 1e-12, "moved surface",
+    remark(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
          formatted(
              "refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
              change.change));
@@ -334,6 +350,7 @@ class Deforming : public Moving {
   coupling::Work work_;                     // of systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // the same
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had
+  std::optional<coupling::RigidParticles> placed_;  // before the mesh changes
   std::vector<Warning> remarks_;
   bool holds_centre_ = scene_.particles.empty() && holds_centre(scene_);
 };

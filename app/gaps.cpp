@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "surface/closest_points.hpp"
+#include "surface/films.hpp"
 
 namespace tanktread {
 
@@ -107,6 +108,21 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
   for (std::size_t k = 0; k < all.size(); k += 6)
     if (all[k] < found.gap) found = {all[k], static_cast<int>(all[k + 1]), static_cast<int>(all[k + 2]), {all[k + 3], all[k + 4], all[k + 5]}};
   return found;
+}
+
+std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x) {
+  const Body& body = *members[p].body;
+  const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
+  std::vector<surface::Patches> placed;
+  for (std::size_t q = 0; q < members.size(); ++q)
+    if (q != p) placed.emplace_back(surface::BezierMap(members[q].body->space), members[q].own(x));
+  std::vector<const surface::Patches*> others;
+  for (const surface::Patches& other : placed) others.push_back(&other);
+  const motion::AdaptationOptions& options = members[p].scene.adaptation;
+  double longest = 0;  // the diagonal of the largest element
+  for (int e = 0; e < own.size(); ++e)
+    longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
+  return surface::film_widths(own, others, std::pow(longest / *options.film_resolution, 2) / options.radius);
 }
 
 }  // namespace tanktread

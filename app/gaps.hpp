@@ -15,4 +15,8 @@ void check_apart(const std::vector<Member>& members);
 /// The smallest gap between any two particles at x, to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks);
 
+/// Width of the film beside each element of particle p at x, on its nested space, as far as its mesh has to know: elements of the first mesh are
+/// short enough beside wider ones.
+std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x);
+
 }  // namespace tanktread

@@ -58,8 +58,9 @@ void ParticleKind::declare_lists(deck::Section& section) {
                     " `file` contradict each other: the spline space is the file's.");
   section.section("Interface", interface, "how the mesh of a drop moves along its interface");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
+  if (!name.empty()) adaptation.film_resolution = 0.7;
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
-  if (particle.rigid() && !name.empty()) membrane_given = adaptation.enabled = false;  // what defaults say of them is for those that have them
+  if (particle.rigid() && !name.empty()) membrane_given = false;  // what defaults say of it is for those that have one
 }
 
 void ContactOptions::declare(deck::Section& section) {
@@ -219,7 +220,7 @@ void check_motion(const Scene& scene) {
   if (scene.volume_given) throw UserError("Volume and " + motion + " contradict each other: a rigid particle keeps its volume.");
   if (particle.viscosity_ratio != 1)
     throw UserError("Particle/viscosity ratio and " + motion + " contradict each other: there is no fluid in a rigid particle.");
-  if (scene.adaptation.enabled)
+  if (scene.adaptation.enabled && scene.name.empty())
     throw UserError("Adaptation/enabled and " + motion + " contradict each other: the mesh of a rigid particle stays as it is.");
   if (particle.shape.initial)
     throw UserError("Particle/initial shape and " + motion + " contradict each other: a rigid particle has the shape that it has.");
@@ -249,6 +250,8 @@ void check_tube(const Scene& scene) {
 }
 
 void check_adaptation(const Scene& scene) {
+  if (scene.adaptation.film_resolution && scene.name.empty())
+    throw UserError("Adaptation/film resolution is for several particles: there are no films between others.");
   if (!scene.adaptation.enabled) return;
   if (scene.particle.shape.imported)
     throw UserError("Adaptation/enabled and Particle/shape `file` contradict each other: a spline space from a file has no mesh to refine.");

@@ -119,14 +119,21 @@ class Run {
       resume(*resumed);
       return;
     }
-    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     state_.x = particle_->start();
+    prepare();
+    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     motion::begin(motion, state_);
     if (!motion.failure().empty()) throw RunFailure("the velocity of the initial shape cannot be had: " + motion.failure());
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
     record();
     settle();
     save();
+  }
+
+  /// Particles that start side by side need a mesh for the film between them.
+  void prepare() {
+    if (scene_.particles.empty()) return;
+    for (int k = 0; k < 8 && particle_->adapt(state_, standing_); ++k) results_.remesh(particle_->body(), particle_->bezier());
   }
 
   void resume(Resumed& resumed) {

@@ -115,6 +115,13 @@ class Capsule : public Dynamics {
   /// Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(const Net& x, const Net& slope, std::size_t p = 0);
 
+  /// The rigid bodies among the particles, placed as x says.
+  RigidParticles rigid_at(Net x) const {
+    RigidParticles rigid = rigid_;
+    rigid.place(x);
+    return rigid;
+  }
+
   /// The rigid bodies among the particles, at the latest place that was asked about, if that is within `distance` (in `norm`) of x.
   const RigidParticles& rigid_about(const Net& x, double distance) {
     fluid_velocity_about(x, distance);

@@ -32,6 +32,9 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
               "D_ref: an element that is longer than this times its width is cut; 2.5 if not given");
   section.key("order", order, deck::positive(), "1", "kappa: how strongly a variation above its reference shortens elements; 1 if not given");
+  section.key("film resolution", film_resolution, deck::positive(), "1",
+              "among several particles: longest element beside a film, over the square root of its width times R_C; 0.7 if not given. Halvings beside a "
+              "film end with `levels` only");
   section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut; the default is in R_C");
   section.key("interval", interval, deck::at_least(1), "steps", "accepted steps between two looks at the mesh");
   section.key("levels", levels, deck::between(0, 8), "1", "how often an element of the first mesh may be halved in a direction");
@@ -69,7 +72,7 @@ void AdaptationOptions::check(int first_points, double first_length) const {
 AdaptationOptions AdaptationOptions::coarser(double factor) const {
   AdaptationOptions result = *this;
   result.surface_tolerance *= factor;
-  for (std::optional<double>* limit : {&result.load_tolerance, &result.reference_length, &result.limit_aspect_ratio})
+  for (std::optional<double>* limit : {&result.film_resolution, &result.load_tolerance, &result.reference_length, &result.limit_aspect_ratio})
     if (*limit) **limit *= factor;
   return result;
 }
@@ -121,6 +124,37 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
     if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0] ? 1 : 0, merge[1] ? 1 : 0});
   }
   return found;
+}
+
+namespace {
+
+double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
+
+}  // namespace
+
+void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
+               std::vector<spline::Mark>& marks) {
+  std::vector<spline::Mark> found;
+  auto marked = marks.begin();
+  for (int e = 0; e < static_cast<int>(lengths.size()); ++e) {
+    const auto k = static_cast<size_t>(e);
+    const double most = longest(widths[k], options);
+    spline::Mark mark{e, lengths[k][0] > most, lengths[k][1] > most};
+    if (marked != marks.end() && marked->element == e) mark.s |= marked->s, mark.t |= marked->t, ++marked;
+    if (mark.s || mark.t) found.push_back(mark);
+  }
+  marks = std::move(found);
+}
+
+void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
+                std::vector<spline::Merge>& merges) {
+  for (spline::Merge& merge : merges) {
+    const auto k = static_cast<size_t>(merge.element);
+    const double most = options.coarsening_margin * longest(widths[k], options);
+    if (2 * lengths[k][0] > most) merge.s = 0;
+    if (2 * lengths[k][1] > most) merge.t = 0;
+  }
+  std::erase_if(merges, [](const spline::Merge& merge) { return merge.s == 0 && merge.t == 0; });
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 // Where the mesh is to be cut and where cuts may be taken back.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct AdaptationOptions {
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref
   std::optional<double> order;                             ///< kappa
+  std::optional<double> film_resolution;                   ///< longest element beside a film over sqrt(width x R_C); set among several particles
   double minimum_length = 0.035;                           ///< L_min, a floor under every cut
   int interval = 1;                                        ///< accepted steps between checks
   int levels = 4;                                          ///< how often an element of the first mesh may be halved in a direction
@@ -54,6 +56,13 @@ std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metr
 
 /// Elements that stay below `coarsening margin` of every limit of (P-37) when they are twice as long, in the directions in which they do.
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
+
+/// An element that is longer than `film resolution` times sqrt(width x R_C), width that of the film beside it, is cut; it is not merged where it
+/// would be. `lengths`: along s and t, and widths, of elements(mesh). Marks and merges of the same element become one; L_min does not count.
+void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
+               std::vector<spline::Mark>& marks);
+void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
+                std::vector<spline::Merge>& merges);
 
 /// The same by estimated errors (1.5): cut along a where L_a > L_min and one of them is above its tolerance; merge where all those of the element
 /// twice as long stay below `coarsening margin` of it.

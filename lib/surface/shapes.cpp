@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "surface/cube_sphere.hpp"
 #include "surface/geometry.hpp"
 #include "surface/polar_sphere.hpp"
@@ -42,14 +44,30 @@ Vec3 red_cell(const Vec3& x) {
   return {x[0], x[1], x[2] / 2 * (0.21 + 2.0 * r2 - 1.12 * r2 * r2)};
 }
 
+namespace {
+
+/// From the unit sphere, or the red cell of unit radius, to the shape about its centre.
+Mat3 map_of(const ParticleShape& shape) {
+  const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
+  return shape.rotation() * semi_axes.asDiagonal();
+}
+
+}  // namespace
+
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape) {
   Net net = unit_sphere;
   if (shape.shape == "red cell") net = fit.fit_image(net, [](const Vec3& x) { return red_cell(x.normalized()); });
-  const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
-  const Mat3 map = shape.rotation() * semi_axes.asDiagonal();
-  net = net * map.transpose();
+  net = net * map_of(shape).transpose();
   net.rowwise() += shape.center.transpose();
   return net;
+}
+
+Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape) {
+  if (shape.shape == "red cell" || shape.shape == "file") return net;
+  const LeastSquaresFit fit(space);
+  Net sphere = (net.rowwise() - shape.center.transpose()) * map_of(shape).inverse().transpose();
+  for (int k = 0; k < 3; ++k) sphere = fit.fit_image(sphere, [](const Vec3& x) -> Vec3 { return x.normalized(); });
+  return resting_shape(fit, sphere, shape);
 }
 
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {

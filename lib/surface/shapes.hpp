@@ -26,6 +26,9 @@ Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const Part
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
+/// The resting shape `net` of an ellipsoid, in place, fitted again on the space that it is on by now; any other shape as it is.
+Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
+
 /// The surface of a file, its centroid moved to the deck's centre and turned about it.
 Net imported_shape(const ParticleShape& shape);
 
