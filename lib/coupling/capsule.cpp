@@ -33,6 +33,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
     : space_(space),
       unstressed_(unstressed),
+      rest_(initial),
       flow_(flow),
       parameters_(placed(parameters, space)),
       ranks_(ranks),
@@ -346,7 +347,13 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   Eigen::VectorXd v = near.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
-  note(krylov_.solve(apply, right, v, parameters_.solvers.tolerance), v);
+  if (!alone_) alone_.emplace(particles(), rest_, parameters_.quadrature, parameters_.viscosity);
+  const auto precondition = [&](const double* in, double* out) {
+    Net y = Eigen::Map<const Net>(in, n, 3);
+    alone_->solve(rigid_, y);
+    Eigen::Map<Net>(out, n, 3) = y;
+  };
+  note(krylov_.solve(apply, right, v, parameters_.solvers.tolerance, alone_->empty() ? Krylov::Apply() : precondition), v);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
   return solution;

@@ -14,6 +14,7 @@
 #include "coupling/interface_motion.hpp"
 #include "coupling/krylov.hpp"
 #include "coupling/nodal_operator.hpp"
+#include "coupling/one_body.hpp"
 #include "coupling/options.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
@@ -174,7 +175,7 @@ class Capsule : public Dynamics {
   bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
 
   const spline::Space& space_;
-  Net unstressed_;
+  Net unstressed_, rest_;
   stokes::AmbientFlow flow_;
   CapsuleParameters parameters_;
   Ranks& ranks_;
@@ -194,6 +195,7 @@ class Capsule : public Dynamics {
   NodalOperator nodal_;                     // or frozen_, as the options say
   FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
   RigidParticles rigid_;
+  std::optional<OneBodyInverses> alone_;  // made when first needed
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_;
   std::unique_ptr<Tube> tube_;

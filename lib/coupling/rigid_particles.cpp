@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -121,6 +122,14 @@ void RigidParticles::move(Net& v) {
 
 void RigidParticles::clear(Net& net) const {
   for (const Body& body : bodies_) body.block.rows(net).setZero();
+}
+
+Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
+  const Body& of = body(p);
+  const Motions row = of.inertia.inverse().row(k).transpose();
+  Net functional = of.weight * row.head<3>().transpose();
+  for (Eigen::Index a = 0; a < functional.rows(); ++a) functional.row(a) += row.tail<3>().cross(Vec3(of.moment.row(a).transpose())).transpose();
+  return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
 }
 
 /// Of df = -(a + b x r).

@@ -1,0 +1,61 @@
+#include "coupling/one_body.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "coupling/collocation.hpp"
+#include "stokes/double_layer.hpp"
+#include "stokes/single_layer.hpp"
+
+namespace tanktread::coupling {
+
+OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Net& rest, const quadrature::Options& quadrature, double viscosity) {
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const Particle& particle = particles[p];
+    if (!particle.rigid || particle.block.n_points > most_points) continue;
+    const Net own = particle.block.rows(rest), shape = own.rowwise() - own.row(0);
+    const auto alike = std::ranges::find_if(factors_, [&](const Use& use) {
+      const Factors& of = *use.factors;
+      return of.told == particle.rigid->told && of.rest.rows() == shape.rows() && (of.rest - shape).norm() <= 1e-12 * shape.norm();
+    });
+    factors_.push_back({p, particle.block, alike == factors_.end() ? factored(particle, own, quadrature, viscosity) : alike->factors});
+  }
+}
+
+/// R B = R (v -> <v>) - H, or with (1/mu) A (v -> (mu/R_C) <v>).
+std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::factored(const Particle& particle, const Net& rest,
+                                                                          const quadrature::Options& quadrature, double viscosity) {
+  auto factors = std::make_shared<Factors>();
+  factors->rest = rest.rowwise() - rest.row(0);
+  factors->told = particle.rigid->told;
+  factors->sites = collocation_matrix(*particle.space);
+  std::vector<int> all(static_cast<std::size_t>(particle.space->n_points));
+  std::iota(all.begin(), all.end(), 0);
+  stokes::Rows<double> matrix;
+  stokes::DoubleLayer(*particle.space, quadrature).assemble(rest, all, matrix);  // -H of the factor -1
+  Particle alone = particle;
+  alone.block = spline::whole(*particle.space);
+  const RigidParticles body({&alone, 1}, rest, viscosity);
+  stokes::SingleLayer layer(*particle.space, quadrature);
+  layer.set_reference(rest);
+  for (int k = 0; k < 6; ++k) {
+    RigidMotion unit;
+    (k < 3 ? unit.velocity : unit.angular_velocity)[k % 3] = 1;
+    Net field = rigid_velocity(rest, unit, body.centre(0)), at_sites = factors->sites * field;
+    if (factors->told) layer.apply(rest, field / particle.radius, stokes::Measure::reference, all, at_sites);
+    matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * body.mean_functional(0, k).transpose();
+  }
+  factors->lu.compute(matrix.cast<float>());
+  return factors;
+}
+
+void OneBodyInverses::solve(const RigidParticles& placed, Net& y) const {
+  for (const auto& [particle, block, factors] : factors_) {
+    const Mat3 turn = placed.turn(particle);
+    const Net right = factors->sites * Net(block.rows(y) * turn);
+    const Eigen::VectorXf solution = factors->lu.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), right.size()).cast<float>());
+    block.rows(y) = Eigen::Map<const Net>(solution.cast<double>().eval().data(), right.rows(), 3) * turn.transpose();
+  }
+}
+
+}  // namespace tanktread::coupling

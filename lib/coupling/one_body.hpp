@@ -1,0 +1,48 @@
+#pragma once
+// What a rigid body would do alone, as a preconditioner of the system of all.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "coupling/rigid_particles.hpp"
+#include "quadrature/options.hpp"
+
+namespace tanktread::coupling {
+
+/// Factors of (2.23) for each rigid body alone, in its own axes: they serve wherever it goes, and equal bodies have them in common. In single
+/// precision, for they only precondition; a body of more than `most_points` control points goes without.
+class OneBodyInverses {
+ public:
+  static constexpr int most_points = 2000;
+
+  /// `rest`: net of all particles; `viscosity`: mu of the outer fluid.
+  OneBodyInverses(std::span<const Particle> particles, const Net& rest, const quadrature::Options& quadrature, double viscosity);
+
+  bool empty() const { return factors_.empty(); }
+
+  /// Rows of bodies become what each alone would have for them; all others stay. `placed`: where the bodies are.
+  void solve(const RigidParticles& placed, Net& y) const;
+
+ private:
+  struct Factors {
+    Net rest;  // about its first point
+    bool told;
+    Eigen::SparseMatrix<double> sites;  // R
+    Eigen::PartialPivLU<Eigen::MatrixXf> lu;
+  };
+  struct Use {
+    std::size_t particle;
+    spline::Block block;
+    std::shared_ptr<const Factors> factors;
+  };
+  static std::shared_ptr<const Factors> factored(const Particle& particle, const Net& rest, const quadrature::Options& quadrature, double viscosity);
+
+  std::vector<Use> factors_;
+};
+
+}  // namespace tanktread::coupling
