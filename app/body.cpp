@@ -66,7 +66,8 @@ Body body(const Scene& scene) {
   b.radius = scene.radius();
   b.modulus = scene.modulus();
   b.law = law(scene.membrane, b.modulus);
-  b.wall = wall(scene, b);
+  check_fit(scene, b);
+  if (scene.name.empty()) b.wall = wall(scene, b);
   b.symmetry = symmetry(scene, b, b.initial);
   const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
   b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
@@ -133,11 +134,12 @@ output::Entries<std::string> plan_of_several(const Scene& scene, const Body& all
   output::Entries<std::string> lines = {{"particles", formatted("%d, in one system", static_cast<int>(scene.particles.size()))},
                                         {"surface", formatted("%d control points, %d elements in all", all.space.n_points,
                                                               static_cast<int>(all.space.elements.size()))},
-                                        {"flow", unbounded_flow(scene)},
                                         {"far sum", tree ? "by clusters of nodes and targets" : "every target meets every node"},
                                         {"volume", scene.volume.constraint + ", of each"},
                                         {"time", time_line(scene, all.space.n_points, all.space.n_points, ranks)},
                                         {"symmetry", "none looked for among several particles"}};
+  const output::Entries<std::string> fluid = all.wall ? tube_plan(scene, all, ranks) : output::Entries<std::string>{{"flow", unbounded_flow(scene)}};
+  lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
   std::string last;
   for (const Scene& one : scene.alone()) {
     const std::string line = one.particle.rigid() ? rigid_line(one, all.space.n_points)

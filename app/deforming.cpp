@@ -83,7 +83,7 @@ class Deforming : public Moving {
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), of_run_(run_series(scene)), columns_(deforming_columns(scene)) {
     check_apart(members_);
-    set_up(tube(members_.front().scene, *members_.front().body, phases));
+    set_up();
     for (Member& member : members_) {
       const Body& body = *member.body;
       member.followed = site_ahead(body.nested(), body.rest, geometry(member).measures(body.rest).centroid, body.plane);
@@ -166,7 +166,10 @@ class Deforming : public Moving {
       of_run.energy += now.energy, of_run.n_points += now.n_points, of_run.stresslet += now.stresslet;
       of_run.velocity += now.velocity / static_cast<double>(members_.size());
     }
-    if (body().wall) add_tube(*capsule_, state.x, v, of_run);
+    if (body().wall) {
+      if (all_) check_spread(*body().wall, capsule_->geometry(), state.x);
+      add_tube(*capsule_, state.x, of_run);
+    }
     if (all_) of_run.nearest = smallest_gap(members_, state.x, ranks_);
     std::vector<double> row = tanktread::row(of_run_, of_run);
     row.insert(row.end(), of_particles.begin(), of_particles.end());
@@ -185,11 +188,19 @@ class Deforming : public Moving {
   const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
   const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
 
-  /// Everything that belongs to the present meshes.
-  void set_up(std::unique_ptr<coupling::Tube> tube) {
+  /// Everything that belongs to the present meshes. The wall of a tube stays what it was.
+  void set_up() {
+    const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
     arrange(members_);
     all_ = together(members_);
-    capsule_ = capsule(members_, body(), ranks_, phases_, std::move(tube));
+    if (all_ && scene_.tube.present) all_->wall = before ? before->wall : wall(scene_, *all_);
+    std::unique_ptr<coupling::Tube> around;
+    if (capsule_ && capsule_->tube())
+      around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
+    else
+      around = tube(scene_, body(), phases_);
+    capsule_.reset();
+    capsule_ = capsule(members_, body(), ranks_, phases_, std::move(around));
   }
 
   /// Of the fluids on the surface. In a tube it is asked for, as the slope carries what is left of the scheme's iteration, over the step.
@@ -271,13 +282,7 @@ class Deforming : public Moving {
   void settle(const Net& x) {
     if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
     if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
-    std::unique_ptr<coupling::Tube> around;
-    if (capsule_ && capsule_->tube())
-      around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
-    else
-      around = tube(members_.front().scene, *members_.front().body, phases_);
-    capsule_.reset();
-    set_up(std::move(around));
+    set_up();
     capsule_->work() = work_;
     for (Member& member : members_)
       if (member.scene.adaptation.enabled) member.followed = spline::Locator(member.body->nested())(member.place);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/results.hpp"
+#include "app/tube.hpp"
 #include "base/errors.hpp"
 
 namespace tanktread {
@@ -31,6 +32,10 @@ std::vector<Member> members(const Scene& scene) {
     member.scene = std::move(one);
     member.body = std::make_unique<Body>(body(member.scene));
   }
+  if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
+    only.wall = wall(all.front().scene, only);
+    only.symmetry = surface::Symmetry(only.space.n_points);  // none is looked for in a tube
+  }
   return all;
 }
 
@@ -56,7 +61,7 @@ std::unique_ptr<Body> together(const std::vector<Member>& members) {
   for (const Member& member : members) spaces.push_back(&member.body->space);
   all->space = spline::stacked(spaces);
   const Body& first = *members.front().body;
-  all->flow = first.flow, all->plane = first.plane, all->law = first.law, all->modulus = first.modulus;
+  all->flow = first.flow, all->duct = first.duct, all->plane = first.plane, all->law = first.law, all->modulus = first.modulus;
   all->radius = 0;
   for (Net Body::* const net : {&Body::rest, &Body::initial, &Body::unstressed}) {
     ((*all).*net).resize(all->space.n_points, 3);

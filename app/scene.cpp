@@ -275,7 +275,6 @@ std::vector<Scene> Scene::alone() const {
 
 /// What cannot be done with several particles yet, and each of them by itself.
 void Scene::check_several() const {
-  if (tube.present) throw UserError("Tube and Particles contradict each other: one particle at a time goes into a tube so far.");
   for (Scene one : alone()) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
     const std::string list = "Particles/" + one.name;

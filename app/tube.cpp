@@ -12,7 +12,8 @@ namespace tanktread {
 
 namespace {
 
-void check_fit(const Scene& scene, const Body& body, const surface::Outline& outline) {
+void check_fits(const Scene& scene, const Body& body) {
+  const surface::Outline& outline = body.duct->outline();
   const Vec3& centre = scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
   if (from_axis <= 0)
@@ -32,6 +33,16 @@ void check_fit(const Scene& scene, const Body& body, const surface::Outline& out
 
 }  // namespace
 
+void check_fit(const Scene& scene, const Body& body) {
+  if (!scene.tube.present) return;
+  try {
+    check_fits(scene, body);
+  } catch (const UserError& error) {
+    if (scene.name.empty()) throw;
+    throw UserError("Particles/" + scene.name + ": " + error.what());
+  }
+}
+
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
   if (!scene.tube.present) return {};
   return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0));
@@ -40,7 +51,6 @@ std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body) {
   if (!scene.tube.present) return {};
   const surface::Outline& outline = body.duct->outline();
-  check_fit(scene, body, outline);
   const double centroid = surface::measures(body.space, body.rest).centroid[0];
   const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
   const double length = x1.maxCoeff() - x1.minCoeff();
@@ -55,7 +65,8 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   coupling::TubeParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
   parameters.viscosity_ratio = scene.particle.viscosity_ratio;
-  parameters.measure = load_measure(scene);
+  const auto current = [](const Scene& one) { return load_measure(one) == stokes::Measure::current; };
+  if (std::ranges::any_of(scene.alone(), current)) parameters.measure = stokes::Measure::current;
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
@@ -66,11 +77,10 @@ std::vector<Series> tube_series() {
                  "pressure_drop_by_force"});
 }
 
-void add_tube(coupling::Capsule& capsule, const Net& x, const Net& v, Moment& now) {
+void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now) {
   coupling::Tube& tube = *capsule.tube();
-  const coupling::Tube::Response response = capsule.response(x);
-  now.tube = tube.checks(capsule.load(x), v, response);
-  now.pressure_drop = response.pressure_drop;
+  now.tube = capsule.checks(x);
+  now.pressure_drop = capsule.response(x).pressure_drop;
   now.gap = tube.gap();
 }
 
@@ -81,7 +91,8 @@ output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int
   if (scene.flow.type == "duct")
     own_flow =
         formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
-  const bool system = scene.particle.viscosity_ratio != 1 || scene.solvers.tube != "schur";
+  const auto needs_system = [](const Scene& one) { return one.particle.rigid() || one.particle.viscosity_ratio != 1; };
+  const bool system = std::ranges::any_of(scene.alone(), needs_system) || scene.solvers.tube != "schur";
   const std::string solved = scene.particle.rigid()            ? std::string("eliminated from the system of the traction")
                              : scene.solvers.tube != "schur"   ? "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube
                              : system                          ? std::string("eliminated from the system of the velocity")
@@ -94,8 +105,18 @@ output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int
                              unknowns, solved.c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : "")}};
 }
 
+void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
+  const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out
+  if (wall.length() < needed)
+    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at an "
+                               "end, Tube/length = %.4g is too short",
+                               x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
+}
+
 std::string contact(const Scene& scene, double gap) {
-  const double least = scene.tube.contact_gap * scene.radius();
+  const std::vector<Scene> all = scene.alone();
+  const double least = scene.tube.contact_gap * std::ranges::min(all, {}, &Scene::radius).radius();
   if (gap >= least) return {};
   return formatted("the particle touches the wall: the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g,", gap,
                    scene.tube.contact_gap, least);

@@ -13,18 +13,24 @@ namespace tanktread {
 /// The duct's own flow; in quiescent fluid that of the mean velocity 1, which the pressure drop (2.7) is told by.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
-/// The wall around a particle with control net `rest`. Throws UserError, with the numbers, where the particle does not fit or the tube is too short.
+/// Throws UserError, with the numbers, where the scene's particle does not fit into its tube, if there is one.
+void check_fit(const Scene& scene, const Body& body);
+
+/// The wall around all that the body is, at rest. Throws UserError, with the numbers, where the tube is too short.
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
-/// The tube as the particle meets it; nothing without one.
+/// The tube as the body meets it, which is all particles of the scene; nothing without one.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// Further series of a deformable particle in a tube, and what they are taken from: the particle at x, with the velocity v. Collective.
+/// Further series in a tube, and what they are taken from: the particles at x. Collective.
 std::vector<Series> tube_series();
-void add_tube(coupling::Capsule& capsule, const Net& x, const Net& v, Moment& now);
+void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now);
 
 /// Lines of the plan.
 output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks);
+
+/// Throws RunFailure where particles at x have drawn apart by more than the wall is long.
+void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 /// Why a run must end whose particle is at this distance from the wall: closer than `Tube/contact gap`. Empty if it need not.
 std::string contact(const Scene& scene, double gap);

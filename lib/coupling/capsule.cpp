@@ -68,6 +68,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (tube_) {
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
+    if (particles().size() > 1 || !rigid_.empty()) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
   }
   for (const Particle& particle : particles())
     volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
@@ -214,11 +215,16 @@ Net Capsule::fluid_velocity(const Net& x, const Net& near) {
   return interface_ ? latest_.fluid : v;
 }
 
-Tube::Response Capsule::response(const Net& x) {
-  const Net v = fluid_velocity(x);
+const Tube::Response& Capsule::response(const Net& x) {
+  velocity(x);
   place(x);
-  if (!latest_.response) latest_.response = tube_->respond(load(x), v);
+  if (!latest_.response) latest_.response = tube_->respond(latest_.load, latest_.unknowns);
   return *latest_.response;
+}
+
+Tube::Checks Capsule::checks(const Net& x) {
+  const Tube::Response& known = response(x);
+  return tube_->checks(latest_.load, latest_.unknowns, known);
 }
 
 void Capsule::place(const Net& x) {
@@ -246,7 +252,12 @@ Net Capsule::present_velocity_there(const Net& x, const Net& near) {
   rigid_.subtract_told(v);
   if (constrained) constrain(v, b, c);
   if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
-  rigid_.move(v);
+  latest_.unknowns = v;
+  if (!rigid_.empty()) {
+    latest_.unknowns = symmetric(v);
+    latest_.load += rigid_.completing_load(v);
+    rigid_.move(v);
+  }
   if (!interface_) return v;
   latest_.fluid = symmetric(v);
   const auto clock = phases_.time("interface motion");
@@ -341,7 +352,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     Net v = Eigen::Map<const Net>(in, n, 3);
     project(v);
     Net bv = unbounded(v);
-    if (tube_) bv -= collocation_.solve(tube_->respond({}, v).velocity);
+    if (tube_) bv -= collocation_.solve(tube_->respond(rigid_.told() ? rigid_.completing_load(v) : Net(), v).velocity);
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };

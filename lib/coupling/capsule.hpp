@@ -136,7 +136,8 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
 
   /// What the tube answers to load and velocity at x; the tube is left placed there.
-  Tube::Response response(const Net& x);
+  const Tube::Response& response(const Net& x);
+  Tube::Checks checks(const Net& x);  ///< of that answer
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const surface::Geometry& geometry() const { return geometry_; }
@@ -206,6 +207,7 @@ class Capsule : public Dynamics {
   Work work_;
   struct Latest {
     Net x, load, velocity;
+    Net unknowns;  // of the velocity system: the fluids' velocity, of rigid bodies w
     Net fluid;  // of an interface whose control points slide along it
     std::optional<Tube::Response> response;
   };

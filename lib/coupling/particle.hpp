@@ -47,6 +47,9 @@ membrane::Materials materials(std::span<const Particle> particles);
 /// The factor of the particle's double layer, 1 - lambda; -1 of a rigid body, whose density is w of (2.23).
 double viscosity_contrast(const Particle& particle);
 
+/// The same of each of their control points.
+Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particles);
+
 /// The same of each of their elements; none where all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
 

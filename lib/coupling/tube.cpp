@@ -28,6 +28,8 @@ stokes::Evaluations Tube::kernel_evaluations() const {
   return {of_wall.far + of_particle.far, of_wall.near + of_particle.near, of_wall.self + of_particle.self};
 }
 
+void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }
+
 void Tube::set_reference(const Net& unstressed) { particle_->single.set_reference(unstressed); }
 
 void Tube::place(const Net& x) {
@@ -49,9 +51,10 @@ Net Tube::load_on_wall(const Net& f) {
 Net Tube::velocity_on_wall(const Net& v) {
   Net u = Net::Zero(wall_->sites().rows(), 3);
   if (!particle_->dual) return u;
-  particle_->dual->apply(v, particle_->nearest_values(v), wall_->sites(), wall_->own(), u, particle_->kept(particle_->dual_on_wall));
+  const Net strength = particle_->strength(v);
+  particle_->dual->apply(strength, particle_->nearest_values(strength), wall_->sites(), wall_->own(), u, particle_->kept(particle_->dual_on_wall));
   wall_->ranks().replicate(u);
-  return (1 - particle_->parameters.viscosity_ratio) * u;
+  return u;
 }
 
 Net Tube::wall_on_particle(const Net& traction) {
@@ -95,16 +98,15 @@ void Tube::freeze() {
 
 Net Tube::frozen_response(const Net& f, const Net& v) {
   const Particle::Frozen& frozen = particle_->frozen;
-  const double ratio = particle_->parameters.viscosity_ratio,
-               pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
+  const double pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
   Net on_wall = Net::Zero(wall_->sites().rows(), 3), part = on_wall;
   if (f.size() > 0) {
     frozen.single.apply(f, part);
     on_wall -= part / viscosity();
   }
   if (v.size() > 0 && particle_->dual) {
-    frozen.dual.apply(v, part);
-    on_wall += (1 - ratio) * part;
+    frozen.dual.apply(particle_->strength(v), part);
+    on_wall += part;
   }
   wall_->ranks().replicate(on_wall);
   Net u(particle_->sites.rows(), 3);

@@ -1,5 +1,5 @@
 #pragma once
-// A particle in a tube: the wall's traction and the pressure drop, eliminated.
+// Particles in a tube: the wall's traction and the pressure drop, eliminated.
 
 #include <memory>
 #include <span>
@@ -22,7 +22,7 @@ class Wall;
 
 struct TubeParameters {
   double viscosity = 1;                                  ///< mu of the outer fluid
-  double viscosity_ratio = 1;                            ///< lambda
+  double viscosity_ratio = 1;                            ///< lambda, of all particles, if they do not differ
   stokes::Measure measure = stokes::Measure::reference;  ///< of the particle's load
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
@@ -37,7 +37,7 @@ struct TubeParameters {
 /// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of the traction on the wall, dp that of the pressure
 /// drop between the ends, Q the flow rate of v_inf; in quiescent fluid v_inf is the duct's flow of any mean velocity.
 ///
-/// The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the particle's centroid. So what depends on the wall alone
+/// Several particles are one surface here, C all of it. The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the particle's centroid. So what depends on the wall alone
 /// is assembled and factored once. Points of the particle are true ones everywhere; nets of the wall are in the wall's frame. Nets are replicated;
 /// calls are collective but for queries.
 class Tube {
@@ -51,6 +51,9 @@ class Tube {
 
   /// The unstressed particle, which Measure::reference needs.
   void set_reference(const Net& unstressed);
+
+  /// 1 - lambda of the particle that each control point is of, -1 of a rigid body, whose `v` is w of (2.23): where there are several.
+  void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// The particle's control net, in true places. All that follows belongs to this shape.
   void place(const Net& x);

@@ -33,7 +33,7 @@ std::vector<int> everybody(Eigen::Index n) {
 /// The flow rate through the inlet is the transpose of c: of a force f at y it is f.c(y)/mu. So no point of the cap is needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
-  const double mu = viscosity(), factor = 1 - particle.parameters.viscosity_ratio, dp = response.pressure_drop;
+  const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
   const stokes::Cap& inlet = wall_->inlet();
   if (flow_weights_.size() == 0) {
@@ -56,11 +56,11 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
     }
   }
   if (v.size() > 0 && particle.dual) {
-    particle.dual->values(v, value);
+    particle.dual->values(particle.strength(v), value);
     const auto &node = particle.dual->nodes(), &normal = particle.dual->normals();
     for (std::size_t k = 0; k < value[0].size(); ++k)
-      flow += factor * inlet.double_layer_flow(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
-                                               Vec3(normal[0][k], normal[1][k], normal[2][k]));
+      flow += inlet.double_layer_flow(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
+                                      Vec3(normal[0][k], normal[1][k], normal[2][k]));
   }
   const double flow_of_pressure = -dot(flow_weights_, wall_->pumped()) / mu + own_flow_ / mu;
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
@@ -76,7 +76,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
 
 double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
-  const double mu = viscosity(), factor = 1 - particle.parameters.viscosity_ratio;
+  const double mu = viscosity();
   std::vector<Vec3> points = points_of_cap(wall_->surface().outline, wall_->surface().start);
   const std::vector<Vec3> outlet = points_of_cap(wall_->surface().outline, wall_->surface().end);
   points.insert(points.end(), outlet.begin(), outlet.end());
@@ -91,8 +91,8 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
     u -= part / mu;
   }
   if (v.size() > 0 && particle.dual) {
-    particle.dual->apply(v, at, all, part);
-    u += factor * part;
+    particle.dual->apply(particle.strength(v), at, all, part);
+    u += part;
   }
   return u.rowwise().norm().maxCoeff();
 }

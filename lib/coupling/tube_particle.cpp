@@ -17,7 +17,15 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
   own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
   ranks.own(own, space.n_points);
   from_sites.factor(collocation);
-  if (how.viscosity_ratio != 1) dual.emplace(particle, how.quadrature, CrossLayer::Kernel::double_layer);
+  set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
+}
+
+void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
+  contrasts = of_points;
+  if (contrasts.isZero(0))
+    dual.reset();
+  else
+    dual.emplace(space, parameters.quadrature, CrossLayer::Kernel::double_layer);
 }
 
 void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wall) {
@@ -54,7 +62,7 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
   pressure_of_load = Net::Zero(sites.rows(), 3);
   pressure_of_load.col(0) = single.moments(weighted[0]) / flow.flow_rate();
   if (!dual) return;
-  const double mu = flow.viscosity(), gradient = flow.pressure_gradient(), factor = -(1 - parameters.viscosity_ratio) / flow.flow_rate();
+  const double mu = flow.viscosity(), gradient = flow.pressure_gradient(), factor = -1 / flow.flow_rate();
   const auto& normal = dual->normals();
   dual->values(field, flow_at);
   for (auto& component : weighted) component.resize(static_cast<std::size_t>(dual->n_nodes()));
@@ -65,7 +73,7 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
     weighted[2][k] = -pressure * n3 + mu * flow_at[2][k] * n1;
   }
   pressure_of_velocity.resize(sites.rows(), 3);
-  for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = factor * dual->moments(weighted[c]);
+  for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = factor * contrasts.cwiseProduct(dual->moments(weighted[c]));
 }
 
 void Tube::Particle::find_nearest(const Net& wall_sites) {

@@ -22,6 +22,7 @@ inline double dot(const Net& a, const Net& b) { return a.size() == 0 || b.size()
 struct Tube::Particle {
   Particle(const spline::Space& space, const TubeParameters& parameters);
 
+  void set_contrasts(const Eigen::VectorXd& of_points);
   void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
   void freeze(Wall& wall);
 
@@ -29,6 +30,9 @@ struct Tube::Particle {
 
   /// v at the collocation point of the particle that is nearest to each one of the wall.
   Net nearest_values(const Net& v) const;
+
+  /// (1 - lambda) v: the strength of the double layer.
+  Net strength(const Net& v) const { return contrasts.asDiagonal() * v; }
 
   stokes::Evaluations evaluations() const;
 
@@ -40,7 +44,8 @@ struct Tube::Particle {
   Eigen::SparseMatrix<double> collocation;  ///< R
   membrane::DirectSolver from_sites;        ///< R^-1
   stokes::CrossLayer single;
-  std::optional<stokes::CrossLayer> dual;  ///< lambda != 1
+  std::optional<stokes::CrossLayer> dual;  ///< where a lambda is not 1
+  Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
 
   Net shape;                                                            ///< in the wall's frame
   double centroid = 0;                                                  ///< where that frame has its origin

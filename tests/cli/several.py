@@ -246,7 +246,7 @@ def mistakes_are_named():
         ("Particles/small/Membrane/load=strong", ["Particles/small/Membrane/load"]),
         ("Particles/drop/Interface/motion=sideways", ["Particles/drop/Interface/motion", "relaxed"]),
         ("Membrane/law=Skalak", ["Membrane and Particles contradict", "Particles/defaults"]),
-        ("Tube/section=circle", ["Tube and Particles contradict"]),
+        ("Tube/section=circle", ["Tube and Flow/type"]),
         ("Expect/taylor_inertia/value=1", ["tolerance"]),
     ):
         error = run("deck.yaml", "--check", "--set", setting, code=2).stderr.strip()
