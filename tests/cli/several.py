@@ -161,6 +161,70 @@ Tanktread:
     check(len(gap) > rows and gap.min() < 0.19 < gap[0], gap)
 
 
+CONFINED = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle, azimuthal elements: 12, axial elements: 12}
+  Particles:
+    defaults:
+      Surface: {elements per side: 3}
+      Membrane: {capillary number: 0.1}
+    behind: {radius: 0.4, center: [-1.1, 0.0, 0.2], viscosity ratio: 3.0}
+    ball: {motion: free, center: [0.0, 0.1, -0.2], shape: ellipsoid, semi-axes: [0.4, 0.3, 0.35]}
+    ahead: {radius: 0.4, center: [1.1, 0.0, 0.0], Membrane: {law: surface tension, capillary number: 0.2}}
+  Time: {fixed step: 0.02, final time: 0.12}
+  Solvers: {tolerance: 1.0e-12}
+  Output: {interval: 0.04}
+"""
+
+
+def a_mixture_in_a_tube_resumes_on_other_ranks_and_balances():
+    _resumes_on_other_ranks(CONFINED)
+    drop = series("whole", "disturbed_pressure_drop")
+    for route in ("pressure_drop_by_flux", "pressure_drop_by_force"):
+        off = numpy.abs(series("whole", route) / drop - 1).max()
+        check(off < 2e-2, route, "is off by", off)  # three elements a side
+
+
+def a_ball_in_a_tube_moves_as_the_first_kind_equation_says():
+    words = "{motion: free, radius: 0.5, center: [0.0, 0.0, 0.2]%s}"
+    deck("""
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle}
+  %s
+  Quadrature: {tolerance: 1.0e-6}
+  Time: {final time: 0.01, fixed step: 0.01, scheme: bs3}
+""" % ("Particles: {ball: " + words % ", Surface: {elements per side: 4}" + "}"), "second.yaml")
+    deck(pathlib.Path("second.yaml").read_text().replace("Particles: {ball: " + words % ", Surface: {elements per side: 4}" + "}",
+                                                         "Particle: " + words % "" + "\n  Surface: {elements per side: 4}"), "first.yaml")
+    for name in ("first", "second"):
+        run(f"{name}.yaml", "--output", name, "--quiet")
+    for name in ("velocity_x1", "angular_velocity_x2", "stresslet_13"):
+        close(series("second", f"ball/{name}")[0], series("first", name)[0], 3e-4, name)  # four elements a side
+    close(series("second", "disturbed_pressure_drop")[0], series("first", "disturbed_pressure_drop")[0], 1e-4, "pressure drop")
+
+
+def meshes_get_fine_beside_films():
+    deck("""
+Tanktread:
+  Flow: {type: quiescent}
+  Particles:
+    defaults:
+      motion: prescribed
+      Surface: {elements per side: 4, extraordinary points: catmull-clark}
+      Adaptation: {enabled: true, film resolution: 0.5}
+    one: {velocity: [1.0, 0.0, 0.0]}
+    two: {center: [2.1, 0.0, 0.0]}
+  Time: {final time: 1.0e-3, fixed step: 1.0e-3, scheme: bs3}
+""")
+    run("deck.yaml", "--output", "fine", "--quiet")
+    run("deck.yaml", "--output", "coarse", "--quiet", "--set", "Particles/defaults/Adaptation/enabled=false")
+    exact = -4.03209888 * 6 * numpy.pi  # ../shared: multipole solution, X^A_11 of Jeffrey & Onishi at distance 2.1
+    error = {name: abs(series(name, "one/drag_x1")[0] / exact - 1) for name in ("fine", "coarse")}
+    check(error["fine"] < 0.1 * error["coarse"] and error["fine"] < 5e-3, error)
+
+
 def pictures_tell_particles_apart():
     import h5py
 
