@@ -68,6 +68,7 @@ constexpr int most_parts = 100'000;
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
   const Bezier element{bezier, degree};
   const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
+  const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;  // measured: tests/verify/layer_shapes.cpp
   const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
   std::vector<Part> parts{{0, 0, 1, 1}};
   for (int looked_at = 0; !parts.empty(); ++looked_at) {
@@ -82,7 +83,7 @@ void graded(std::span<const double> bezier, int degree, const Vec3& target, cons
     const double error = demand.error(flat.area(), std::max(seen.distance, smallest * flat.u.norm()));
     const int n_s = std::max(order_for(error, seen.rho_u), order_for(demand.tolerance, rho_smooth / p.width));
     const int n_t = std::max(order_for(error, seen.rho_v), order_for(demand.tolerance, rho_smooth / p.height));
-    const bool enough = std::max(n_s, n_t) <= largest && bulge <= 0.25 * seen.distance;
+    const bool enough = std::max(n_s, n_t) <= largest && bulge <= flat_enough * seen.distance;
     const bool wide = flat.u.squaredNorm() > flat.v.squaredNorm();
     if (enough || std::max(p.width, p.height) < smallest) {
       add(p, std::min(n_s, largest), std::min(n_t, largest), rule);

@@ -37,7 +37,8 @@ quadrature::Options sharper(quadrature::Options options, CrossLayer::Kernel kern
 }  // namespace
 
 CrossLayer::CrossLayer(const spline::Space& source, const quadrature::Options& options, Kernel kernel)
-    : kernel_(kernel), surface_(source, sharper(options, kernel), kernel == Kernel::double_layer, far_order(options)) {}
+    : kernel_(kernel),
+      surface_(source, sharper(options, kernel), kernel == Kernel::double_layer ? Steep::everywhere : Steep::nowhere, far_order(options)) {}
 
 void CrossLayer::set_reference(const Net& unstressed) {
   surface_.panels.bezier(unstressed, bezier_unstressed_);
@@ -85,7 +86,7 @@ void CrossLayer::integrate(const Sources& all, const Net* v0, const Own& own, co
     const Vec3 y = at.row(i).transpose();
     for (const int e : surface_.near(y)) {
       const Panel& panel = surface_.panels[e];
-      const PointTable& table = surface_.near_field.rule(e, y);
+      const PointTable& table = surface_.near_field.rule(e, y, {});
       Vec3 close, far;
       own(e, table, i, y, close);
       sum_of(all.part(panel.first_node, panel.table->n_nodes), y.data(), v0 ? v0->row(i).data() : zero, far.data());
@@ -170,7 +171,7 @@ CrossLayer::Near CrossLayer::near(const Net& at, std::span<const int> targets) {
       kept.panels.push_back(e);
       kept.moments.resize(first + static_cast<std::size_t>(6) * t.n_bernstein);
       double* moments = &kept.moments[first];
-      const PointTable& table = surface_.near_field.rule(e, y);
+      const PointTable& table = surface_.near_field.rule(e, y, {});
       near_moments(e, table, y, moments);
       evaluations_.near += table.points + t.n_nodes;
       for (int k = 0; k < t.n_nodes; ++k) {  // less those of the far rule

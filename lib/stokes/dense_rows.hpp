@@ -127,7 +127,7 @@ class RowSums {
         (pair ? count_.self : count_.near) += table.points;
       };
       for (const int e : layer_.near(targets[l], x0[l]))
-        if (basis.index[e] >= 0) add(e, surface_.near_field.rule(e, x0[l]), nullptr);
+        if (basis.index[e] >= 0) add(e, surface_.near_field.rule(e, x0[l], layer_.own(targets[l])), nullptr);
       for (SelfPair& pair : layer_.own(targets[l]))
         if (basis.index[pair.panel] >= 0) add(pair.panel, surface_.self_field.rule(pair, panels, surface_.bezier), &pair);
     }

@@ -10,7 +10,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// The rules are chosen for int G f dG; this kernel, steeper by one order, errs up to five times as much (tests/verify/layers.cpp).
+/// The rules of the target's own surface are chosen for int G f dG; this kernel, steeper by one order, errs up to five times as much
+/// (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options) {
   options.tolerance /= 8;
   return options;
@@ -19,7 +20,7 @@ quadrature::Options sharper(quadrature::Options options) {
 }  // namespace
 
 DoubleLayer::DoubleLayer(const spline::Space& space, const quadrature::Options& options, std::vector<double> factor)
-    : surface_(space, sharper(options)), factor_(std::move(factor)) {
+    : surface_(space, sharper(options), Steep::across_gaps), factor_(std::move(factor)) {
   if (sums_by_tree(space, options)) tree_.emplace(options.tolerance / 2);  // measured: the largest error is a quarter of the tolerance
 }
 
@@ -120,8 +121,9 @@ void DoubleLayer::add_near(std::span<const int> targets, Net& hv) {
       hv.row(targets[k]) += (factor(e) * own - far).transpose();
       count += table.points + panel.table->n_nodes;
     };
-    for (const int e : surface_.near(targets[k], at_[k])) replace(e, surface_.near_field.rule(e, at_[k]), evaluations_.near);
-    for (SelfPair& pair : surface_.own(targets[k]))
+    const std::span<SelfPair> own_panels = surface_.own(targets[k]);
+    for (const int e : surface_.near(targets[k], at_[k])) replace(e, surface_.near_field.rule(e, at_[k], own_panels), evaluations_.near);
+    for (SelfPair& pair : own_panels)
       replace(pair.panel, surface_.self_field.rule(pair, surface_.panels, surface_.bezier), evaluations_.self);
   }
 }

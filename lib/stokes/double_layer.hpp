@@ -20,8 +20,9 @@ namespace tanktread::stokes {
 ///   (H v)_i = sum_p (k_p / 8 pi) int_p (v_j(x) - v_j(x_i)) T_ijk n_k dG,   v = sum_B v_B N_B         (2.1), (2.2)
 ///
 /// n out of the surface. Of the surface that x_i lies on this is k times the principal value plus v/2; another gives what it gives without v_j(x_i),
-/// for the integral of T n over it is 0 (2.3), and as x_i comes near stays as accurate. Rigid-body motions of all give 0. Rules as for the single
-/// layer; under `desingularised` the difference in the integrand is all that is done about the singularity.
+/// for the integral of T n over it is 0 (2.3). As x_i comes near it the integrand grows like 1 / r^2, for v there may be any other than v(x_i), and
+/// near rules of other surfaces are made for that. Rigid-body motions of all give 0. Rules on the own surface as for the single layer; under
+/// `desingularised` the difference in the integrand is all that is done about the singularity.
 class DoubleLayer {
  public:
   /// `factor`: k of each element; 1 where there are none.

@@ -68,7 +68,7 @@ bool sums_by_tree(const spline::Space& space, const quadrature::Options& options
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 
-LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how, bool steep, int order)
+LayerSurface::LayerSurface(const spline::Space& space, const quadrature::Options& how, Steep steep, int order)
     : options(how),
       n_points(space.n_points),
       panels(space, far_orders(space, how, order ? order : far_order(how))),

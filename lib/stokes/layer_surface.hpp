@@ -21,8 +21,9 @@ bool sums_by_tree(const spline::Space& space, const quadrature::Options& options
 /// The present surface as a layer operator integrates over it: panels, far nodes, and which rule each target needs on which panel.
 class LayerSurface {
  public:
-  /// `steep`: near rules for a kernel like 1 / r^2. `order`: Gauss points a direction of the far rule; 0: what targets on the surface need.
-  LayerSurface(const spline::Space& space, const quadrature::Options& options, bool steep = false, int order = 0);
+  /// `steep`: where near rules are for an integrand like 1 / r^2. `order`: Gauss points a direction of the far rule; 0: what targets on the
+  /// surface need.
+  LayerSurface(const spline::Space& space, const quadrature::Options& options, Steep steep = Steep::nowhere, int order = 0);
 
   /// States that all shapes to come are of this symmetry.
   void set_symmetry(const surface::Symmetry& symmetry);

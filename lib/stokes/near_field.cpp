@@ -63,7 +63,7 @@ double clearance(double area, double longest, const quadrature::Demand& demand, 
 
 }  // namespace
 
-NearField::NearField(const Panels& panels, double tolerance, int smooth_order, bool steep)
+NearField::NearField(const Panels& panels, double tolerance, int smooth_order, Steep steep)
     : panels_(panels),
       demand_{0, 0, tolerance, smooth_order},
       steep_(steep),
@@ -85,8 +85,9 @@ void NearField::view(int e) {
   for (int b = 0; b < t.n_bernstein; ++b) square = std::max(square, (point(points, t.n_bernstein, b) - centre).squaredNorm());
   view.radius = std::sqrt(square);
   const int middle = t.n_bernstein / 2 + (t.degree % 2 ? (t.degree + 1) / 2 : 0);
+  view.normal = u.cross(v).normalized();
   view.bulge = std::max((point(points, t.n_bernstein, 0) - centre + u + v).norm(),
-                        std::abs((point(points, t.n_bernstein, middle) - centre).dot(u.cross(v).normalized())));
+                        std::abs((point(points, t.n_bernstein, middle) - centre).dot(view.normal)));
 }
 
 void NearField::update(const std::vector<double>& bezier, const PanelImages& images) {
@@ -101,9 +102,12 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
     const double area = total[static_cast<std::size_t>(surface_[e])];
     view.demand = demand_;
     view.demand.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * area);
-    view.demand.steep = steep_ ? std::sqrt(area / (4 * std::numbers::pi)) : 0;
+    view.across = view.demand;
+    if (steep_ != Steep::nowhere) view.across.steep = std::sqrt(area / (4 * std::numbers::pi));
+    const bool across_gaps = steep_ == Steep::everywhere || n_surfaces_ > 1;
     const double longest = std::max(view.flat.u.norm(), view.flat.v.norm());
-    const double reach = view.radius + clearance(view.area, longest, view.demand, panels_[e].table->order);
+    const auto& strictest = across_gaps ? view.across : view.demand;
+    const double reach = view.radius + view.bulge + clearance(view.area, longest, strictest, panels_[e].table->order);
     reach_[e] = reach * reach;
   }
   for (int e = 0; e < panels_.size(); ++e) {
@@ -113,6 +117,7 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
       views_[e] = views_[source];
       quadrature::Patch& flat = views_[e].flat;
       flat = {image(flat.centre), image.of_vector(flat.u), image.of_vector(flat.v)};
+      views_[e].normal = flat.u.cross(flat.v).normalized();
       reach_[e] = reach_[source];
     }
     for (int c = 0; c < 3; ++c) centre_[c][e] = views_[e].flat.centre[c];
@@ -120,11 +125,25 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
   vicinity_.place(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
 }
 
-bool NearField::far_enough(const View& view, int order, const Vec3& target) const {
-  const quadrature::Sight seen = quadrature::sight(view.flat, target);
+bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
+  return !own.empty() && surface_[own.front().panel] == surface_[e];
+}
+
+/// A target off the surface faces panels that bulge towards it, and sees the flat picture nearer by the bulge: one to three Gauss points a direction
+/// (tests/verify/layer_shapes.cpp). Panels of its own surface bulge away from each other's corners.
+quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
+  if (!across) return quadrature::sight(view.flat, target);
+  const double height = (target - view.flat.centre).dot(view.normal);
+  return quadrature::sight(view.flat, target - std::clamp(height, -view.bulge, view.bulge) * view.normal);
+}
+
+bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const {
+  const View& view = views_[e];
+  const bool across = !on_same_surface(e, own);
+  const quadrature::Sight seen = sight(view, target, across);
   const double rho = std::min(seen.rho_u, seen.rho_v);
-  double power = view.demand.error(view.area, seen.distance);
-  for (int k = 0; k < order && power < 1; ++k) power *= rho * rho;
+  double power = (across ? view.across : view.demand).error(view.area, seen.distance);
+  for (int k = 0; k < panels_[e].table->order && power < 1; ++k) power *= rho * rho;
   return power >= 1;
 }
 
@@ -134,16 +153,18 @@ void NearField::list(const Vec3& target, std::span<const SelfPair> own, std::vec
   vicinity_.list(target.data(), suspects_);
   for (const int e : suspects_) {
     const bool on_it = std::any_of(own.begin(), own.end(), [&](const SelfPair& pair) { return pair.panel == e; });
-    if (!on_it && !far_enough(views_[e], panels_[e].table->order, target)) near.push_back(e);
+    if (!on_it && !far_enough(e, target, own)) near.push_back(e);
   }
   std::sort(near.begin(), near.end());
 }
 
-const PointTable& NearField::rule(int panel, const Vec3& target) {
+const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> own) {
   const NodeTable& t = *panels_[panel].table;
   const View& view = views_[panel];
-  const quadrature::Sight seen = quadrature::sight(view.flat, target);
-  const int needed = quadrature::order_for(view.demand.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
+  const bool across = !on_same_surface(panel, own);
+  const quadrature::Demand& demand = across ? view.across : view.demand;
+  const quadrature::Sight seen = sight(view, target, across);
+  const int needed = quadrature::order_for(demand.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
   const int order = std::max(needed, t.order + 1);
   if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
     const auto [at, is_new] = whole_.try_emplace({t.degree, order});
@@ -156,7 +177,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target) {
   }
   points_.clear();
   const std::span<const double> bezier(bezier_->data() + panels_[panel].first_bezier, static_cast<std::size_t>(3) * t.n_bernstein);
-  quadrature::graded(bezier, t.degree, target, view.demand, points_);
+  quadrature::graded(bezier, t.degree, target, demand, points_);
   tabulate(points_, t.degree, parts_);
   return parts_;
 }

@@ -15,12 +15,17 @@
 
 namespace tanktread::stokes {
 
+/// At which targets the integrand grows like 1 / r^2 rather than 1 / r: none (single layer); those that are not on the closed surface of the panel,
+/// for on it the density less its value at the target takes one order away (double layer at its own collocation points); all (double layer of targets
+/// off the surface).
+enum class Steep { nowhere, across_gaps, everywhere };
+
 /// Near rules by tolerance. A pure function of the present shape: no memory of earlier ones.
 class NearField {
  public:
   /// `tolerance`: accuracy relative to int dG / r over the closed surface that a panel belongs to, about sqrt(4 pi area), however many others there
-  /// are; `steep`: for kernels like 1 / r^2.
-  NearField(const Panels& panels, double tolerance, int smooth_order, bool steep);
+  /// are.
+  NearField(const Panels& panels, double tolerance, int smooth_order, Steep steep);
 
   /// Takes the shape from the Bezier points of panels that are no images. They must outlive the calls below, which ask for those of `panel`, too.
   void update(const std::vector<double>& bezier, const PanelImages& images);
@@ -28,23 +33,26 @@ class NearField {
   /// Panels whose far rule misses the tolerance at the target, ascending, but for those of `own`, which the target lies on.
   void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
 
-  /// The rule for one of them, as a table that stays valid until the next call.
-  const PointTable& rule(int panel, const Vec3& target);
+  /// The rule for one of them, with the same `own`, as a table that stays valid until the next call.
+  const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> own);
 
  private:
   struct View {
     quadrature::Patch flat;
+    Vec3 normal;  ///< of the flat picture
     double area = 0, bulge = 0, radius = 0;
-    quadrature::Demand demand;
+    quadrature::Demand demand, across;  ///< of targets on the surface of the panel, and of those off it
   };
   void view(int e);
-  bool far_enough(const View& view, int order, const Vec3& target) const;
+  bool on_same_surface(int e, std::span<const SelfPair> own) const;
+  static quadrature::Sight sight(const View& view, const Vec3& target, bool across);
+  bool far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const;
 
   const Panels& panels_;
   quadrature::Demand demand_;  ///< but for what goes with the area
   std::vector<int> surface_;   ///< of each panel: which of the surfaces it belongs to
   int n_surfaces_ = 1;
-  bool steep_;
+  Steep steep_;
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;

@@ -38,7 +38,8 @@ void SingleLayer::place(const Net& x, Measure measure, std::span<const int> targ
   measure_ = measure;
   lazily_ = lazily;
   lazily ? surface_.place_lazily(x) : surface_.place(x);
-  if (measure == Measure::current) lazily ? weight_present_.resize(n_nodes()) : node_weights(surface_.panels, surface_.bezier, weight_present_);
+  if (measure == Measure::current)
+    lazily ? weight_present_.resize(n_nodes()) : node_weights(surface_.panels, surface_.bezier, weight_present_);
   if (surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
   surface_.collocation_points(targets, at_);
 }
@@ -120,7 +121,7 @@ void SingleLayer::add_near(std::span<const int> targets, const Sum& own_sum, Net
   for (std::size_t k = 0; k < targets.size(); ++k)
     for (const int e : surface_.near(targets[k], at_[k])) {
       const Panel& panel = surface_.panels[e];
-      const PointTable& table = surface_.near_field.rule(e, at_[k]);
+      const PointTable& table = surface_.near_field.rule(e, at_[k], surface_.self_field[targets[k]]);
       load(e);
       node_sum(all.part(panel.first_node, panel.table->n_nodes), at_[k].data(), far.data());
       u.row(targets[k]) += (own_sum(e, table, nullptr, at_[k]) - far).transpose();

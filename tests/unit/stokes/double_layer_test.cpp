@@ -5,7 +5,9 @@
 #include <numeric>
 
 #include "spline/extraction.hpp"
+#include "spline/stacked.hpp"
 #include "stokes/single_layer.hpp"
+#include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 
 namespace tanktread::stokes {
@@ -62,6 +64,56 @@ TEST(DoubleLayer, GivesNothingForRigidBodyMotions) {
   for (int i = 0; i < scene().space.n_points; ++i) rotation.row(i) = Vec3(0.3, 0.9, -0.2).cross(Vec3(scene().x.row(i))).transpose();
   EXPECT_LT(largest(scene().apply(translation, {.tolerance = 1e-4})), 1e-13);
   EXPECT_LT(largest(scene().apply(rotation, {.tolerance = 1e-10})), 1e-10 * largest(rotation));
+}
+
+/// The scene and, a gap above its top, the same turned over: two surfaces. Targets are on the second.
+struct Film {
+  spline::Space space;
+  Net x;
+  std::vector<int> all;
+
+  explicit Film(double gap) {
+    const spline::Space* const both[] = {&scene().space, &scene().space};
+    space = spline::stacked(both);
+    const int n = scene().space.n_points;
+    const auto height = [](int i) -> double { return surface::value(scene().space, scene().x, scene().space.collocation[i].front())[2]; };
+    int top = 0;
+    for (const int i : scene().all)
+      if (height(i) > height(top)) top = i;
+    const Vec3 peak = surface::value(scene().space, scene().x, scene().space.collocation[top].front());
+    x = Net(2 * n, 3);
+    const Eigen::DiagonalMatrix<double, 3> over(1, -1, -1);
+    x << scene().x, (scene().x * over).rowwise() + (peak - over * peak + gap * Vec3::UnitZ()).transpose();
+    for (int i = n; i < 2 * n; ++i) all.push_back(i);
+  }
+};
+
+// int T_ijk n_k (U + omega x r)_j dG = 0 outside (2.3), however near and whatever the velocity of the surface that the target lies on.
+TEST(DoubleLayer, GivesNothingAcrossAFilmForRigidBodyMotionsOfTheOtherSurface) {
+  for (const double gap : {0.1, 1e-3}) {
+    const Film film(gap);
+    const int n = scene().space.n_points;
+    Net v = Net::Zero(2 * n, 3), u = v;
+    for (int i = 0; i < n; ++i) v.row(i) = (Vec3(0.5, 0.4, -0.6) + Vec3(0.1, 0.3, -0.2).cross(Vec3(film.x.row(i)))).transpose();
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+      DoubleLayer layer(film.space, {.tolerance = tolerance});
+      layer.apply(film.x, v, film.all, u);
+      EXPECT_LT(largest(u), 2 * tolerance) << gap;
+    }
+  }
+}
+
+TEST(DoubleLayer, AssembledRowsOfTwoSurfacesTimesAVelocityAreTheSum) {
+  const Film film(0.01);
+  DoubleLayer layer(film.space, {.tolerance = 1e-6});
+  Net v = film.x, u = Net::Zero(film.space.n_points, 3);
+  v.bottomRows(scene().space.n_points) = scene().v;
+  layer.apply(film.x, v, film.all, u);
+  Rows<double> a;
+  layer.assemble(film.x, film.all, a);
+  const Eigen::VectorXd rows = a * v.reshaped<Eigen::RowMajor>();
+  EXPECT_LT((u.bottomRows(scene().space.n_points).reshaped<Eigen::RowMajor>() - rows).norm(),
+            1e-11 * rows.norm());  // round-off, 1 / gap^2 times
 }
 
 // Tolerance: the requested accuracy.
