@@ -109,8 +109,8 @@ void check_spread(const surface::TubeWall& wall, const surface::Geometry& geomet
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out
   if (wall.length() < needed)
-    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at an "
-                               "end, Tube/length = %.4g is too short",
+    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
+                               "an end, Tube/length = %.4g is too short",
                                x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
 }
 

@@ -15,8 +15,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
-
 /// Every particle with its space and its rows.
 CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;

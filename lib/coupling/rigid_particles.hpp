@@ -48,7 +48,8 @@ class RigidParticles {
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< from where it was at rest
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
-  /// Component k of <w>, the velocity's and then the angular velocity's, as a linear functional of its rows of w, row after row, where it was at rest.
+  /// Component k of <w>, the velocity's and then the angular velocity's, as a linear functional of its rows of w, row after row, where it was at
+  /// rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:

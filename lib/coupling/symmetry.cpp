@@ -33,7 +33,8 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return image.signs.cwiseProduct(body_force) == body_force && std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
+    return image.signs.cwiseProduct(body_force) == body_force &&
+           std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }
 

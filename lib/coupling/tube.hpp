@@ -37,9 +37,9 @@ struct TubeParameters {
 /// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of the traction on the wall, dp that of the pressure
 /// drop between the ends, Q the flow rate of v_inf; in quiescent fluid v_inf is the duct's flow of any mean velocity.
 ///
-/// Several particles are one surface here, C all of it. The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the particle's centroid. So what depends on the wall alone
-/// is assembled and factored once. Points of the particle are true ones everywhere; nets of the wall are in the wall's frame. Nets are replicated;
-/// calls are collective but for queries.
+/// Several particles are one surface here, C all of it. The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the
+/// particle's centroid. So what depends on the wall alone is assembled and factored once. Points of the particle are true ones everywhere; nets of
+/// the wall are in the wall's frame. Nets are replicated; calls are collective but for queries.
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,

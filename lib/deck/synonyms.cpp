@@ -24,7 +24,7 @@ struct Meaning {
   std::string_view what;
 };
 
-constexpr std::array<Meaning, 24> synonyms{{
+constexpr std::array<Meaning, 26> synonyms{{
     {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
      "Particles"},
     {"|dt|delta t|time step|timestep|step|step size|stepsize|", "Time/fixed step or Time/initial step"},
@@ -51,13 +51,14 @@ constexpr std::array<Meaning, 24> synonyms{{
      "Surface/elements per side"},
     {"|save every|save interval|snapshot interval|output interval|output frequency|frequency|dump|dt out|output every|", "Output/interval"},
     {"|output dir|output directory|outdir|directory|dir|folder|output folder|", "--output of the command line"},
+    {"|g|acceleration|", "Flow/gravity"},
+    {"|density|rho|density ratio|buoyancy|body force|excess density|bond number|", "Particle/density difference"},
     {"|restart|resume|continue|", "--resume of the command line"},
 }};
 
 /// By the whole path, by a list, or by the name of the key alone.
-constexpr std::array<Meaning, 13> features{{
+constexpr std::array<Meaning, 12> features{{
     {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
-    {"|gravity|g|density|rho|density difference|density ratio|buoyancy|body force|", "gravity and buoyancy are not there"},
     {"|periodic|period|box|box size|domain|unit cell|periodicity|",
      "periodic domains are not there; the fluid is unbounded, or fills a Tube"},
     {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},

@@ -29,7 +29,11 @@ SETTINGS = [
     (["Membrane/viscosity=1"], ["Membrane/viscosity", "viscous membranes are not there", "Limits"]),
     (["Wall/position=1"], ["Wall", "plane walls", "Tube"]),
     (["Particles/one/radius=1"], ["Membrane and Particles contradict", "Particles/defaults"]),
-    (["Flow/gravity=[0, 0, -1]"], ["Flow/gravity", "gravity", "not there"]),
+    (["Flow/gravity=[0, -1]"], ["Flow/gravity", "three numbers"]),
+    (["Particle/density=1.1"], ["Particle/density", "density difference"]),
+    (["Particle/density difference=0.1"], ["Particle/density difference", "Flow/gravity"]),
+    (["Particle/force=[1, 0, 0]"], ["Particle/force", "free"]),
+    (["Adaptation/film resolution=0.5"], ["Adaptation/film resolution", "several"]),
     (["Domain/periodic=true"], ["Domain", "periodic"]),
     (["Zebra/stripes=1"], ["Tube"]),
     # unknown words

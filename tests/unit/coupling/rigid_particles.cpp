@@ -96,7 +96,7 @@ TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
 TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
   const Vec3 away(0.5, 0.4, 2.6);
   Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
-  Bodies held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{true}}}, 4, some_gradient());
+  Bodies held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{true, {}}}}, 4, some_gradient());
   Capsule system = held.system();
   const RigidParticles& forced = system.rigid_about(held.rest, 0);
   Bodies free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), Rigid{false, {}, forced.force(0), forced.torque(0)}},
@@ -111,7 +111,7 @@ TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
 
 /// ../shared: multipole solution of two spheres, distance of centres 3 (Jeffrey & Onishi's functions).
 TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
-  Bodies pair({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{true}}}, 4, Mat3::Zero());
+  Bodies pair({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{true, {}}}}, 4, Mat3::Zero());
   Capsule system = pair.system();
   const RigidParticles& along = system.rigid_about(pair.rest, 0);
   const double unit = 6 * pi * viscosity;

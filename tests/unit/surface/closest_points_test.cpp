@@ -80,7 +80,9 @@ TEST(ClosestPoints, OfEqualSurfacesAboveEachOtherAreTheirTops) {
     const Net above = shape.sphere.rowwise() + Eigen::RowVector3d(0, 0, 2 * top + gap);
     const ClosestPoints found = closest(shape, shape.sphere, above);
     EXPECT_NEAR(found.gap, gap, 2e-8) << gap;
-    if (gap > 1e-3) EXPECT_LT(found.first.head<2>().norm(), 1e-3) << gap;
+    if (gap > 1e-3) {
+      EXPECT_LT(found.first.head<2>().norm(), 1e-3) << gap;
+    }
   }
 }
 
