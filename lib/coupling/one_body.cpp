@@ -45,7 +45,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::factored(const 
     if (factors->told) layer.apply(rest, field / particle.radius, stokes::Measure::reference, all, at_sites);
     matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * body.mean_functional(0, k).transpose();
   }
-  factors->lu.compute(matrix.cast<float>());
+  factors->lu.compute(matrix);
   return factors;
 }
 
@@ -53,8 +53,8 @@ void OneBodyInverses::solve(const RigidParticles& placed, Net& y) const {
   for (const auto& [particle, block, factors] : factors_) {
     const Mat3 turn = placed.turn(particle);
     const Net right = factors->sites * Net(block.rows(y) * turn);
-    const Eigen::VectorXf solution = factors->lu.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), right.size()).cast<float>());
-    block.rows(y) = Eigen::Map<const Net>(solution.cast<double>().eval().data(), right.rows(), 3) * turn.transpose();
+    const Eigen::VectorXd solution = factors->lu.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), right.size()));
+    block.rows(y) = Eigen::Map<const Net>(solution.data(), right.rows(), 3) * turn.transpose();
   }
 }
 

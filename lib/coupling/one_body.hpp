@@ -14,8 +14,8 @@
 
 namespace tanktread::coupling {
 
-/// Factors of (2.23) for each rigid body alone, in its own axes: they serve wherever it goes, and equal bodies have them in common. In single
-/// precision, for they only precondition; a body of more than `most_points` control points goes without.
+/// Factors of (2.23) for each rigid body alone, in its own axes: they serve wherever it goes, and equal bodies have them in common. A body of
+/// more than `most_points` control points goes without. Not in single precision, whose rounding GMRES takes for a residual that does not fall.
 class OneBodyInverses {
  public:
   static constexpr int most_points = 2000;
@@ -33,7 +33,7 @@ class OneBodyInverses {
     Net rest;  // about its first point
     bool told;
     Eigen::SparseMatrix<double> sites;  // R
-    Eigen::PartialPivLU<Eigen::MatrixXf> lu;
+    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   };
   struct Use {
     std::size_t particle;

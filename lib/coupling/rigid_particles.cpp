@@ -76,7 +76,7 @@ RigidMotion RigidParticles::Body::mean(const Net& w) const {
   return carrying(rows.transpose() * weight, Vec3(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0)));
 }
 
-Net RigidParticles::Body::field(const RigidMotion& motion) const { return rigid_velocity(rest * turn.transpose(), motion, Vec3::Zero()); }
+Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velocity(rest * turn.transpose(), of, Vec3::Zero()); }
 
 RigidMotion RigidParticles::Body::load() const { return carrying(force, torque); }
 

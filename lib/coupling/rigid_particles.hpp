@@ -72,7 +72,7 @@ class RigidParticles {
 
     RigidMotion mean(const Net& w) const;      // <w>, w of all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
-    Net field(const RigidMotion& motion) const;                         // its rows of it
+    Net field(const RigidMotion& of) const;                             // its rows of it
     RigidMotion load() const;                                           // a and b of the force on the fluid
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
