@@ -325,7 +325,9 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
-  const bool assembled = double_layer_ && parameters_.solvers.assembled(double_layer_->by_clusters());
+  constexpr double most_bytes = 1e9;
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
+  const bool assembled = double_layer_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (assembled) double_layer_->assemble(x, own_points_, double_rows_);
   const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall
     if (!double_layer_) return v;

@@ -26,7 +26,7 @@ void SolverOptions::declare(deck::Section& section) {
               "relative residual of the systems that a velocity (viscosity ratio other than 1) or a traction (rigid particle) comes from");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
               "viscosity ratio other than 1: `assembled` once a velocity, or summed in every iteration of its solver; `auto`: the latter where far "
-              "sums are taken by clusters");
+              "sums are taken by clusters and there are no rigid bodies, or more than 1 GB of it");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
               "in a tube: `schur` solves for the particle's velocity alone, wall and pressure drop eliminated by the factored wall (nothing is "
               "left to solve at viscosity ratio 1); the others solve for all blocks (2.5)-(2.8) at once, preconditioned by the factored wall or "
