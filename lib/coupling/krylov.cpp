@@ -91,6 +91,13 @@ std::vector<double> residuals(const std::string& log) {
   return found;
 }
 
+/// What Belos says, and how, is for `log` alone: it is read for residuals, and some of it asks MPI, which may not be there.
+void check_output_not_given(const Teuchos::ParameterList& given) {
+  for (const char* name : {"Verbosity", "Output Style", "Output Frequency"})
+    if (given.isParameter(name))
+      throw UserError(std::string("Solvers/Belos/") + name + " cannot be set: what Belos says is heard by the program alone, which says what matters.");
+}
+
 }  // namespace
 
 struct Krylov::Impl {
@@ -123,6 +130,7 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
     Belos::SolverFactory<double, MultiVector, Operator> factory;
     if (list) {
       deck::check_foreign("Solvers/Belos", *list, *factory.create(impl_->name, Teuchos::parameterList())->getValidParameters());
+      check_output_not_given(*list);
       impl_->list->setParameters(*list);
     }
     impl_->solver = factory.create(impl_->name, impl_->list);
