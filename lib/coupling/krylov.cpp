@@ -95,7 +95,7 @@ std::vector<double> residuals(const std::string& log) {
 void check_output_not_given(const Teuchos::ParameterList& given) {
   for (const char* name : {"Verbosity", "Output Style", "Output Frequency"})
     if (given.isParameter(name))
-      throw UserError(std::string("Solvers/Belos/") + name + " cannot be set: what Belos says is heard by the program alone, which says what matters.");
+      throw UserError(std::string("Solvers/Belos/") + name + " cannot be set: only the program hears what Belos says.");
 }
 
 }  // namespace
