@@ -206,7 +206,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
     const surface::Jet at = surface::jet(element.patch(), best.s, best.t);
     const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
     const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (std::abs(determinant) < 1e-9 * ds.norm() * dt.norm()) break;  // a pole
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // a pole, where one of them may be exactly zero
     best.s = std::clamp(best.s - (y[1] * dt[2] - y[2] * dt[1]) / determinant, 0., 1.);
     best.t = std::clamp(best.t - (ds[1] * y[2] - ds[2] * y[1]) / determinant, 0., 1.);
   }

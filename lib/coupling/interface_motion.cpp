@@ -1,7 +1,13 @@
 #include "coupling/interface_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include "coupling/collocation.hpp"
 #include "stokes/single_layer.hpp"
@@ -49,34 +55,88 @@ Vec3 normal(const spline::Space& space, const Net& x, std::span<const spline::Si
 }
 
 /// U (6.4) from b = dV/dx, for 3 V = b.x; of a velocity that is the same everywhere exactly that one.
-Eigen::RowVector3d mean_motion(const Net& x, const Net& b, const Net& v) {
-  const Net from_mean = x.rowwise() - x.colwise().mean();
+Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
 }
+
+/// Half the vorticity of v, averaged over the interior, from b = dV/dx; of a rotation exactly that one.
+Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
+  const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
+  const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
+  return Vec3(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)) / 2;
+}
+
+/// Velocity of places y in a rotation.
+Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
+
+/// Omega_s (4.14) of a velocity u at the sites y, whose share of the area is about |b|.
+Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
+  constexpr double hold = 1e-3;  // deviations from a sphere below 3 % turn with the fluid rather than by themselves, which noise would have a say in
+  Mat3 moments = Mat3::Zero();
+  Vec3 across = Vec3::Zero();
+  double inertia = 0;
+  for (Eigen::Index i = 0; i < y.rows(); ++i) {
+    const double area = b.row(i).norm();
+    const Vec3 n = normals.row(i).transpose(), arm = Vec3(y.row(i).transpose()).cross(n);
+    moments += area * arm * arm.transpose();
+    across += area * arm * u.row(i).dot(n);
+    inertia += area * y.row(i).squaredNorm();
+  }
+  moments.diagonal().array() += hold * inertia;
+  return moments.ldlt().solve(across);
+}
+
+/// Control points x of a drop, b = dV/dx there, and its velocity v; and at its sites.
+struct Moving {
+  Net x, b, v;
+  Net places, normals, velocities;
+};
+
+/// The rigid motion W at the sites that the mesh of a drop shares (4.14).
+Net shared_motion(const Moving& drop) {
+  const Eigen::RowVector3d middle = drop.x.colwise().mean();
+  const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
+  const Vec3 rotation = mean_rotation(from_mean, drop.b, drop.v);
+  Net w = rotated(rotation, y).rowwise() + mean_motion(from_mean, drop.b, drop.v - rotated(rotation, from_mean));
+  w += rotated(rotation_of_shape(y, drop.normals, drop.b, drop.velocities - w), y);
+  return w;
+}
+/// The rotation that takes one net about its mean nearest to another.
+Mat3 rotation_between(const Net& from, const Net& to) {
+  const Mat3 moments = (to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean());
+  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+  Vec3 senses(1, 1, std::copysign(1.0, rotation.determinant()));
+  return svd.matrixU() * senses.asDiagonal() * svd.matrixV().transpose();
+}
 }  // namespace
 
-std::vector<Vec3> InterfaceMotion::normals_at(const Net& x) const {
-  std::vector<Vec3> normals;
+Net InterfaceMotion::normals_at(const Net& x) const {
+  Net normals = Net::Zero(x.rows(), 3);
   for (const Drop& drop : drops_)
-    for (const int i : drop.points) normals.push_back(normal(space_, x, space_.collocation[static_cast<size_t>(i)]));
+    for (const int i : drop.points) normals.row(i) = normal(space_, x, space_.collocation[static_cast<size_t>(i)]).transpose();
+  ranks_.replicate(normals);
   return normals;
 }
 
-/// R^-1 of U + n n.(v - U) + (1 - n n).w at the sites, U at x with b = dV/dx there, w from the density f (empty: none).
-Net InterfaceMotion::combined(const Net& x, const Net& b, const std::vector<Vec3>& normals, const Net& v, const Net& f) const {
+/// R^-1 of W + n n.(v - W) + (1 - n n).w at the sites, W at x with b = dV/dx there, w from the density f (empty: none).
+Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const {
   Net u = sites_ * v;
-  size_t place = 0;
+  const Net places = sites_ * x;
   for (const Drop& drop : drops_) {
     const spline::Block& block = drop.block;
-    const Eigen::RowVector3d mean = mean_motion(block.rows(x), block.rows(b), block.rows(v));
-    const Eigen::Map<const Eigen::VectorXd> density(f.data() + 3 * block.first_point, drop.relaxed ? 3 * block.n_points : 0);
+    const Net shared = shared_motion({block.rows(x), block.rows(b), block.rows(v), block.rows(places), block.rows(normals), block.rows(u)});
+    const Mat3 turn = drop.relaxed ? rotation_between(block.rows(mesh_.unstressed()), block.rows(x)) : Mat3(Mat3::Identity());
+    const Net density = drop.relaxed ? Net(block.rows(f) * turn) : Net();  // on the initial shape, as A0 is
+    const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k) {
-      const Vec3& n = normals[place++];
-      Vec3 along = Vec3::Zero();
-      if (drop.relaxed) along = -drop.speed * drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * density;
-      auto row = u.row(drop.points[k]);
-      row = (along + n * n.dot((row - mean).transpose() - along)).transpose() + mean;
+      const int i = drop.points[k];
+      const Vec3 n = normals.row(i).transpose();
+      Vec3 with = shared.row(i - block.first_point).transpose();
+      if (drop.relaxed) with -= drop.speed * turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there);
+      auto row = u.row(i);
+      row = (with + n * n.dot(row.transpose() - with)).transpose();
     }
   }
   ranks_.replicate(u);

@@ -19,12 +19,13 @@ namespace tanktread::coupling {
 
 /// Velocity of the control points from the fluid's velocity v: at the collocation sites of each drop
 ///
-///   u = U + n n.(v - U) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed A0 M0^{-1} dE1/dx (`relaxed`)          (4.6)
+///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T M0^{-1} dE1/dx (`relaxed`)    (4.6)
 ///
-/// U is the drop's mean motion (6.4), which the mesh shares: a drop that is carried along keeps its mesh as one at rest does. E1 is the energy of a
+/// W (4.14) is the rigid motion of the drop, which the mesh shares: a drop that is carried along or turned as a whole keeps its mesh as one at rest
+/// does, and the mesh of a steady shape, around which the fluid treads, stays where it is. E1 is the energy of a
 /// neo-Hookean membrane of modulus 1 whose unstressed shape is the initial one, and A0, M0 belong to that shape: the mesh slides along the
 /// interface as an elastic bag would be dragged through the fluid, so elements keep their shape and the system is no stiffer than that of a
-/// capsule with Ca = mu rate R_C / (mu speed). A0 never changes, and knows one drop alone. At the sites of other particles u = v.
+/// capsule with Ca = mu rate R_C / (mu speed). A0 never changes, knows one drop alone, and turns with the mesh, by Q. Elsewhere u = v.
 class InterfaceMotion {
  public:
   /// `initial`: the net that the meshes relax towards; `mass`: the factored M0 of it.
@@ -35,7 +36,7 @@ class InterfaceMotion {
   /// Control-point velocity u at x for the fluid's velocity v (control values), with b = dV/dx. Collective.
   Net velocity(const Net& x, const Net& b, const Net& v);
 
-  /// Keeps x, b = dV/dx, normals and the tangent of E1 at x for `derivative`.
+  /// Keeps x, b = dV/dx, normals and the tangent of E1 at x for `derivative`. Collective.
   void linearise(const Net& x, const Net& b);
 
   /// du for a change delta of x that changes the fluid's velocity by dv; b and the normals stay. Collective.
@@ -49,8 +50,8 @@ class InterfaceMotion {
     std::vector<int> points;      // own ones
     stokes::Rows<double> layer;   // their rows of A0, in full: what the mesh does must not depend on units or axes
   };
-  Net combined(const Net& x, const Net& b, const std::vector<Vec3>& normals, const Net& v, const Net& f) const;
-  std::vector<Vec3> normals_at(const Net& x) const;
+  Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const;
+  Net normals_at(const Net& x) const;  ///< at the sites of all drops; zeros elsewhere. Collective
 
   const spline::Space& space_;
   std::vector<Drop> drops_;
@@ -61,8 +62,7 @@ class InterfaceMotion {
   const Ranks& ranks_;
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
-  Net x_, flux_;               // as linearised
-  std::vector<Vec3> normals_;  // of the points of all drops, one drop after the other
+  Net x_, flux_, normals_;  // as linearised
 };
 
 }  // namespace tanktread::coupling

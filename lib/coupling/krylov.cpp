@@ -91,6 +91,13 @@ std::vector<double> residuals(const std::string& log) {
   return found;
 }
 
+/// What Belos says, and how, is for `log` alone: it is read for residuals, and some of it asks MPI, which may not be there.
+void check_output_not_given(const Teuchos::ParameterList& given) {
+  for (const char* name : {"Verbosity", "Output Style", "Output Frequency"})
+    if (given.isParameter(name))
+      throw UserError(std::string("Solvers/Belos/") + name + " cannot be set: only the program hears what Belos says.");
+}
+
 }  // namespace
 
 struct Krylov::Impl {
@@ -114,15 +121,15 @@ Krylov::Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list)
   impl_->list->set("Output Style", static_cast<int>(Belos::Brief));
   impl_->list->set("Output Frequency", 1);
   impl_->list->set("Output Stream", Teuchos::RCP<std::ostream>(Teuchos::rcpFromRef(impl_->log)));
-  if (impl_->name.find("GMRES") != std::string::npos) {
-    impl_->list->set("Num Blocks", 200);
-    impl_->list->set("Implicit Residual Scaling", "Norm of RHS");
-    impl_->list->set("Explicit Residual Scaling", "Norm of RHS");
-  }
+  if (impl_->name.find("GMRES") != std::string::npos) impl_->list->set("Num Blocks", 200);
   try {
     Belos::SolverFactory<double, MultiVector, Operator> factory;
+    const Teuchos::RCP<const Teuchos::ParameterList> valid = factory.create(impl_->name, Teuchos::parameterList())->getValidParameters();
+    for (const char* scaling : {"Implicit Residual Scaling", "Explicit Residual Scaling"})  // a start may be right to round-off
+      if (valid->isParameter(scaling)) impl_->list->set(scaling, "Norm of RHS");
     if (list) {
-      deck::check_foreign("Solvers/Belos", *list, *factory.create(impl_->name, Teuchos::parameterList())->getValidParameters());
+      deck::check_foreign("Solvers/Belos", *list, *valid);
+      check_output_not_given(*list);
       impl_->list->setParameters(*list);
     }
     impl_->solver = factory.create(impl_->name, impl_->list);

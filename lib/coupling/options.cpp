@@ -20,7 +20,7 @@ void InterfaceOptions::declare(deck::Section& section) {
 
 void SolverOptions::declare(deck::Section& section) {
   section.key("iterative solver", krylov, deck::Choice{}, "Belos' name of the solver of the implicit step");
-  section.foreign("Belos", belos, "list handed to the iterative solver as it is");
+  section.foreign("Belos", belos, "list handed to the iterative solver as it is; what it says, and how, cannot be set");
   section.foreign("NOX", nox, "list handed as it is to the nonlinear solver of Time/scheme `crank-nicolson`, where that is not `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual of the systems that a velocity (viscosity ratio other than 1) or a traction (rigid particle) comes from");

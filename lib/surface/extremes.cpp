@@ -190,16 +190,18 @@ struct Candidate {
   double spread;  ///< largest minus smallest sampled distance on the element
 };
 
-/// The best of sign * distance over the candidates.
-double best_distance(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign) {
-  double sampled = -infinity, best = -infinity;
+/// Adds the distances at those of the candidates that may hold the best of sign * distance.
+void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
+  double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
   for (const Candidate& c : candidates) {
     if (sign * c.crossing.distance + c.spread < sampled) continue;  // sampling errs by less than what the distance varies by
     for (const auto& method : {stationary_distance, distance_on_curve})
-      if (const std::optional<double> found = method(surface[c.element], centre, c.crossing.at)) best = std::max(best, sign * *found);
+      if (const std::optional<double> distance = method(surface[c.element], centre, c.crossing.at)) {
+        found.smallest = std::min(found.smallest, *distance);
+        found.largest = std::max(found.largest, *distance);
+      }
   }
-  return sign * (std::isfinite(best) ? best : sampled);
 }
 
 }  // namespace
@@ -236,8 +238,13 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  if (longest.empty()) return {};
-  return {best_distance(surface, centre, shortest, -1), best_distance(surface, centre, longest, 1)};
+  Range range;  // of both kinds together: on a circle, all but, samples of chords do not tell near from far
+  add_distances(surface, centre, shortest, -1, range);
+  add_distances(surface, centre, longest, 1, range);
+  if (range.smallest <= range.largest) return range;
+  for (const Candidate& c : shortest) range.smallest = std::min(range.smallest, c.crossing.distance);
+  for (const Candidate& c : longest) range.largest = std::max(range.largest, c.crossing.distance);
+  return range;
 }
 
 }  // namespace tanktread::surface

@@ -112,6 +112,10 @@ SETTINGS = [
     (["Solvers/Belos/Maximum Iteration=30"], ["Solvers/Belos/Maximum Iteration", "was Solvers/Belos/Maximum Iterations meant?"]),
     (["Solvers/Belos/Maximum Iterations=many"], ["Solvers/Belos/Maximum Iterations", "whole number", "many"]),
     (["Solvers/Amesos2/Foo=1"], ["Solvers/Amesos2/Foo", "not a parameter"]),
+    # what Belos says is for the program; some of it needs MPI, which a process that no launcher started does not have
+    (["Solvers/Belos/Verbosity=30"], ["Solvers/Belos/Verbosity", "cannot be set"]),
+    (["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Output Style=0"], ["Solvers/Belos/Output Style", "cannot be set"]),
+    (["Solvers/iterative solver=GCRODR", "Solvers/Belos/Output Frequency=-1"], ["Solvers/Belos/Output Frequency", "cannot be set"]),
     # numbers for lists and lists for numbers, in lists of others
     (["Solvers/Belos/Num Blocks/Verbosity=1"], ["Solvers/Belos/Num Blocks must be a whole number", "a list of keys"]),
     (["Solvers/Belos/Orthogonalization/Foo/Bar=1"], ["Solvers/Belos/Orthogonalization must be text", "a list of keys"]),

@@ -11,6 +11,8 @@
 #include "app/flow_plane.hpp"
 #include "app/turning.hpp"
 #include "base/errors.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
 
 namespace tanktread {
 namespace {
@@ -67,6 +69,23 @@ TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
   const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
   EXPECT_FALSE(plane.holds_flow);
   EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // about the vorticity
+}
+
+// A pole has one tangent only that is not zero.
+TEST(SiteAhead, IsFoundAtAPoleToo) {
+  for (const spline::PoleRule rule : {spline::PoleRule::plain, spline::PoleRule::c1}) {
+    const spline::PolarMesh mesh{10, 4, rule};
+    const spline::Space space = spline::space(mesh);
+    surface::ParticleShape shape;
+    shape.radius = 1;
+    const Net sphere = surface::initial_shape(space, mesh, 0, shape);
+    for (const double away : {0.0, 1e-9, 1e-3, 0.02, 0.1}) {
+      const FlowPlane plane = plane_normal_to(Vec3(std::sin(away), 1, 0.7 * away));
+      const spline::Site site = site_ahead(space, sphere, Vec3::Zero(), plane);
+      const Vec3 y = plane.components(surface::value(space, sphere, site));
+      EXPECT_NEAR(y[0] / y.norm(), 1, 1e-9) << away;  // so that its angle is 0 to 1e-4
+    }
+  }
 }
 
 TEST(Turnings, CountPastWholeTurns) {

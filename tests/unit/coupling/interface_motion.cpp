@@ -107,6 +107,38 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   }
 }
 
+// An observer who turns sees the velocity of his frame on top, and nothing else.
+TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
+  Drop drop;
+  drop.flow.type = "linear";
+  const Mat3 strain = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
+  const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
+  Net x = drop.sphere;
+  x.col(0) *= 1.2, x.col(2) *= 0.9;
+  x = x.rowwise() + Eigen::RowVector3d(0.4, -1, 2);
+  for (const Net& shape : {drop.sphere, x})
+    for (const char* motion : {"material", "normal", "relaxed"}) {
+      drop.flow.gradient = strain;
+      const Net held = drop.velocity(motion, shape);
+      drop.flow.gradient = strain + turns;
+      const Net turned = drop.velocity(motion, shape);
+      EXPECT_LT((turned - shape * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << motion;  // round-off
+    }
+}
+
+// A velocity along the surface alone is that of a steady shape.
+TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
+  Drop drop;
+  Net x = drop.sphere;
+  x.col(0) *= 1.5;
+  drop.flow.type = "linear";
+  const Mat3 shear = (Mat3() << 0, 0, 2.25, 0, 0, 0, -1, 0, 0).finished();  // round and round this ellipsoid
+  drop.flow.gradient = shear;
+  drop.parameters.volume.constraint = "none";
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+  EXPECT_LT(drop.velocity("normal", x).norm(), 0.02 * (x * shear.transpose()).norm());  // what the hold of a thousandth leaves
+}
+
 TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
   Drop drop;
   drop.flow.type = "linear";

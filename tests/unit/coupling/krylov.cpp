@@ -126,6 +126,23 @@ TEST(Krylov, EndsInTheSameIterationOnAllRanks) {
   }
 }
 
+// The residual is one of the right-hand side, not of the start, which may leave nothing but rounding.
+TEST(Krylov, AStartThatIsTheSolutionIsLeftAsItIs) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2), solution = a.partialPivLu().solve(b);
+  const Krylov::Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  for (const char* name : {"GMRES", "Flexible GMRES", "BICGSTAB", "TFQMR"}) {
+    Eigen::VectorXd x = solution;
+    const SolveReport report = Krylov(name, nullptr).solve(apply, b, x, 1e-8);
+    EXPECT_TRUE(report.converged) << name;
+    EXPECT_LE(report.iterations, 1) << name;
+    EXPECT_LT((x - solution).norm(), 1e-8 * solution.norm()) << name;
+  }
+}
+
 TEST(Krylov, ZeroRightHandSideCostsNothing) {
   Eigen::VectorXd x = Eigen::VectorXd::Ones(5);
   const SolveReport report = Krylov("GMRES", nullptr).solve([](const double*, double*) { FAIL(); }, Eigen::VectorXd::Zero(5), x, 1e-8);

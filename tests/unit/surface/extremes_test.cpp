@@ -1,6 +1,10 @@
 #include "surface/extremes.hpp"
 
+#include <numbers>
+#include <numeric>
+
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "base/errors.hpp"
 #include "surface/geometry.hpp"
@@ -41,6 +45,26 @@ TEST(Extremes, OfNoElementsAreOfNothingAndASurfaceThatThePlaneMissesIsRefused) {
   Measures measures = geometry.measures(net);
   measures.centroid[1] = 2;
   EXPECT_THROW(geometry.deformation(net, measures), RunFailure);
+}
+
+// Where the section is a circle, all but, what is sampled on chords does not tell near from far.
+TEST(Extremes, OfACoarsePolarSphereAreInOrderInEveryPlane) {
+  const spline::PolarMesh mesh{8, 5, spline::PoleRule::c1};
+  const spline::Space space = spline::space(mesh);
+  ParticleShape shape;
+  shape.radius = 1;
+  const Net sphere = initial_shape(space, mesh, 2, shape);
+  const BezierMap map(space);
+  std::vector<int> all(space.elements.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (const double tilt : {0.0, 0.3, 0.9, std::numbers::pi / 2})
+    for (int turn = 0; turn < 90; ++turn) {
+      const Mat3 q = (Eigen::AngleAxisd(tilt, Vec3::UnitX()) * Eigen::AngleAxisd(turn * std::numbers::pi / 90, Vec3::UnitZ())).toRotationMatrix();
+      const Range range = section_distances(Patches(map, sphere * q.transpose(), all), Vec3::Zero());
+      EXPECT_LE(range.smallest, range.largest) << tilt << " " << turn;
+      EXPECT_NEAR(range.smallest, 1, 0.02) << tilt << " " << turn;  // what eight elements around leave
+      EXPECT_NEAR(range.largest, 1, 0.02) << tilt << " " << turn;
+    }
 }
 
 }  // namespace
