@@ -20,8 +20,8 @@ void ParticleOptions::declare(deck::Section& section) {
               "lambda: viscosity inside over viscosity outside; at most 1e14 x Solvers/tolerance, and from 1e5 on the particle hardly deforms: "
               "one that does not at all is rigid, Particle/motion `free`");
   section.key("motion", motion, deck::Choice{"deforming", "prescribed", "free"},
-              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, of one particle "
-              "a steady problem; `free`: rigid, with `force` and `torque`, by themselves zero");
+              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, of one "
+              "particle a steady problem; `free`: rigid, with `force` and `torque`, by themselves zero");
   section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
   section.key("force", force, deck::any(), "force", "on a `free` body, three numbers; zero if not given");

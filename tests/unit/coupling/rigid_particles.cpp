@@ -111,7 +111,8 @@ TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
 
 /// ../shared: multipole solution of two spheres, distance of centres 3 (Jeffrey & Onishi's functions).
 TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
-  Bodies pair({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{true, {}}}}, 4, Mat3::Zero());
+  const Rigid pulled{true, {Vec3(1, 0, 0), Vec3::Zero()}}, held{true, {}};
+  Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), held}}, 4, Mat3::Zero());
   Capsule system = pair.system();
   const RigidParticles& along = system.rigid_about(pair.rest, 0);
   const double unit = 6 * pi * viscosity;

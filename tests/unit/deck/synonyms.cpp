@@ -16,13 +16,11 @@ TEST(Synonyms, AreFoundHoweverTheyAreWritten) {
 TEST(MissingFeatures, AreKnownByPathOrName) {
   EXPECT_NE(missing_feature("Membrane/viscosity"), "");
   EXPECT_EQ(missing_feature("Flow/viscosity"), "");
-  EXPECT_NE(missing_feature("Flow/gravity"), "");
-  EXPECT_NE(missing_feature("Gravity"), "");
+  EXPECT_NE(missing_feature("Surfactant"), "");
 }
 
 TEST(UnknownKeys, AreRefusedWithWhatIsMissingOrMeant) {
-  EXPECT_EQ(refusal("    Gravity: 1\n"),
-            "Kinds/Gravity is not a key of the deck: gravity and buoyancy are not there (see Limits in README.md).");
+  EXPECT_EQ(refusal("    Surfactant: 1\n"), "Kinds/Surfactant is not a key of the deck: surfactants are not there (see Limits in README.md).");
   EXPECT_EQ(refusal("    tend: 1\n"), "Kinds/tend is not a key of the deck; was Time/final time meant?");
   EXPECT_EQ(refusal_of("Tanktread:\n  Particles:\n    - {a: 1}\n"),
             "deck.yaml, line 3: Particles is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists of "
