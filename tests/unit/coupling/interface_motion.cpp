@@ -53,7 +53,7 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   const Net v = drop.velocity("normal", drop.sphere);
   const auto [across, along] = drop.components(drop.sphere, v);
   EXPECT_GT(across, 0.1);
-  EXPECT_LT(along, 1e-13);
+  EXPECT_LT(along, 1e-12);  // round-off of interpolation, and of a rotation that vanishes
 }
 
 // Tension alone leaves a sphere to the flow as a blob of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970, section 5.
@@ -136,7 +136,7 @@ TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
   drop.flow.gradient = shear;
   drop.parameters.volume.constraint = "none";
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
-  EXPECT_LT(drop.velocity("normal", x).norm(), 0.02 * (x * shear.transpose()).norm());  // what the hold of a thousandth leaves
+  EXPECT_LT(drop.velocity("normal", x).norm(), 0.04 * (x * shear.transpose()).norm());  // what the second term of (4.14) leaves
 }
 
 TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
