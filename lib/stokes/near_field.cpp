@@ -84,10 +84,11 @@ void NearField::view(int e) {
   double square = 0;
   for (int b = 0; b < t.n_bernstein; ++b) square = std::max(square, (point(points, t.n_bernstein, b) - centre).squaredNorm());
   view.radius = std::sqrt(square);
-  const int middle = t.n_bernstein / 2 + (t.degree % 2 ? (t.degree + 1) / 2 : 0);
   view.normal = u.cross(v).normalized();
-  view.bulge = std::max((point(points, t.n_bernstein, 0) - centre + u + v).norm(),
-                        std::abs((point(points, t.n_bernstein, middle) - centre).dot(view.normal)));
+  view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // the same at all corners
+  for (int j = 1; j < t.degree; ++j)  // of all inner points, so that it does not depend on where s and t start
+    for (int i = 1; i < t.degree; ++i)
+      view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
 }
 
 void NearField::update(const std::vector<double>& bezier, const PanelImages& images) {
