@@ -189,26 +189,43 @@ double angle_in(const FlowPlane& plane, const Vec3& y) {
   return std::atan2(-at[2], at[0]) * 180 / std::numbers::pi;
 }
 
+namespace {
+
+/// How far along the plane's first direction a place lies, seen from another: the cosine of the angle between.
+double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
+
+/// The site of one element nearest to being ahead, by Newton's method from a start.
+spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
+  const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };  // a pole has no way out
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
+    const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
+    const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // a pole, where one of them may be exactly zero
+    site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
+    site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
+  }
+  return site;
+}
+
+}  // namespace
+
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane) {
   constexpr int intervals = 4;
   spline::Site best;
   double most = -2;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const surface::ElementPoints element(space, x, e);
-    for (int k = 0; k < (intervals + 1) * (intervals + 1); ++k) {
-      const double s = k % (intervals + 1) / double(intervals), t = k / (intervals + 1) / double(intervals);
-      const double ahead = plane.components(surface::place(element.patch(), s, t) - from).normalized()[0];
-      if (ahead > most + 1e-12) best = {e, s, t}, most = ahead;
+    const auto of = [&](const spline::Site& site) { return ahead(plane, surface::place(element.patch(), site.s, site.t) - from); };
+    spline::Site start;
+    double nearest = -2;
+    for (int k = 0; k < intervals * intervals; ++k) {
+      const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
+      if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
     }
-  }
-  const surface::ElementPoints element(space, x, best.element);
-  for (int iteration = 0; iteration < 6; ++iteration) {  // Newton's method, within the element
-    const surface::Jet at = surface::jet(element.patch(), best.s, best.t);
-    const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
-    const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // a pole, where one of them may be exactly zero
-    best.s = std::clamp(best.s - (y[1] * dt[2] - y[2] * dt[1]) / determinant, 0., 1.);
-    best.t = std::clamp(best.t - (ds[1] * y[2] - ds[2] * y[1]) / determinant, 0., 1.);
+    if (nearest < 0.5) continue;  // no element of a closed surface is seen at so wide an angle
+    for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
+      if (const double here = of(site); here > most + 1e-12) best = site, most = here;
   }
   return best;
 }

@@ -313,6 +313,8 @@ void Scene::check() const {
     throw UserError(
         "Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
         "the load per reference area (3.7) needs `flux` or `exact`.");
+  if (membrane.law != "surface tension" && membrane.load == "strong" && surface.polar() && surface.poles == "plain")
+    throw UserError("Membrane/load `strong` and Surface/poles `plain` contradict each other: a degenerate element has no load at a pole.");
   if (quadrature.rule == "desingularised" && surface.polar() && surface.poles == "plain")
     throw UserError("Quadrature/rule `desingularised` and Surface/poles `plain` contradict each other: a degenerate element has no normal "
                     "at its pole.");

@@ -94,11 +94,13 @@ class Scene:  # an ellipsoid of a kind (capsule, free, or how the mesh of a drop
 
 
 def _difference(one, other, image=numpy.eye(3)):
-    """Of two surfaces, the first turned by `image`, as sets of points, and of the series, relative."""
+    """Of two surfaces, the first turned by `image`, as sets of points, and of the series, relative; of a tension over the modulus, which may vanish,
+    as it is."""
     check(len(one[0]) == len(other[0]), f"{len(one[0])} and {len(other[0])} points")
     between = (one[0] @ image.T)[:, None, :] - other[0][None, :, :]
     apart = numpy.sqrt((between**2).sum(2).min(1).max())
-    return max([apart] + [abs(value / other[1][key] - 1) for key, value in one[1].items()])
+    sizes = {key: abs(other[1][key]) if any(SERIES[key]) else 1 for key in one[1]}
+    return max([apart] + [abs(value - other[1][key]) / sizes[key] for key, value in one[1].items()])
 
 
 def _reordered(file):

@@ -115,6 +115,12 @@ def _surface(dice):
     return surface
 
 
+def _load_that_the_poles_have(membrane, surface):
+    """A plain pole has no load in the strong form, which is refused."""
+    if surface.get("poles") == "plain":
+        membrane.pop("load", None)
+
+
 def _quadrature(dice, tube, surface):
     quadrature = {"tolerance": dice.choice([1e-3, 1e-4, 1e-5])}
     if dice.random() < 0.2:
@@ -186,6 +192,7 @@ def _scene(seed):
     period = size / speed if speed else 1.0
     if not rigid:
         deck["Membrane"], stiffness = _membrane(dice, kind, flow, size, speed)
+        _load_that_the_poles_have(deck["Membrane"], deck["Surface"])
         if not speed:
             period = 5 * flow.get("viscosity", 1) * size / stiffness
         deck["Volume"] = {"constraint": dice.choice(["exact", "exact", "exact", "flux"])}

@@ -139,6 +139,9 @@ TEXTS = [
     ("Tanktread:\n  Flow: {type: simple shear}\n", ["Time/final time", "missing"]),
     ("Tanktread:\n  Particles:\n    - radius: 1\n    - radius: 2\n", ["line 3", "Particles"]),
     ("Tanktread:\n  Flow: {type: uniform}\n  Time:\n    final time:\n", ["Time/final time", "is nothing"]),
+    ("Tanktread:\n  Flow: {type: simple shear}\n  Membrane: {capillary number: 0.3, load: strong}\n"
+     "  Surface: {mesh: polar, azimuthal elements: 8, meridional elements: 4, poles: plain}\n  Time: {final time: 1}\n",
+     ["Membrane/load", "Surface/poles", "contradict"]),
     ("# only a comment\n", ["empty", "Tanktread"]),
     ("Dear reader,\nthis is a letter.\n", ["not YAML", "Dear reader,"]),
     ("<html><body>404</body></html>\n", ["not YAML", "line 1"]),

@@ -79,7 +79,7 @@ TEST(SiteAhead, IsFoundAtAPoleToo) {
     surface::ParticleShape shape;
     shape.radius = 1;
     const Net sphere = surface::initial_shape(space, mesh, 0, shape);
-    for (const double away : {0.0, 1e-9, 1e-3, 0.02, 0.1}) {
+    for (const double away : {0.0, 1e-3, 0.02, 0.1}) {
       const FlowPlane plane = plane_normal_to(Vec3(std::sin(away), 1, 0.7 * away));
       const spline::Site site = site_ahead(space, sphere, Vec3::Zero(), plane);
       const Vec3 y = plane.components(surface::value(space, sphere, site));
