@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The particle in motion, as a GIF: its surface with the elements and a field, and below it over time D and the number of control points,
-or of a rigid particle its inclination and angular velocity.
+or of a rigid particle its inclination and angular velocity; of several D of each that deforms and the smallest gap.
 
 A frame is a saved step: `Output/interval` says how many there are. Between two of them nothing is made up.
 """
@@ -19,8 +19,8 @@ import style
 from deformation import unbroken
 from style import plt
 
-DEFORMABLE = {"taylor_inertia": "D", "n_control_points": "control points"}  # series, and what stands beside them
-RIGID = {"inclination": "incl., °", "angular_velocity_x2": "ω₂"}
+DEFORMABLE = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}  # what stands beside an axis, and its series
+RIGID = {"incl., °": ["inclination"], "ω₂": ["angular_velocity_x2"]}
 
 
 def main():
@@ -68,20 +68,22 @@ class Film:
         self.figure.colorbar(ScalarMappable(self.norm, self.colours), cax=bar, label=run.label(field, "|{}|" if vector else "{}"))
         upper = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
         self.panels = [upper, self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper)]
-        self.shown = DEFORMABLE if "taylor_inertia" in run.series else RIGID
-        run.require(*self.shown)
+        self.shown = shown(run)
+        run.require(*(name for names in self.shown.values() for name in names))
         self.marks = self.draw_series()
 
     def draw_series(self):
         marks = []
-        for axis, (name, label), color in zip(self.panels, self.shown.items(), style.RUNS):
-            values = self.run.series[name]
-            drawn = unbroken(self.run.time, values) if name == "inclination" else (self.run.time, values)
-            axis.plot(*drawn, color=color, drawstyle="steps-post" if name == "n_control_points" else "default")
+        for axis, (label, names), color in zip(self.panels, self.shown.items(), style.RUNS):
+            for name in names:
+                values = self.run.series[name]
+                drawn = unbroken(self.run.time, values) if name == "inclination" else (self.run.time, values)
+                axis.plot(*drawn, color=color, linewidth=1.8 if len(names) < 9 else 0.6, drawstyle="steps-post" if name == "n_control_points" else "default")
+                marks.append(axis.plot([], [], "o", color=style.INK, markersize=4.5 if len(names) < 9 else 1.5, clip_on=False)[0])
             axis.set_ylabel(label)
-            if values.min() >= 0:
-                axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
-            marks.append(axis.plot([], [], "o", color=style.INK, markersize=4.5, clip_on=False)[0])
+            largest = max(self.run.series[name].max() for name in names)
+            if min(self.run.series[name].min() for name in names) >= 0:
+                axis.set_ylim(0, 1.1 * max(largest, 1e-6))
         self.panels[0].tick_params(labelbottom=False)
         self.panels[1].set_xlabel(self.run.time_label)
         self.panels[1].set_xlim(self.run.time[0], self.run.time[-1])
@@ -99,9 +101,17 @@ class Film:
         row = numpy.searchsorted(self.run.series["time"], shot.time * (1 - 1e-12))  # of this saved step, the last one if none came after
         row = min(row, len(self.run.time) - 1)
         self.surface.set_title(f"{self.run.name}, t = {shot.time:.4g}: {self.run.series['n_control_points'][row]:.0f} control points")
-        for mark, name in zip(self.marks, self.shown):
+        for mark, name in zip(self.marks, (name for names in self.shown.values() for name in names)):
             mark.set_data([self.run.time[row]], [self.run.series[name][row]])
         return self.marks
+
+
+def shown(run):
+    """What stands below the surface."""
+    if not run.particles:
+        return DEFORMABLE if "taylor_inertia" in run.series else RIGID
+    deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
+    return ({"D": deforming} if deforming else {}) | {"smallest gap": ["smallest_gap"]}
 
 
 def middle(shot):

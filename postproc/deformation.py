@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Deformation and inclination over time, beside the curves of the literature."""
+"""Deformation and inclination over time, beside the curves of the literature; of each of several particles that deforms, without these."""
 
 import argparse
+import sys
 
 import needs  # before what it looks for
 import numpy
@@ -24,12 +25,16 @@ def main():
 
     runs = [read.run(directory) for directory in arguments.results]
     for run in runs:
-        run.require("taylor_inertia", "taylor_surface", "inclination")
+        if not run.particles:
+            run.require("taylor_inertia", "taylor_surface", "inclination")
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4 if len(runs) == 1 else 9.8, 6.4), sharex=True, height_ratios=[3, 2])
     known = []
     for run in runs:
         known += [curve for curve in literature.curves(run, arguments.curves) if curve.label not in [one.label for one in known]]
     for run, color in zip(runs, style.RUNS * len(runs)):
+        if run.particles:
+            draw_particles(upper, lower, run, arguments.deformation, style.RUNS if len(runs) == 1 else [color])
+            continue
         draw_run(upper, lower, run, arguments.deformation, color)
         report(run, literature.curves(run, arguments.curves))
     draw_literature(upper, lower, known, end=max(run.time[-1] for run in runs))
@@ -68,6 +73,20 @@ def draw_run(upper, lower, run, deformation, color):
             at = expected["at"] * run.rate[0] if "at" in expected else t[-1]
             known = {text.get_label() for text in axes.lines}
             axes.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6, label=EXPECTED if EXPECTED not in known else None)
+
+
+def draw_particles(upper, lower, run, deformation, colors):
+    """The same of several, thin where they are many."""
+    deforming = [name for name in run.particles if f"{name}/{deformation}" in run.series]
+    if not deforming:
+        sys.exit(f"{run.directory}: none of its particles deforms")
+    few = len(deforming) <= len(style.RUNS)
+    for k, name in enumerate(deforming):
+        pen = {"color": colors[k % len(colors)] if few else colors[0], "linewidth": 1.8 if few else 0.5, "zorder": 3}
+        words = f"{run.name}: {name}" if few else f"{run.name}: {len(deforming)} particles" if k == 0 else None
+        upper.plot(run.time, run.series[f"{name}/{deformation}"], label=words, **pen)
+        shaped = run.series[f"{name}/taylor_inertia"] > 1e-8
+        lower.plot(*unbroken(run.time[shaped], run.series[f"{name}/inclination"][shaped]), **pen)
 
 
 def unbroken(t, angle):

@@ -33,6 +33,8 @@ def main():
         path.plot(dx, dz, color=color, label=run.name)
         gap.plot(dx, run.series["smallest_gap"] / run.radius, color=color)
         for name, line in (first, "-"), (second, (0, (4, 2))):
+            if f"{name}/taylor_inertia" not in run.series:  # it is rigid
+                continue
             deformation.plot(dx, run.series[f"{name}/taylor_inertia"], color=color, linestyle=line, label=name if color == style.RUNS[0] else None)
         least = numpy.argmin(run.series["smallest_gap"])
         print(f"{run.name}: smallest gap {run.series['smallest_gap'][least] / run.radius:.5f} R_C at dx = {dx[least]:.3f}, largest dz {dz.max():.5f}")
@@ -45,7 +47,8 @@ def main():
     gap.set_ylabel("smallest gap / R$_C$")
     gap.set_ylim(bottom=0)
     deformation.set_ylabel("D")
-    deformation.legend()
+    if deformation.lines:
+        deformation.legend()
     deformation.set_xlabel("dx / R$_C$")
     style.save(figure, arguments.output)
 
