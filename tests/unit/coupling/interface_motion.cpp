@@ -53,7 +53,7 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   const Net v = drop.velocity("normal", drop.sphere);
   const auto [across, along] = drop.components(drop.sphere, v);
   EXPECT_GT(across, 0.1);
-  EXPECT_LT(along, 1e-12);  // round-off of interpolation, and of a rotation that vanishes
+  EXPECT_LT(along, 1e-10);  // round-off of interpolation, and, over the 1e-3 that holds it, of a rotation that vanishes
 }
 
 // Tension alone leaves a sphere to the flow as a blob of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970, section 5.
@@ -87,7 +87,7 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
     for (const auto& sites : drop.space.collocation)
       if (sites.size() > 4) {  // a pole, about which the flow is (x1, 0, -x3)
         const Vec3 x = surface::value(drop.space, drop.sphere, sites.front()), u = surface::value(drop.space, v, sites.front());
-        EXPECT_LT(u.head<2>().norm(), 1e-12 * std::abs(u[2])) << motion;
+        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << motion;  // round-off over the 1e-3 that holds the rotation of a sphere
         EXPECT_LT(u[2] * x[2], -0.1) << motion;
       }
   }
