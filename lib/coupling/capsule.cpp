@@ -320,6 +320,23 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
+/// Rows of H on every rank: those that ranks have assembled, or assembled here.
+stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
+  stokes::Rows<double> rows;
+  if (!assembled) {
+    double_layer_->assemble(x, targets, rows);
+    return rows;
+  }
+  rows.setZero(3 * static_cast<Eigen::Index>(targets.size()), 3 * x.rows());
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto own = std::ranges::lower_bound(own_points_, targets[k]);
+    if (own == own_points_.end() || *own != targets[k]) continue;
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = double_rows_.middleRows<3>(3 * (own - own_points_.begin()));
+  }
+  ranks_.add({rows.data(), static_cast<std::size_t>(rows.size())});
+  return rows;
+}
+
 /// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
 /// are solved for. Starts from `near`, else from the right-hand side.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near) {
@@ -359,8 +376,12 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   Eigen::VectorXd v = near.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
   if (!alone_) alone_.emplace(particles(), rest_, parameters_.quadrature, parameters_.viscosity);
+  const auto rows_of = [&](std::span<const int> targets) { return double_rows_of(x, targets, assembled); };
+  const FilmInverses films(particles(), *alone_, rigid_, x, rows_of);
   const auto precondition = [&](const double* in, double* out) {
     Net y = Eigen::Map<const Net>(in, n, 3);
+    alone_->take_to_sites(y);
+    films.add(y);
     alone_->solve(rigid_, y);
     Eigen::Map<Net>(out, n, 3) = y;
   };

@@ -14,6 +14,7 @@
 #include "coupling/interface_motion.hpp"
 #include "coupling/krylov.hpp"
 #include "coupling/nodal_operator.hpp"
+#include "coupling/film_inverses.hpp"
 #include "coupling/one_body.hpp"
 #include "coupling/options.hpp"
 #include "coupling/particle.hpp"
@@ -169,6 +170,7 @@ class Capsule : public Dynamics {
   Net viscous(const Net& v, const Net& hv) const;
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);
+  stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
   Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near);
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);

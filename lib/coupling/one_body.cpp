@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include <Eigen/LU>
+
 #include "coupling/collocation.hpp"
 #include "stokes/double_layer.hpp"
 #include "stokes/single_layer.hpp"
@@ -18,12 +20,12 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Net&
       const Factors& of = *use.factors;
       return of.told == particle.rigid->told && of.rest.rows() == shape.rows() && (of.rest - shape).norm() <= 1e-12 * shape.norm();
     });
-    factors_.push_back({p, particle.block, alike == factors_.end() ? factored(particle, own, quadrature, viscosity) : alike->factors});
+    factors_.push_back({p, particle.block, alike == factors_.end() ? inverted(particle, own, quadrature, viscosity) : alike->factors});
   }
 }
 
 /// R B = R (v -> <v>) - H, or with (1/mu) A (v -> (mu/R_C) <v>).
-std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::factored(const Particle& particle, const Net& rest,
+std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const Net& rest,
                                                                           const quadrature::Options& quadrature, double viscosity) {
   auto factors = std::make_shared<Factors>();
   factors->rest = rest.rowwise() - rest.row(0);
@@ -45,17 +47,35 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::factored(const 
     if (factors->told) layer.apply(rest, field / particle.radius, stokes::Measure::reference, all, at_sites);
     matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * body.mean_functional(0, k).transpose();
   }
-  factors->lu.compute(matrix);
+  factors->inverse = matrix.partialPivLu().inverse();
   return factors;
+}
+
+const OneBodyInverses::Use* OneBodyInverses::of_particle(std::size_t p) const {
+  const auto use = std::ranges::find(factors_, p, &Use::particle);
+  return use == factors_.end() ? nullptr : &*use;
+}
+
+void OneBodyInverses::take_to_sites(Net& y) const {
+  for (const auto& [particle, block, factors] : factors_) block.rows(y) = factors->sites * Net(block.rows(y));
 }
 
 void OneBodyInverses::solve(const RigidParticles& placed, Net& y) const {
   for (const auto& [particle, block, factors] : factors_) {
     const Mat3 turn = placed.turn(particle);
-    const Net right = factors->sites * Net(block.rows(y) * turn);
-    const Eigen::VectorXd solution = factors->lu.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), right.size()));
+    const Net right = block.rows(y) * turn;
+    const Eigen::VectorXd solution = factors->inverse * Eigen::Map<const Eigen::VectorXd>(right.data(), right.size());
     block.rows(y) = Eigen::Map<const Net>(solution.data(), right.rows(), 3) * turn.transpose();
   }
+}
+
+Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size_t p, std::span<const int> sites) const {
+  const Eigen::MatrixXd& inverse = of_particle(p)->factors->inverse;
+  const Mat3 turn = placed.turn(p);
+  Eigen::MatrixXd columns(inverse.rows(), 3 * static_cast<Eigen::Index>(sites.size()));
+  for (std::size_t k = 0; k < sites.size(); ++k) columns.middleCols<3>(3 * static_cast<Eigen::Index>(k)) = inverse.middleCols<3>(3 * sites[k]) * turn.transpose();
+  for (Eigen::Index a = 0; a < columns.rows(); a += 3) columns.middleRows<3>(a) = (turn * columns.middleRows<3>(a)).eval();
+  return columns;
 }
 
 }  // namespace tanktread::coupling

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
@@ -14,7 +14,7 @@
 
 namespace tanktread::coupling {
 
-/// Factors of (2.23) for each rigid body alone, in its own axes: they serve wherever it goes, and equal bodies have them in common. A body of
+/// Inverses of (2.23) for each rigid body alone, in its own axes: they serve wherever it goes, and equal bodies have them in common. A body of
 /// more than `most_points` control points goes without. Not in single precision, whose rounding GMRES takes for a residual that does not fall.
 class OneBodyInverses {
  public:
@@ -25,22 +25,31 @@ class OneBodyInverses {
 
   bool empty() const { return factors_.empty(); }
 
-  /// Rows of bodies become what each alone would have for them; all others stay. `placed`: where the bodies are.
+  bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
+
+  /// Rows of bodies become the values at their sites of what they are control values of.
+  void take_to_sites(Net& y) const;
+
+  /// Rows of bodies, right-hand sides at sites, become what each alone would have for them. `placed`: where the bodies are.
   void solve(const RigidParticles& placed, Net& y) const;
+
+  /// Columns of the inverse of particle p, those of a right-hand side at `sites`; shape (3 points, 3 sites).
+  Eigen::MatrixXd columns(const RigidParticles& placed, std::size_t p, std::span<const int> sites) const;
 
  private:
   struct Factors {
     Net rest;  // about its first point
     bool told;
     Eigen::SparseMatrix<double> sites;  // R
-    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+    Eigen::MatrixXd inverse;
   };
   struct Use {
     std::size_t particle;
     spline::Block block;
     std::shared_ptr<const Factors> factors;
   };
-  static std::shared_ptr<const Factors> factored(const Particle& particle, const Net& rest, const quadrature::Options& quadrature, double viscosity);
+  const Use* of_particle(std::size_t p) const;
+  static std::shared_ptr<const Factors> inverted(const Particle& particle, const Net& rest, const quadrature::Options& quadrature, double viscosity);
 
   std::vector<Use> factors_;
 };

@@ -126,6 +126,21 @@ TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
   EXPECT_NEAR(in_strain.stresslet(free.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 2e-4);  // S0
 }
 
+/// What each is alone takes 41 iterations at the narrower gap.
+TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
+  const Rigid pulled{true, {Vec3(1, 0.5, 0), Vec3(0, 1, 2)}}, held{true, {}};
+  std::vector<long> iterations;
+  for (const double gap : {0.1, 0.005}) {
+    Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(2 + gap, 0, 0), Vec3(1, 1.2, 0.8), held}}, 7, Mat3::Zero());
+    pair.parameters.solvers.tolerance = 1e-8;
+    Capsule system = pair.system();
+    system.velocity(pair.rest);
+    iterations.push_back(system.work().most_velocity_iterations);
+  }
+  EXPECT_LE(iterations[0], 20);
+  EXPECT_LE(iterations[1], 20);
+}
+
 /// The limit is approached like 1/lambda.
 TEST(RigidParticles, VeryViscousDropsMoveAlike) {
   const auto velocity = [](double viscosity_ratio) {
