@@ -45,7 +45,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       mass_(parameters.solvers.direct, parameters.symmetry),
       krylov_(parameters.solvers.krylov, parameters.solvers.belos),
       inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos),
-      rigid_(parameters_.particles, initial, parameters.viscosity),
+      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature),
       tube_(std::move(tube)) {
   surface::Symmetry& symmetry = parameters_.symmetry;
   if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
@@ -247,6 +247,7 @@ Net Capsule::present_velocity_there(const Net& x, const Net& near) {
   rigid_.add_load(f);
   latest_.load = f;
   Net v = load_velocity(x, f);
+  rigid_.add_lacking(v);
   rigid_.subtract_told(v);
   if (constrained) constrain(v, b, c);
   if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
@@ -375,7 +376,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   Eigen::VectorXd v = near.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
-  if (!alone_) alone_.emplace(particles(), rest_, parameters_.quadrature, parameters_.viscosity);
+  if (!alone_) alone_.emplace(particles(), rigid_, rest_, parameters_.quadrature);
   const auto rows_of = [&](std::span<const int> targets) { return double_rows_of(x, targets, assembled); };
   const FilmInverses films(particles(), *alone_, rigid_, x, rows_of);
   const auto precondition = [&](const double* in, double* out) {

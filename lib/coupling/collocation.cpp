@@ -6,17 +6,25 @@
 
 namespace tanktread::coupling {
 
-Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space) {
+std::vector<spline::Site> first_sites(const spline::Space& space) {
+  std::vector<spline::Site> sites;
+  for (const auto& several : space.collocation) sites.push_back(several.front());
+  return sites;
+}
+
+Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, std::span<const spline::Site> places) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < space.n_points; ++i) {
-    const spline::Site& site = space.collocation[static_cast<size_t>(i)].front();
-    const spline::Element& element = space.elements[static_cast<size_t>(site.element)];
-    const Eigen::VectorXd values = spline::basis(element, site.s, site.t, 0).value;
-    for (size_t a = 0; a < element.points.size(); ++a) entries.emplace_back(i, element.points[a], values[static_cast<Eigen::Index>(a)]);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const spline::Element& element = space.elements[static_cast<std::size_t>(places[i].element)];
+    const Eigen::VectorXd values = spline::basis(element, places[i].s, places[i].t, 0).value;
+    for (std::size_t a = 0; a < element.points.size(); ++a)
+      entries.emplace_back(static_cast<int>(i), element.points[a], values[static_cast<Eigen::Index>(a)]);
   }
-  Eigen::SparseMatrix<double> matrix(space.n_points, space.n_points);
+  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(places.size()), space.n_points);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
+
+Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space) { return value_matrix(space, first_sites(space)); }
 
 }  // namespace tanktread::coupling

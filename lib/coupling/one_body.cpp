@@ -11,7 +11,8 @@
 
 namespace tanktread::coupling {
 
-OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Net& rest, const quadrature::Options& quadrature, double viscosity) {
+OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const RigidParticles& bodies, const Net& rest,
+                                 const quadrature::Options& quadrature) {
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Particle& particle = particles[p];
     if (!particle.rigid || particle.block.n_points > most_points) continue;
@@ -20,13 +21,13 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Net&
       const Factors& of = *use.factors;
       return of.told == particle.rigid->told && of.rest.rows() == shape.rows() && (of.rest - shape).norm() <= 1e-12 * shape.norm();
     });
-    factors_.push_back({p, particle.block, alike == factors_.end() ? inverted(particle, own, quadrature, viscosity) : alike->factors});
+    factors_.push_back({p, particle.block, alike == factors_.end() ? inverted(particle, bodies, p, own, quadrature) : alike->factors});
   }
 }
 
 /// R B = R (v -> <v>) - H, or with (1/mu) A (v -> (mu/R_C) <v>).
-std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const Net& rest,
-                                                                          const quadrature::Options& quadrature, double viscosity) {
+std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
+                                                                          const Net& rest, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
   factors->rest = rest.rowwise() - rest.row(0);
   factors->told = particle.rigid->told;
@@ -35,17 +36,18 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   std::iota(all.begin(), all.end(), 0);
   stokes::Rows<double> matrix;
   stokes::DoubleLayer(*particle.space, quadrature).assemble(rest, all, matrix);  // -H of the factor -1
-  Particle alone = particle;
-  alone.block = spline::whole(*particle.space);
-  const RigidParticles body({&alone, 1}, rest, viscosity);
   stokes::SingleLayer layer(*particle.space, quadrature);
   layer.set_reference(rest);
+  const Vec3 centre = bodies.rest_centre(p);
   for (int k = 0; k < 6; ++k) {
     RigidMotion unit;
     (k < 3 ? unit.velocity : unit.angular_velocity)[k % 3] = 1;
-    Net field = rigid_velocity(rest, unit, body.centre(0)), at_sites = factors->sites * field;
-    if (factors->told) layer.apply(rest, field / particle.radius, stokes::Measure::reference, all, at_sites);
-    matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * body.mean_functional(0, k).transpose();
+    Net field = rigid_velocity(rest, unit, centre), at_sites = factors->sites * field;
+    if (factors->told) {
+      layer.apply(rest, field / particle.radius, stokes::Measure::reference, all, at_sites);
+      at_sites += factors->sites * bodies.lacking(p, k) / particle.radius;
+    }
+    matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * bodies.mean_functional(p, k).transpose();
   }
   factors->inverse = matrix.partialPivLu().inverse();
   return factors;

@@ -20,8 +20,8 @@ class OneBodyInverses {
  public:
   static constexpr int most_points = 2000;
 
-  /// `rest`: net of all particles; `viscosity`: mu of the outer fluid.
-  OneBodyInverses(std::span<const Particle> particles, const Net& rest, const quadrature::Options& quadrature, double viscosity);
+  /// `rest`: net of all particles, where `bodies` were at rest.
+  OneBodyInverses(std::span<const Particle> particles, const RigidParticles& bodies, const Net& rest, const quadrature::Options& quadrature);
 
   bool empty() const { return factors_.empty(); }
 
@@ -49,7 +49,8 @@ class OneBodyInverses {
     std::shared_ptr<const Factors> factors;
   };
   const Use* of_particle(std::size_t p) const;
-  static std::shared_ptr<const Factors> inverted(const Particle& particle, const Net& rest, const quadrature::Options& quadrature, double viscosity);
+  static std::shared_ptr<const Factors> inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p, const Net& rest,
+                                                 const quadrature::Options& quadrature);
 
   std::vector<Use> factors_;
 };

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include "coupling/own_load.hpp"
 #include "membrane/mass.hpp"
 #include "surface/geometry.hpp"
 
@@ -22,17 +23,22 @@ Mat3 cross(const Vec3& r) {
 
 }  // namespace
 
-RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity) {
+RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature) {
   for (const Particle& particle : particles) {
     of_particle_.push_back(particle.rigid ? static_cast<int>(bodies_.size()) : -1);
     if (!particle.rigid) continue;
     Body& body = bodies_.emplace_back();
     body.block = particle.block;
     body.rigid = *particle.rigid;
-    body.traction = viscosity / particle.radius;
+    body.radius = particle.radius, body.viscosity = viscosity;
     const Net x = particle.block.rows(rest);
     body.rest_centre = body.centre = surface::measures(*particle.space, x).centroid;
     body.rest = x.rowwise() - body.centre.transpose();
+    const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
+      return other.lacking && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
+    });
+    body.lacking = alike == bodies_.end() ? std::make_shared<const std::array<Net, 6>>(lacking_of_own_loads(*particle.space, x, quadrature))
+                                          : alike->lacking;
     const Eigen::SparseMatrix<double> mass = membrane::MassMatrix(*particle.space, 8).update(x);
     body.weight = mass * Eigen::VectorXd::Ones(x.rows());
     body.moment = mass * body.rest;
@@ -85,6 +91,18 @@ void RigidParticles::add_load(Net& load) const {
     if (!body.rigid.told) body.block.rows(load) -= body.field(body.carrying(body.rigid.force, body.rigid.torque));
 }
 
+Net RigidParticles::Body::lacking_of(const RigidMotion& load) const {
+  const Vec3 a = turn.transpose() * load.velocity, b = turn.transpose() * load.angular_velocity;
+  Net sum = Net::Zero(rest.rows(), 3);
+  for (int k = 0; k < 3; ++k) sum += a[k] * (*lacking)[static_cast<std::size_t>(k)] + b[k] * (*lacking)[static_cast<std::size_t>(3 + k)];
+  return sum * turn.transpose();
+}
+
+void RigidParticles::add_lacking(Net& v) const {
+  for (const Body& body : bodies_)
+    if (!body.rigid.told) body.block.rows(v) += body.lacking_of(body.carrying(body.rigid.force, body.rigid.torque)) / body.viscosity;
+}
+
 void RigidParticles::subtract_told(Net& v) const {
   for (const Body& body : bodies_)
     if (body.rigid.told) body.block.rows(v) -= body.field(body.rigid.motion);
@@ -93,14 +111,15 @@ void RigidParticles::subtract_told(Net& v) const {
 void RigidParticles::complete(const Net& w, Net& v) const {
   for (const Body& body : bodies_) {
     body.block.rows(v) -= body.block.rows(w);
-    if (!body.rigid.told) body.block.rows(v) += body.field(body.mean(w));
+    const RigidMotion mean = body.mean(w);
+    body.block.rows(v) += body.rigid.told ? Net(body.lacking_of(mean) / body.radius) : body.field(mean);
   }
 }
 
 Net RigidParticles::completing_load(const Net& w) const {
   Net load = Net::Zero(w.rows(), 3);
   for (const Body& body : bodies_)
-    if (body.rigid.told) body.block.rows(load) = body.traction * body.field(body.mean(w));
+    if (body.rigid.told) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
   return load;
 }
 
@@ -112,7 +131,7 @@ void RigidParticles::move(Net& v) {
     if (body.rigid.told) {
       Motions of_body, integrals;
       of_body << body.turn.transpose() * mean.velocity, body.turn.transpose() * mean.angular_velocity;
-      integrals = -body.traction * body.inertia * of_body;
+      integrals = -body.viscosity / body.radius * body.inertia * of_body;
       body.force = body.turn * integrals.head<3>(), body.torque = body.turn * integrals.tail<3>();
     }
     body.motion = body.rigid.told ? body.rigid.motion : mean;

@@ -1,6 +1,8 @@
 #pragma once
 // Rigid bodies among capsules and drops.
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "base/types.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/rigid_motion.hpp"
+#include "quadrature/options.hpp"
 
 namespace tanktread::coupling {
 
@@ -23,7 +26,7 @@ namespace tanktread::coupling {
 class RigidParticles {
  public:
   /// `rest`: net of all particles; of others than rigid ones nothing is kept. `viscosity`: mu of the outer fluid.
-  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity);
+  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
 
   bool empty() const { return bodies_.empty(); }
   bool told() const;  ///< whether any moves as told
@@ -32,6 +35,7 @@ class RigidParticles {
   void place(Net& x);
 
   void add_load(Net& load) const;            ///< the load of given forces and torques
+  void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (own_load.hpp)
   void subtract_told(Net& v) const;          ///< V of the bodies that move as told
   void complete(const Net& w, Net& v) const; ///< rows of v: w goes out of them, <w> comes in where force and torque are given
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as told, 0 elsewhere
@@ -45,8 +49,12 @@ class RigidParticles {
   Vec3 force(std::size_t p) const { return body(p).force; }            ///< on the fluid
   Vec3 torque(std::size_t p) const { return body(p).torque; }          ///< on the fluid, about the centre
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< of its volume
+  const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< from where it was at rest
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
+
+  /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (own_load.hpp).
+  const Net& lacking(std::size_t p, int k) const { return (*body(p).lacking)[static_cast<std::size_t>(k)]; }
 
   /// Component k of <w>, the velocity's and then the angular velocity's, as a linear functional of its rows of w, row after row, where it was at
   /// rest.
@@ -57,8 +65,9 @@ class RigidParticles {
   struct Body {
     spline::Block block;
     Rigid rigid;
-    double traction = 0;  // mu/R_C
+    double radius = 0, viscosity = 0;
     Net rest;             // about the centre
+    std::shared_ptr<const std::array<Net, 6>> lacking;  // equal bodies have it in common
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
     Eigen::Matrix<double, 6, 6> inertia;  // of the surface: int and int r x of the six rigid motions
@@ -74,6 +83,7 @@ class RigidParticles {
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
     Net field(const RigidMotion& of) const;                             // its rows of it
     RigidMotion load() const;                                           // a and b of the force on the fluid
+    Net lacking_of(const RigidMotion& load) const;                      // of R^-1 A f
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 
