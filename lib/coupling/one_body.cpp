@@ -75,7 +75,8 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
   const Eigen::MatrixXd& inverse = of_particle(p)->factors->inverse;
   const Mat3 turn = placed.turn(p);
   Eigen::MatrixXd columns(inverse.rows(), 3 * static_cast<Eigen::Index>(sites.size()));
-  for (std::size_t k = 0; k < sites.size(); ++k) columns.middleCols<3>(3 * static_cast<Eigen::Index>(k)) = inverse.middleCols<3>(3 * sites[k]) * turn.transpose();
+  for (std::size_t k = 0; k < sites.size(); ++k)
+    columns.middleCols<3>(3 * static_cast<Eigen::Index>(k)) = inverse.middleCols<3>(3 * sites[k]) * turn.transpose();
   for (Eigen::Index a = 0; a < columns.rows(); a += 3) columns.middleRows<3>(a) = (turn * columns.middleRows<3>(a)).eval();
   return columns;
 }
