@@ -22,7 +22,7 @@ std::vector<int> close_sites(const spline::Block& of, const spline::Block& other
 /// Whether balls about the means of two blocks' sites, that hold them, are closer than `reach`.
 bool may_be_close(const Net& a, const Net& b, double reach) {
   const Eigen::RowVector3d a0 = a.colwise().mean(), b0 = b.colwise().mean();
-  const auto radius = [](const Net& of, const Eigen::RowVector3d& mean) { return std::sqrt((of.rowwise() - mean).rowwise().squaredNorm().maxCoeff()); };
+  const auto radius = [](const Net& of, const Eigen::RowVector3d& mean) { return (of.rowwise() - mean).rowwise().norm().maxCoeff(); };
   return (a0 - b0).norm() < radius(a, a0) + radius(b, b0) + reach;
 }
 
