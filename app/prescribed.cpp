@@ -25,11 +25,7 @@ namespace {
 /// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque.
 Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {
   std::vector<Net> z;
-  for (int k = 0; k < 6; ++k) {
-    coupling::RigidMotion unit;
-    (k < 3 ? unit.velocity : unit.angular_velocity) = Vec3::Unit(k % 3);
-    z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), unit, centre)));
-  }
+  for (int k = 0; k < 6; ++k) z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), coupling::unit_motion(k), centre)));
   return body.residual_work(u, f, z);
 }
 

@@ -321,18 +321,19 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Rows of H on every rank: those that ranks have assembled, or assembled here.
+/// Rows of H on every rank, each made by the rank whose point it is: taken from what is assembled, or assembled for this.
 stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
-  stokes::Rows<double> rows;
-  if (!assembled) {
-    double_layer_->assemble(x, targets, rows);
-    return rows;
-  }
-  rows.setZero(3 * static_cast<Eigen::Index>(targets.size()), 3 * x.rows());
+  std::vector<int> own;
+  std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
+  stokes::Rows<double> made;
+  if (!assembled) double_layer_->assemble(x, own, made);
+  stokes::Rows<double> rows = stokes::Rows<double>::Zero(3 * static_cast<Eigen::Index>(targets.size()), 3 * x.rows());
+  Eigen::Index next = 0;
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    const auto own = std::ranges::lower_bound(own_points_, targets[k]);
-    if (own == own_points_.end() || *own != targets[k]) continue;
-    rows.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = double_rows_.middleRows<3>(3 * (own - own_points_.begin()));
+    const auto point = std::ranges::lower_bound(own_points_, targets[k]);
+    if (point == own_points_.end() || *point != targets[k]) continue;
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
+        assembled ? double_rows_.middleRows<3>(3 * (point - own_points_.begin())) : made.middleRows<3>(3 * next++);
   }
   ranks_.add({rows.data(), static_cast<std::size_t>(rows.size())});
   return rows;

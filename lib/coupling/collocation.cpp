@@ -2,7 +2,9 @@
 
 #include <vector>
 
+#include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
 
@@ -10,6 +12,18 @@ std::vector<spline::Site> first_sites(const spline::Space& space) {
   std::vector<spline::Site> sites;
   for (const auto& several : space.collocation) sites.push_back(several.front());
   return sites;
+}
+
+BetweenSites between_sites(const spline::Space& space, const Net& surface) {
+  BetweenSites between;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(space.elements[static_cast<std::size_t>(e)].degree);
+    for (int q = 0; q < rule.size(); ++q) {
+      between.places.push_back({e, rule.s[q], rule.t[q]});
+      between.areas.push_back(rule.weights[q] * surface::point(space, surface, between.places.back()).jacobian);
+    }
+  }
+  return between;
 }
 
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, std::span<const spline::Site> places) {

@@ -10,20 +10,32 @@ namespace {
 /// A film ends where it is this wide, over the smaller radius: from there on waves as long as that are damped across it by a third and more.
 constexpr double widest = 0.5;
 
-/// The sites of a body, `of`, that are closer than `reach` to one of the other's, by number among all particles.
-std::vector<int> close_sites(const spline::Block& of, const spline::Block& other, const Net& sites, double reach) {
-  const Net there = other.rows(sites);
-  std::vector<int> close;
-  for (int i = of.first_point; i < of.first_point + of.n_points; ++i)
-    if ((there.rowwise() - sites.row(i)).rowwise().squaredNorm().minCoeff() < reach * reach) close.push_back(i);
-  return close;
-}
+/// A body, its sites, and a ball about their mean that holds them.
+struct Side {
+  std::size_t particle;
+  spline::Block block;
+  double radius;
+  Net sites;
+  Eigen::RowVector3d middle;
+  double extent;
 
-/// Whether balls about the means of two blocks' sites, that hold them, are closer than `reach`.
-bool may_be_close(const Net& a, const Net& b, double reach) {
-  const Eigen::RowVector3d a0 = a.colwise().mean(), b0 = b.colwise().mean();
-  const auto radius = [](const Net& of, const Eigen::RowVector3d& mean) { return (of.rowwise() - mean).rowwise().norm().maxCoeff(); };
-  return (a0 - b0).norm() < radius(a, a0) + radius(b, b0) + reach;
+  Side(std::size_t p, const Particle& of, const Net& all_sites)
+      : particle(p), block(of.block), radius(of.radius), sites(block.rows(all_sites)), middle(sites.colwise().mean()),
+        extent((sites.rowwise() - middle).rowwise().norm().maxCoeff()) {}
+
+  /// Its sites that are closer than `reach` to one of the other's, from 0 on.
+  std::vector<int> close_to(const Side& other, double reach) const {
+    std::vector<int> close;
+    for (int i = 0; i < block.n_points; ++i)
+      if ((other.sites.rowwise() - sites.row(i)).rowwise().squaredNorm().minCoeff() < reach * reach) close.push_back(i);
+    return close;
+  }
+};
+
+/// C of what `by` does to sites of another body: -H M^-1, from the other's rows of H and the sites of `by`.
+Eigen::MatrixXd coupling(const stokes::Rows<double>& rows, const Side& by, std::span<const int> sites, const OneBodyInverses& alone,
+                         const RigidParticles& placed) {
+  return -rows.middleCols(3 * by.block.first_point, 3 * by.block.n_points) * alone.columns(placed, by.particle, sites);
 }
 
 }  // namespace
@@ -33,30 +45,24 @@ FilmInverses::FilmInverses(std::span<const Particle> particles, const OneBodyInv
   if (alone.empty()) return;
   Net sites = x;
   alone.take_to_sites(sites);
+  std::vector<Side> sides;
   for (std::size_t p = 0; p < particles.size(); ++p)
-    for (std::size_t q = p + 1; q < particles.size(); ++q) {
-      if (!alone.serves(p) || !alone.serves(q)) continue;
-      const spline::Block &one = particles[p].block, &other = particles[q].block;
-      const double reach = widest * std::min(particles[p].radius, particles[q].radius);
-      if (!may_be_close(one.rows(sites), other.rows(sites), reach)) continue;
-      Film film{close_sites(one, other, sites, reach), {}};
-      const auto of_one = static_cast<Eigen::Index>(3 * film.sites.size());
-      if (of_one == 0) continue;
-      std::ranges::copy(close_sites(other, one, sites, reach), std::back_inserter(film.sites));
-      const auto of_both = static_cast<Eigen::Index>(3 * film.sites.size()), of_other = of_both - of_one;
+    if (alone.serves(p)) sides.emplace_back(p, particles[p], sites);
+  for (auto one = sides.begin(); one != sides.end(); ++one)
+    for (auto other = one + 1; other != sides.end(); ++other) {
+      const double reach = widest * std::min(one->radius, other->radius);
+      if ((one->middle - other->middle).norm() > one->extent + other->extent + reach) continue;
+      const std::vector<int> here = one->close_to(*other, reach), there = other->close_to(*one, reach);
+      if (here.empty()) continue;
+      Film film;
+      for (const int i : here) film.sites.push_back(one->block.first_point + i);
+      for (const int i : there) film.sites.push_back(other->block.first_point + i);
       const stokes::Rows<double> rows = rows_of(film.sites);
-      const auto own = [&](std::size_t body, const spline::Block& block, std::span<const int> numbers) {
-        std::vector<int> local;
-        for (const int i : numbers) local.push_back(i - block.first_point);
-        return alone.columns(placed, body, local);
-      };
-      const std::span all(film.sites);
-      Eigen::MatrixXd coupling = Eigen::MatrixXd::Identity(of_both, of_both);
-      coupling.topRightCorner(of_one, of_other) = -rows.block(0, 3 * other.first_point, of_one, 3 * other.n_points) *
-                                                  own(q, other, all.subspan(static_cast<std::size_t>(of_one / 3)));
-      coupling.bottomLeftCorner(of_other, of_one) = -rows.block(of_one, 3 * one.first_point, of_other, 3 * one.n_points) *
-                                                    own(p, one, all.first(static_cast<std::size_t>(of_one / 3)));
-      film.coupling.compute(coupling);
+      const auto n = static_cast<Eigen::Index>(3 * here.size()), m = static_cast<Eigen::Index>(3 * there.size());
+      Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + m, n + m);
+      all.topRightCorner(n, m) = coupling(rows.topRows(n), *other, there, alone, placed);
+      all.bottomLeftCorner(m, n) = coupling(rows.bottomRows(m), *one, here, alone, placed);
+      film.one_and_coupling.compute(all);
       films_.push_back(std::move(film));
     }
 }
@@ -66,7 +72,7 @@ void FilmInverses::add(Net& y) const {
   for (const Film& film : films_) {
     Eigen::VectorXd right(3 * static_cast<Eigen::Index>(film.sites.size()));
     for (std::size_t k = 0; k < film.sites.size(); ++k) right.segment<3>(3 * static_cast<Eigen::Index>(k)) = before.row(film.sites[k]).transpose();
-    const Eigen::VectorXd change = film.coupling.solve(right) - right;
+    const Eigen::VectorXd change = film.one_and_coupling.solve(right) - right;
     for (std::size_t k = 0; k < film.sites.size(); ++k) y.row(film.sites[k]) += change.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
   }
 }

@@ -34,7 +34,7 @@ class FilmInverses {
  private:
   struct Film {
     std::vector<int> sites;  // of the one body, then of the other
-    Eigen::PartialPivLU<Eigen::MatrixXd> coupling;
+    Eigen::PartialPivLU<Eigen::MatrixXd> one_and_coupling;  // 1 + C
   };
   std::vector<Film> films_;
 };

@@ -16,35 +16,30 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Particle& particle = particles[p];
     if (!particle.rigid || particle.block.n_points > most_points) continue;
-    const Net own = particle.block.rows(rest), shape = own.rowwise() - own.row(0);
-    const auto alike = std::ranges::find_if(factors_, [&](const Use& use) {
-      const Factors& of = *use.factors;
-      return of.told == particle.rigid->told && of.rest.rows() == shape.rows() && (of.rest - shape).norm() <= 1e-12 * shape.norm();
-    });
-    factors_.push_back({p, particle.block, alike == factors_.end() ? inverted(particle, bodies, p, own, quadrature) : alike->factors});
+    const auto alike = std::ranges::find_if(
+        factors_, [&](const Use& use) { return use.factors->told == particle.rigid->told && bodies.alike(use.particle, p); });
+    factors_.push_back(
+        {p, particle.block, alike == factors_.end() ? inverted(particle, bodies, p, particle.block.rows(rest), quadrature) : alike->factors});
   }
 }
 
 /// R B = R (v -> <v>) - H, or with (1/mu) A (v -> (mu/R_C) <v>).
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
-                                                                          const Net& rest, const quadrature::Options& quadrature) {
+                                                                          const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
-  factors->rest = rest.rowwise() - rest.row(0);
   factors->told = particle.rigid->told;
   factors->sites = collocation_matrix(*particle.space);
   std::vector<int> all(static_cast<std::size_t>(particle.space->n_points));
   std::iota(all.begin(), all.end(), 0);
   stokes::Rows<double> matrix;
-  stokes::DoubleLayer(*particle.space, quadrature).assemble(rest, all, matrix);  // -H of the factor -1
+  stokes::DoubleLayer(*particle.space, quadrature).assemble(own, all, matrix);  // -H of the factor -1
   stokes::SingleLayer layer(*particle.space, quadrature);
-  layer.set_reference(rest);
+  layer.set_reference(own);
   const Vec3 centre = bodies.rest_centre(p);
   for (int k = 0; k < 6; ++k) {
-    RigidMotion unit;
-    (k < 3 ? unit.velocity : unit.angular_velocity)[k % 3] = 1;
-    Net field = rigid_velocity(rest, unit, centre), at_sites = factors->sites * field;
+    Net field = rigid_velocity(own, unit_motion(k), centre), at_sites = factors->sites * field;
     if (factors->told) {
-      layer.apply(rest, field / particle.radius, stokes::Measure::reference, all, at_sites);
+      layer.apply(own, field / particle.radius, stokes::Measure::reference, all, at_sites);
       at_sites += factors->sites * bodies.lacking(p, k) / particle.radius;
     }
     matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * bodies.mean_functional(p, k).transpose();

@@ -38,7 +38,6 @@ class OneBodyInverses {
 
  private:
   struct Factors {
-    Net rest;  // about its first point
     bool told;
     Eigen::SparseMatrix<double> sites;  // R
     Eigen::MatrixXd inverse;
@@ -49,7 +48,7 @@ class OneBodyInverses {
     std::shared_ptr<const Factors> factors;
   };
   const Use* of_particle(std::size_t p) const;
-  static std::shared_ptr<const Factors> inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p, const Net& rest,
+  static std::shared_ptr<const Factors> inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p, const Net& own,
                                                  const quadrature::Options& quadrature);
 
   std::vector<Use> factors_;

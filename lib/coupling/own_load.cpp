@@ -7,7 +7,6 @@
 
 #include "coupling/collocation.hpp"
 #include "membrane/direct_solver.hpp"
-#include "quadrature/gauss.hpp"
 #include "stokes/single_layer.hpp"
 #include "coupling/rigid_motion.hpp"
 #include "surface/geometry.hpp"
@@ -44,16 +43,7 @@ std::array<Net, 6> single_layer_at(const spline::Space& space, const Net& surfac
 }  // namespace
 
 std::array<Net, 6> lacking_of_own_loads(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature) {
-  std::vector<spline::Site> places;
-  std::vector<double> areas;
-  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
-    const spline::Element& element = space.elements[static_cast<std::size_t>(e)];
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(element.degree);
-    for (int q = 0; q < rule.size(); ++q) {
-      places.push_back({e, rule.s[q], rule.t[q]});
-      areas.push_back(rule.weights[q] * surface::point(space, surface, places.back()).jacobian);
-    }
-  }
+  const auto [places, areas] = between_sites(space, surface);
   const Eigen::SparseMatrix<double> at_places = value_matrix(space, places);
   const Eigen::SparseMatrix<double> weighted = at_places.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), at_places.rows()).asDiagonal();
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(weighted * at_places);
@@ -61,11 +51,7 @@ std::array<Net, 6> lacking_of_own_loads(const spline::Space& space, const Net& s
   interpolation.factor(collocation_matrix(space));
   const Vec3 centre = surface::measures(space, surface).centroid;
   std::array<Net, 6> loads, lacking;
-  for (std::size_t k = 0; k < 6; ++k) {
-    RigidMotion unit;
-    (k < 3 ? unit.velocity : unit.angular_velocity)[static_cast<Eigen::Index>(k % 3)] = 1;
-    loads[k] = rigid_velocity(surface, unit, centre);
-  }
+  for (std::size_t k = 0; k < 6; ++k) loads[k] = rigid_velocity(surface, unit_motion(static_cast<int>(k)), centre);
   const std::array<Net, 6> at_sites = single_layer_at(space, surface, loads, first_sites(space), quadrature);
   const std::array<Net, 6> everywhere = single_layer_at(space, surface, loads, places, quadrature);
   for (std::size_t k = 0; k < 6; ++k) lacking[k] = mass.solve(weighted * (everywhere[k] - at_places * interpolation.solve(at_sites[k])));

@@ -6,7 +6,6 @@
 #include "base/errors.hpp"
 #include "coupling/collocation.hpp"
 #include "membrane/mass.hpp"
-#include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
 
@@ -91,22 +90,8 @@ stokes::Evaluations Resistance::kernel_evaluations() const {
 
 Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
   const auto clock = phases_.time("reciprocal correction");
-  std::vector<spline::Site> sites;
-  std::vector<double> weights;
-  for (int e = 0; e < static_cast<int>(space_.elements.size()); ++e) {
-    // The residual on an element is like h^4 times a quartic: as many points a direction as the degree integrate it.
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(space_.elements[static_cast<size_t>(e)].degree);
-    for (int q = 0; q < rule.size(); ++q) {
-      sites.push_back({e, rule.s[q], rule.t[q]});
-      weights.push_back(rule.weights[q]);
-    }
-  }
-  Net x(sites.size(), 3);
-  for (size_t k = 0; k < sites.size(); ++k) {
-    const surface::Point p = surface::point(space_, surface_, sites[k]);
-    x.row(static_cast<Eigen::Index>(k)) = p.x.transpose();
-    weights[k] *= p.jacobian;
-  }
+  const auto [sites, weights] = between_sites(space_, surface_);
+  const Net x = value_matrix(space_, sites) * surface_;
   const Net given = u(x);
   // The layer has as many targets as control points: the sites take their turns.
   const size_t n = static_cast<size_t>(space_.n_points);

@@ -57,10 +57,7 @@ Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) 
 RigidModes::RigidModes(Resistance& body, const Vec3& centre, bool quadratic) : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
   const Net from_centre = body.surface().rowwise() - centre.transpose();
   const auto field = [&](int k) -> Net {
-    RigidMotion motion;
-    if (k < 3) motion.velocity = Vec3::Unit(k);
-    if (k >= 3 && k < 6) motion.angular_velocity = Vec3::Unit(k - 3);
-    if (k < 6) return rigid_velocity(body.surface(), motion, centre);
+    if (k < 6) return rigid_velocity(body.surface(), unit_motion(k), centre);
     if (k < affine_modes) return from_centre * unit_strain(k - 6);
     const UnitQuadratic q = unit_quadratic(k - affine_modes);
     return body.interpolated([&](const Net& x) -> Net {

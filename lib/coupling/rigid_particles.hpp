@@ -53,6 +53,9 @@ class RigidParticles {
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< from where it was at rest
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
+  /// Whether two bodies are equal where they were at rest, but for where that was.
+  bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
+
   /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (own_load.hpp).
   const Net& lacking(std::size_t p, int k) const { return (*body(p).lacking)[static_cast<std::size_t>(k)]; }
 
