@@ -25,63 +25,10 @@ namespace tanktread {
 
 namespace {
 
-/// What is known of each rigid body.
-std::vector<Series> rigid_series(const Scene& scene) {
-  std::vector<Series> all = series({"inclination", "volume", "area", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13",
-                                    "stresslet_23", "length_x1", "length_x2", "length_x3", "n_control_points", "centroid_x1", "centroid_x2",
-                                    "centroid_x3", "velocity_x1", "velocity_x2", "velocity_x3", "angular_velocity_x1", "angular_velocity_x2",
-                                    "angular_velocity_x3", "quaternion_0", "quaternion_1", "quaternion_2", "quaternion_3", "drag_x1", "drag_x2",
-                                    "drag_x3", "torque_x1", "torque_x2", "torque_x3"});
-  if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
-  return all;
-}
-
-/// What is known of each other particle.
-std::vector<Series> particle_series(const Scene& scene) {
-  if (scene.particle.rigid()) return rigid_series(scene);
-  std::vector<Series> all = series({"taylor_inertia", "taylor_surface", "inclination", "volume", "volume_error", "area", "energy",
-                                    "smallest_tension", "compressed_area", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12",
-                                    "stresslet_13", "stresslet_23", "length_x1", "length_x2", "length_x3", "normal_velocity", "shape_velocity",
-                                    "n_control_points", "centroid_x1", "centroid_x2", "centroid_x3", "velocity_x1", "velocity_x2", "velocity_x3",
-                                    "tank_treading_velocity", "tank_treading_frequency", "phase", "axis_1", "axis_2", "axis_3", "axis_1_x1",
-                                    "axis_1_x2", "axis_1_x3"});
-  if (scene.tube.present) std::ranges::copy(series({"migration_velocity"}), std::back_inserter(all));
-  if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
-  if (scene.adaptation.enabled) std::ranges::copy(series({"refit_error"}), std::back_inserter(all));
-  return all;
-}
-
-/// What is known of the run.
-std::vector<Series> run_series(const Scene& scene) {
-  std::vector<Series> all = series({"time", "time_step", "step_error", "rejected_steps", "iterations", "evaluations", "assemblies",
-                                    "solver_iterations", "velocity_iterations", "wall_seconds"});
-  if (scene.tube.present) std::ranges::copy(tube_series(), std::back_inserter(all));
-  if (!scene.particles.empty())
-    std::ranges::copy(series({"energy", "n_control_points", "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13",
-                              "stresslet_23", "velocity_x1", "velocity_x2", "velocity_x3", "smallest_gap", "first_of_gap", "second_of_gap",
-                              "gap_x1", "gap_x2", "gap_x3"}),
-                      std::back_inserter(all));
-  return all;
-}
-
-}  // namespace
-
-std::vector<Column> deforming_columns(const Scene& scene) {
-  std::vector<Column> all = columns(run_series(scene));
-  for (const Scene& one : scene.alone())
-    for (Column& column : columns(particle_series(one))) {
-      if (!one.name.empty()) column.name = one.name + "/" + column.name;
-      all.push_back(std::move(column));
-    }
-  return all;
-}
-
-namespace {
-
 class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), of_run_(run_series(scene)), columns_(deforming_columns(scene)) {
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), series_(run_series(scene)) {
     check_apart(members_);
     set_up();
     for (Member& member : members_) {
@@ -152,26 +99,28 @@ class Deforming : public Moving {
     return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
   }
 
-  const std::vector<Column>& columns() const override { return columns_; }
+  const std::vector<Series>& series() const override { return series_; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
     const Net v = material_velocity(state);
-    Moment of_run;
-    of_run.time = state.time, of_run.wall_seconds = wall_seconds;
-    of_run.step = report, of_run.work = capsule_->work();
+    Moment whole;
+    whole.time = state.time, whole.wall_seconds = wall_seconds;
+    whole.step = report, whole.work = capsule_->work();
     std::vector<double> of_particles;
     for (std::size_t p = 0; p < members_.size(); ++p) {
       const Moment now = moment(p, state, v, report);
-      std::ranges::copy(tanktread::row(particle_series(members_[p].scene), now), std::back_inserter(of_particles));
-      of_run.energy += now.energy, of_run.n_points += now.n_points, of_run.stresslet += now.stresslet;
-      of_run.velocity += now.velocity / static_cast<double>(members_.size());
+      const Scene& one = members_[p].scene;
+      std::ranges::copy(tanktread::row(tanktread::series(one, one.particle.rigid() ? of_rigid : of_deforming), now),
+                        std::back_inserter(of_particles));
+      whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
+      whole.velocity += now.velocity / static_cast<double>(members_.size());
     }
     if (body().wall) {
       if (all_) check_spread(*body().wall, capsule_->geometry(), state.x);
-      add_tube(*capsule_, state.x, of_run);
+      add_tube(*capsule_, state.x, whole);
     }
-    if (all_) of_run.nearest = smallest_gap(members_, state.x, ranks_);
-    std::vector<double> row = tanktread::row(of_run_, of_run);
+    if (all_) whole.nearest = smallest_gap(members_, state.x, ranks_);
+    std::vector<double> row = tanktread::row(tanktread::series(scene_, of_run), whole);
     row.insert(row.end(), of_particles.begin(), of_particles.end());
     return row;
   }
@@ -179,9 +128,7 @@ class Deforming : public Moving {
   Portrait portrait(const motion::State& state) override {
     const Net load = capsule_->load(state.x);
     const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
-    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes, output::NodeRange range) {
-              return fields(nodes, range, state.x, load, velocity);
-            }};
+    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) { return fields(nodes, state.x, load, velocity); }};
   }
 
  private:
@@ -308,23 +255,22 @@ class Deforming : public Moving {
   }
 
   /// `velocity`: of the fluids, or empty.
-  std::vector<output::Field> fields(const output::Nodes& nodes, output::NodeRange range, const Net& x, const Net& load,
-                                    const Net& velocity) const {
-    const std::vector<surface::Jet> before = nodes.jets(body().unstressed, range), now = nodes.jets(x, range);
+  std::vector<output::Field> fields(const output::Nodes& nodes, const Net& x, const Net& load, const Net& velocity) const {
+    const std::vector<surface::Jet> before = nodes.jets(body().unstressed), now = nodes.jets(x);
     const auto n = static_cast<Eigen::Index>(now.size());
-    Net traction = nodes.values(load, range);
+    Net traction = nodes.values(load);
     std::vector<output::Field> fields{{"load", traction}};
     if (capsule_->measure() == stokes::Measure::reference)  // a load per unstressed area
       for (Eigen::Index i = 0; i < n; ++i)
         traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
     fields.push_back({"traction", traction});
-    fields.push_back({"displacement", nodes.values(x - body().unstressed, range)});
-    if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity, range)});
+    fields.push_back({"displacement", nodes.values(x - body().unstressed)});
+    if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity)});
     Eigen::MatrixX2d tensions(n, 2);
     Eigen::VectorXd curvature(n), particle(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto k = static_cast<size_t>(i);
-      const std::size_t p = particle_of(nodes.mesh().sites[static_cast<size_t>(range.begin) + k].element);
+      const std::size_t p = particle_of(nodes.mesh().sites[k].element);
       if (members_[p].scene.particle.rigid())
         tensions.row(i).setZero();
       else
@@ -350,8 +296,7 @@ class Deforming : public Moving {
   std::vector<Member> members_;
   std::unique_ptr<Body> all_;  // several particles
   std::unique_ptr<coupling::Capsule> capsule_;
-  std::vector<Series> of_run_;
-  std::vector<Column> columns_;
+  std::vector<Series> series_;
   coupling::Work work_;                     // of systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // the same
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had

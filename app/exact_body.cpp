@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "quadrature/gauss.hpp"
+#include "stokes/ambient_flow.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread {
@@ -27,9 +28,14 @@ bool ExactBody::presses() const {
   return result;
 }
 
-std::optional<ExactBody> exact_body(const Scene& scene, const coupling::RigidMotion& motion) {
+coupling::RigidMotion prescribed_motion(const Scene& scene) {
+  return {scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
+}
+
+std::optional<ExactBody> exact_body(const Scene& scene) {
   const surface::ParticleShape& shape = scene.particle.shape;
-  if (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid") return {};
+  const coupling::RigidMotion motion = prescribed_motion(scene);
+  if (scene.tube.present || (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid")) return {};
   const stokes::AmbientFlow flow(scene.flow);
   if (!flow.affine()) return {};
   const Mat3 l = flow.gradient(shape.center);

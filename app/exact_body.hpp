@@ -3,8 +3,10 @@
 
 #include <optional>
 
-#include "app/body.hpp"
+#include "app/scene.hpp"
+#include "base/types.hpp"
 #include "coupling/rigid_body.hpp"
+#include "spline/space.hpp"
 #include "stokes/ellipsoid.hpp"
 
 namespace tanktread {
@@ -31,8 +33,11 @@ struct ExactBody {
   Vec3 local(const Vec3& x) const { return axes.transpose() * (x - centre); }
 };
 
-/// Empty where no exact solution is known: another shape, or a flow that strains.
-std::optional<ExactBody> exact_body(const Scene& scene, const coupling::RigidMotion& motion);
+/// `Particle/velocity` and `Particle/angular velocity`.
+coupling::RigidMotion prescribed_motion(const Scene& scene);
+
+/// Empty where no exact solution is known: another shape, a flow that strains, a tube.
+std::optional<ExactBody> exact_body(const Scene& scene);
 
 /// Errors over the surface with control net `surface`, for the force density f on the fluid (control values); n_h its own normal.
 struct SurfaceErrors {

@@ -14,33 +14,12 @@ namespace tanktread {
 
 namespace {
 
-std::vector<Series> free_series(const Scene& scene) {
-  std::vector<Series> all =
-      series({"time", "time_step", "inclination", "center_x1", "center_x2", "center_x3", "velocity_x1", "velocity_x2", "velocity_x3",
-              "angular_velocity_x1", "angular_velocity_x2", "angular_velocity_x3", "quaternion_0", "quaternion_1", "quaternion_2", "quaternion_3",
-              "stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "length_x1", "length_x2",
-              "length_x3", "n_control_points", "step_error", "rejected_steps", "evaluations", "wall_seconds"});
-  if (scene.tube.present)
-    std::ranges::copy(series({"migration_velocity", "disturbed_pressure_drop", "gap", "solver_iterations"}), std::back_inserter(all));
-  std::ranges::copy(series({"tank_treading_velocity", "tank_treading_frequency", "phase", "axis_1", "axis_2", "axis_3", "axis_1_x1", "axis_1_x2",
-                            "axis_1_x3"}),
-                    std::back_inserter(all));
-  if (strains(scene)) std::ranges::copy(series({"intrinsic_viscosity"}), std::back_inserter(all));
-  return all;
-}
-
-}  // namespace
-
-std::vector<Column> free_columns(const Scene& scene) { return columns(free_series(scene)); }
-
-namespace {
-
 class Free : public Moving {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
         resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()),
-        series_(free_series(scene)), columns_(tanktread::columns(series_)) {
+        series_(tanktread::series(scene, of_free)) {
     const Vec3& centre = scene.particle.shape.center;
     if (tube_)
       free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers,
@@ -69,7 +48,7 @@ class Free : public Moving {
   bool adapt(motion::State&, Standing&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
-  const std::vector<Column>& columns() const override { return columns_; }
+  const std::vector<Series>& series() const override { return series_; }
 
   coupling::Work work() const override {
     coupling::Work work = before_;
@@ -108,8 +87,8 @@ class Free : public Moving {
   Portrait portrait(const motion::State& state) override {
     const Net x = free_->surface(state.x), f = free_->force_density(state.x),
               v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
-    return {x, [f, v](const output::Nodes& nodes, output::NodeRange range) {
-              return std::vector<output::Field>{{"traction", nodes.values(-f, range)}, {"velocity", nodes.values(v, range)}};
+    return {x, [f, v](const output::Nodes& nodes) {
+              return std::vector<output::Field>{{"traction", nodes.values(-f)}, {"velocity", nodes.values(v)}};
             }};
   }
 
@@ -138,7 +117,6 @@ class Free : public Moving {
   coupling::Resistance resistance_;
   std::unique_ptr<coupling::RigidParticle> free_;
   std::vector<Series> series_;
-  std::vector<Column> columns_;
   Turning turning_;
   coupling::Work before_;  // of earlier parts of a resumed run
 };

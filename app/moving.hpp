@@ -28,10 +28,10 @@ struct Resumed {
 /// The particle at one moment, as a picture shows it.
 struct Portrait {
   Net surface;  ///< control net
-  std::function<std::vector<output::Field>(const output::Nodes& nodes, output::NodeRange range)> fields;
+  std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
-/// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled, each rank's own.
+/// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled.
 class Moving {
  public:
   virtual ~Moving() = default;
@@ -46,7 +46,7 @@ class Moving {
   virtual coupling::Work work() const = 0;
   virtual std::vector<Turning> turning() const = 0;                              ///< of each particle, as of the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual const std::vector<Column>& columns() const = 0;
+  virtual const std::vector<Series>& series() const = 0;
   virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< the extraction of body()
   virtual Portrait portrait(const motion::State& state) = 0;
@@ -58,9 +58,5 @@ std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phase
 /// The two kinds.
 std::unique_ptr<Moving> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<Moving> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
-
-/// Their series.
-std::vector<Column> deforming_columns(const Scene& scene);
-std::vector<Column> free_columns(const Scene& scene);
 
 }  // namespace tanktread

@@ -29,10 +29,6 @@ Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::fun
   return body.residual_work(u, f, z);
 }
 
-coupling::RigidMotion prescribed_motion(const Scene& scene) {
-  return {scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
-}
-
 double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
 
 }  // namespace
@@ -57,7 +53,7 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
     s.gap = tube->gap();
     return s;
   }
-  if (const auto exact = exact_body(scene, motion)) {
+  if (const auto exact = exact_body(scene)) {
     const auto clock = phases.time("diagnostics");
     s.error = relative(s.force, exact->force());
     s.integral_error = relative(s.integral, exact->force());
@@ -68,25 +64,6 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
 }
 
 namespace {
-
-/// Errors are those that an exact solution tells: relative ones of a force or torque that it has.
-std::vector<Series> prescribed_series(const Scene& scene) {
-  std::vector<Series> all = series({"time", "drag_x1", "drag_x2", "drag_x3", "torque_x1", "torque_x2", "torque_x3"});
-  const auto add = [&all](bool has, std::initializer_list<std::string_view> names) {
-    if (has) std::ranges::copy(series(names), std::back_inserter(all));
-  };
-  const auto exact = scene.tube.present ? std::nullopt : exact_body(scene, prescribed_motion(scene));
-  const bool pushed = exact && exact->force().norm() > 0, turned = exact && exact->torque().norm() > 0;
-  add(pushed, {"drag_error", "drag_error_of_traction"});
-  add(turned, {"torque_error"});
-  add(exact && exact->presses(), {"pressure_l2_error"});
-  add(exact.has_value(), {"normal_l2_error"});
-  add(true, {"solver_iterations", "kernel_evaluations"});
-  add(scene.tube.present, {"disturbed_pressure_drop", "gap"});
-  add(true, {"stresslet_11", "stresslet_22", "stresslet_33", "stresslet_12", "stresslet_13", "stresslet_23", "volume", "area", "n_control_points",
-             "wall_seconds"});
-  return all;
-}
 
 Moment moment(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
               const stokes::Evaluations& kernel, double seconds) {
@@ -105,9 +82,9 @@ Moment moment(const Scene& scene, const Body& body, const coupling::Resistance& 
 }
 
 Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) {
-  const auto exact = body.wall ? std::nullopt : exact_body(scene, prescribed_motion(scene));
-  return {body.rest, [&body, &s, exact](const auto& nodes, output::NodeRange range) {
-            const Net f = nodes.values(s.density, range), n = nodes.normals(body.rest, range), x = nodes.values(body.rest, range);
+  const auto exact = exact_body(scene);
+  return {body.rest, [&body, &s, exact](const auto& nodes) {
+            const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
             const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
             std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
             if (exact) {
@@ -120,8 +97,6 @@ Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) 
 }
 
 }  // namespace
-
-std::vector<Column> prescribed_columns(const Scene& scene) { return columns(prescribed_series(scene)); }
 
 output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
   const bool free = scene.particle.motion == "free";
@@ -164,11 +139,11 @@ int resist(const Scene& scene, const RunRequest& request) {
   stop_where_told();
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
-  const std::vector<Series> all = prescribed_series(scene);
+  const std::vector<Series> all = series(scene, of_prescribed);
   const std::vector<double> only = row(all, moment(scene, body, resistance, solution, kernel, seconds));
 
   clock.emplace(phases, "output");
-  Results results(scene, request, body, surface::BezierMap(body.space), columns(all), ranks);
+  Results results(scene, request, body, surface::BezierMap(body.space), all, ranks);
   results.record(only);
   motion::State state;
   state.x = body.rest;

@@ -29,9 +29,6 @@ struct RigidSolution {
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
                              const coupling::Tube* tube = nullptr);
 
-/// The series of a prescribed body: with errors where the exact solution is known, and with what a tube answers.
-std::vector<Column> prescribed_columns(const Scene& scene);
-
 /// Solves for the traction on the body, records one row and one picture. Exit code as of `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -17,7 +18,6 @@
 #include "output/checksum.hpp"
 #include "output/file.hpp"
 #include "output/progress.hpp"
-#include "output/snapshot.hpp"
 #include "output/state.hpp"
 #include "spline/iga.hpp"
 
@@ -35,10 +35,6 @@ std::string identifier() {
   sum.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
   return sum.digits();
 }
-
-}  // namespace
-
-namespace {
 
 UserError another_version(const std::filesystem::path& directory) {
   return UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
@@ -108,8 +104,8 @@ std::map<std::string, std::string> Results::origin() const {
 }
 
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map,
-                 const std::vector<Column>& columns, const coupling::Ranks& ranks)
-    : scene_(scene), request_(request), body_(&body), columns_(columns), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+                 const std::vector<Series>& series, const coupling::Ranks& ranks)
+    : scene_(scene), request_(request), body_(&body), series_of_run_(series), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
   write([&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
@@ -126,7 +122,7 @@ void Results::begin() {
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);
-  declare_columns();
+  declare_series();
 }
 
 void Results::keep(const std::filesystem::path& file, const std::filesystem::path& name) {
@@ -137,13 +133,13 @@ void Results::keep(const std::filesystem::path& file, const std::filesystem::pat
     throw RunFailure("cannot copy " + file.string() + " to " + place.string() + ": " + error.message());
 }
 
-void Results::declare_columns() {
-  for (const Column& column : columns_) record_->declare(column.name, column.unit, column.description);
+void Results::declare_series() {
+  for (const Series& one : series_of_run_) record_->declare(one.name, one.unit, one.description);
 }
 
 void Results::remesh(const Body& body, const surface::BezierMap& map) {
   body_ = &body;
-  nodes_.emplace(map, output::lagrange_mesh(body.space, body.unstressed));
+  if (writes_) nodes_.emplace(map, output::lagrange_mesh(body.space, body.unstressed));
 }
 
 std::optional<Resumed> Results::resumed() {
@@ -177,7 +173,7 @@ void Results::load_record(const output::Checkpoint& checkpoint, const std::strin
     throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen + " are not as they were written.");
   record_->truncate(rows);
   record_->describe(request_.deck_text, origin());
-  declare_columns();
+  declare_series();
 }
 
 /// Files that a run would have gone on from, had they been whole: they stay, under other names.
@@ -190,13 +186,14 @@ void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::
 void Results::record(const std::vector<double>& row) {
   write([&] {
     record_->append(row);
-    if (record_->rows() == 1 || Clock::now() - written_ >= second) write_record();
+    if (record_->rows() == 1 || Clock::now() >= due_) write_record();
   });
 }
 
 void Results::write_record() {
+  const auto begun = Clock::now();
   record_->write(durable());
-  written_ = Clock::now();
+  due_ = Clock::now() + std::max<Clock::duration>(second, 50 * (Clock::now() - begun));
 }
 
 /// What a shorter run has written is sooner written again than waited for.
@@ -213,12 +210,12 @@ void Results::write_surface(const Net& surface) {
 
 void Results::save(output::Checkpoint checkpoint, const motion::State& state, const Standing& standing, const Portrait& portrait,
                    double picture_time) {
-  const std::vector<output::Field> fields = gathered(portrait);
   write([&] {
     write_record();
     complete(checkpoint, state, standing, picture_time);
-    output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, nodes_->mesh(), fields,
-                           durable());
+    std::vector<output::Field> fields = output::picture(*nodes_, portrait.surface);
+    std::ranges::move(portrait.fields(*nodes_), std::back_inserter(fields));
+    output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, nodes_->mesh(), fields, durable());
     if (durable() == output::Durable::yes) output::sync(directory_);
     series_->add(standing.step, picture_time);
   });
@@ -232,29 +229,6 @@ void Results::complete(output::Checkpoint& checkpoint, const motion::State& stat
   checkpoint.texts["deck"] = request_.deck_text;
   checkpoint.texts["run"] = run_;
   checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(standing.step) + 1);
-}
-
-/// A picture at all nodes, on every rank: each has evaluated its share, in pieces that stay in the cache.
-std::vector<output::Field> Results::gathered(const Portrait& portrait) const {
-  constexpr int most = 4096;
-  const std::int64_t n = nodes_->all().size(), rank = ranks_.rank(), size = ranks_.size();
-  const auto at = [&](output::NodeRange range) {
-    std::vector<output::Field> fields = output::picture(*nodes_, portrait.surface, range);
-    for (output::Field& field : portrait.fields(*nodes_, range)) fields.push_back(std::move(field));
-    return fields;
-  };
-  std::vector<output::Field> whole = at({0, 0});
-  for (output::Field& field : whole) field.values.setZero(n, field.values.cols());
-  const int end = static_cast<int>((rank + 1) * n / size);
-  together(ranks_, true, [&] {
-    for (output::NodeRange piece{static_cast<int>(rank * n / size), 0}; piece.begin < end; piece.begin = piece.end) {
-      piece.end = std::min(piece.begin + most, end);
-      const std::vector<output::Field> fields = at(piece);
-      for (std::size_t k = 0; k < whole.size(); ++k) whole[k].values.middleRows(piece.begin, piece.size()) = fields[k].values;
-    }
-  });
-  for (output::Field& field : whole) ranks_.add({field.values.data(), static_cast<std::size_t>(field.values.size())});
-  return whole;
 }
 
 int Results::close(const Account& account, const Phases& phases) {
@@ -280,7 +254,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   }
   std::string missed;
   for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table)) {
-    summary.expect.push_back({verdict.name, verdict.value, verdict.expected, verdict.error, verdict.passed, verdict.not_binding});
+    summary.expect.push_back(verdict);
     if (verdict.passed) continue;
     const std::string found = verdict.name + ": " + verdict.reason;
     if (verdict.not_binding.empty())
@@ -294,7 +268,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.plan = account.plan;
   summary.numbers = numbers(scene_, *body_);
   summary.warnings = warnings_;
-  output::write_summary(directory_ / "summary.yaml", summary);
+  output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
   if (durable() == output::Durable::yes)
     for (const char* name : {"summary.yaml", "run.hdf.series", "."}) output::sync(directory_ / name);
   return missed;

@@ -15,9 +15,8 @@
 #include "output/checkpoint.hpp"
 #include "output/file.hpp"
 #include "output/nodes.hpp"
-#include "output/occupation.hpp"
 #include "output/run_record.hpp"
-#include "output/snapshot_series.hpp"
+#include "output/snapshot.hpp"
 
 namespace tanktread {
 
@@ -48,14 +47,14 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 /// Throws UserError where the directory holds results that the request does not allow to delete, or another run writes to it. Collective.
 void check_vacant(const RunRequest& request);
 
-/// The files of a run (README.md, Results). Every rank evaluates its own nodes of a picture, and the first one writes all files; every call is made
+/// The files of a run (README.md, Results). The first rank evaluates pictures and writes all files; every call is made
 /// by all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
 ///
 /// From the first second of a run on, a snapshot and the record up to it are on the disk itself before `run.hdf.series` names the snapshot, and all
 /// that a run has written is when it ends.
 class Results {
  public:
-  Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const std::vector<Column>& columns,
+  Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const std::vector<Series>& series,
           const coupling::Ranks& ranks);
 
   /// The newest checkpoint of the directory when the run is resumed; the record is cut back to it. Throws UserError when there is none.
@@ -64,7 +63,8 @@ class Results {
   /// The body that is drawn from now on, and its extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// One finished step: a row of the record, which is written at every snapshot and otherwise once a second.
+  /// One finished step: a row of the record, which is written at every snapshot and otherwise once a second, or, where that takes long, after fifty
+  /// times as much.
   void record(const std::vector<double>& row);
 
   /// A sentence about what the run has come near to, on standard error and in the summary.
@@ -89,9 +89,8 @@ class Results {
   void write(const Write& action);
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
-  void declare_columns();
+  void declare_series();
   void complete(output::Checkpoint& checkpoint, const motion::State& state, const Standing& standing, double picture_time) const;
-  std::vector<output::Field> gathered(const Portrait& portrait) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
   void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
   void write_record();
@@ -102,7 +101,7 @@ class Results {
   const Scene& scene_;
   const RunRequest& request_;
   const Body* body_;
-  std::vector<Column> columns_;
+  std::vector<Series> series_of_run_;
   const coupling::Ranks& ranks_;
   bool writes_;
   std::string run_;  // its identifier
@@ -114,7 +113,7 @@ class Results {
   std::vector<std::string> warnings_;
   int last_saved_ = -1;
   using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now(), written_ = start_;  // the latter: the record
+  Clock::time_point start_ = Clock::now(), due_ = start_;  // the latter: when the record is to be written
 };
 
 }  // namespace tanktread

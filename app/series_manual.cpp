@@ -5,11 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/diagnostics.hpp"
 #include "app/duct_picture.hpp"
-#include "app/moving.hpp"
 #include "app/numbers.hpp"
-#include "app/prescribed.hpp"
+#include "app/series.hpp"
 
 namespace tanktread {
 
@@ -64,39 +62,20 @@ constexpr Entry entries[] = {
     {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
 };
 
-bool has(const std::vector<Column>& columns, std::string_view name) {
-  return std::ranges::find(columns, name, &Column::name) != columns.end();
-}
-
-/// Which particles have a series, as the decks below say.
-std::string owners(std::string_view name) {
-  Scene free, tube, exact;
-  free.particle.shape.radius = tube.particle.shape.radius = 1;
-  tube.tube.present = true;
-  exact.flow.type = "quiescent";
-  exact.particle.shape.shape = "spheroid";
-  exact.particle.shape.semi_axes = Vec3(2, 1, 1);
-  exact.particle.velocity = exact.particle.angular_velocity = Vec3(1, 1, 1);
+/// Which particles have a series.
+std::string owners(const Series& one) {
+  constexpr std::pair<unsigned, const char*> all[] = {{of_run | of_deforming, "capsule, drop"}, {of_rigid, "rigid one of several"},
+                                                      {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
+                                                      {of_prescribed, "prescribed body"}, {of_run | of_several, "several particles together"}};
   std::string list;
-  for (const auto& [kind, columns] : {std::pair("capsule, drop", &deforming_columns), std::pair("free body", &free_columns),
-                                      std::pair("prescribed body", &prescribed_columns)}) {
-    const bool alone = has(columns(columns == &prescribed_columns ? exact : free), name), inside = has(columns(tube), name);
-    if (!alone && !inside) continue;
-    list += (list.empty() ? "" : ", ") + std::string(kind) + (alone ? "" : " in a tube");
-  }
-  Scene several;
-  several.particles.resize(2);
-  for (ParticleKind& one : several.particles) one.particle.shape.radius = 1;
-  if (has(deforming_columns(several), name)) list += list.empty() ? "several particles" : ", several particles together";
-  return list;
+  for (const auto& [owner, text] : all)
+    if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);
+  return list + (one.needs == Needs::tube ? "; in a tube" : "");
 }
 
-std::string line(std::string_view name, std::string_view unit, std::string_view of, std::string_view description) {
-  std::string text = "| `" + std::string(name) + "` | " + std::string(unit);
-  if (!of.empty()) text += " | " + std::string(of);
-  text += " | " + std::string(description) + " |\n";
-  for (size_t at = text.find("|v.n|"); at != text.npos; at = text.find("|v.n|", at)) text.replace(at, 5, "\\|v.n\\|");
-  return text;
+std::string line(std::string_view name, std::string_view unit, std::string_view of, std::string description) {
+  for (size_t at = 0; (at = description.find('|', at)) != description.npos; at += 2) description.insert(at, 1, '\\');
+  return "| `" + std::string(name) + "` | " + std::string(unit) + (of.empty() ? "" : " | " + std::string(of)) + " | " + description + " |\n";
 }
 
 template <class List>
@@ -119,7 +98,7 @@ std::string series_manual() {
       "these names. D, inclination and tank-treading are measured in the plane of the flow, which the plan names: x1 x3 but for a `linear` "
       "flow "
       "in another plane, whose two directions then stand for x1 and x3.\n\n| series | unit | of | what it is |\n|---|---|---|---|\n";
-  for (const Series& one : all_series()) text += line(one.name, one.unit, owners(one.name), one.description);
+  for (const Series& one : all_series()) text += line(one.name, one.unit, owners(one), one.description);
   text += "\n## Fields\n\n`/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the picture.\n" + table("field", fields);
   text += "\n## The empty tube\n\n`duct.h5`, of a run in a tube.\n\n| array | unit | what it is |\n|---|---|---|\n";
   for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))

@@ -89,7 +89,7 @@ class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->bezier(), particle_->columns(), ranks_),
+        results_(scene, request, particle_->body(), particle_->bezier(), particle_->series(), ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);
   }
@@ -296,7 +296,7 @@ class Run {
     signs.jacobian_ratio = quality_.jacobian_ratio;
     signs.aspect_ratio = quality_.aspect_ratio;
     if (scene_.tube.present) signs.gap = entry("gap");
-    const std::vector<double> areas = entries_of_particles(particle_->columns(), row_, "area");
+    const std::vector<double> areas = entries_of_particles(particle_->series(), row_, "area");
     const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
     signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
     for (const std::string& sentence : warnings_.look(signs)) results_.warn(sentence);
@@ -370,12 +370,12 @@ class Run {
   double smallest(std::string_view name) const { return std::ranges::min(entries(name)); }
   double largest(std::string_view name) const { return std::ranges::max(entries(name)); }
   std::vector<double> entries(std::string_view name) const {
-    std::vector<double> all = entries_of_particles(particle_->columns(), row_, name);
+    std::vector<double> all = entries_of_particles(particle_->series(), row_, name);
     if (all.empty()) all.push_back(0);
     return all;
   }
 
-  double entry(std::string_view name) const { return tanktread::entry(particle_->columns(), row_, name); }
+  double entry(std::string_view name) const { return tanktread::entry(particle_->series(), row_, name); }
 
   const Scene& scene_;
   const RunRequest& request_;
@@ -405,14 +405,10 @@ class Run {
 }  // namespace
 
 std::vector<std::string> check_expectations(const Scene& scene) {
-  const bool prescribed = scene.particle.motion == "prescribed";
-  const std::vector<Column> series = prescribed                        ? prescribed_columns(scene)
-                                     : scene.particle.motion == "free" ? free_columns(scene)
-                                                                       : deforming_columns(scene);
   std::vector<std::string> names;
-  for (const Column& column : series) names.push_back(column.name);
+  for (const Series& one : run_series(scene)) names.push_back(one.name);
   deck::check_series(scene.expect.all, names);
-  return deck::too_late(scene.expect.all, prescribed ? 0 : scene.time.final_time);
+  return deck::too_late(scene.expect.all, scene.particle.motion == "prescribed" ? 0 : scene.time.final_time);
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {

@@ -72,11 +72,6 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
-std::vector<Series> tube_series() {
-  return series({"disturbed_pressure_drop", "gap", "disturbance_flux", "force_imbalance", "cap_velocity", "pressure_drop_by_flux",
-                 "pressure_drop_by_force"});
-}
-
 void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now) {
   coupling::Tube& tube = *capsule.tube();
   now.tube = capsule.checks(x);

@@ -22,8 +22,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
 /// The tube as the body meets it, which is all particles of the scene; nothing without one.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// Further series in a tube, and what they are taken from: the particles at x. Collective.
-std::vector<Series> tube_series();
+/// What the series in a tube are taken from: the particles at x. Collective.
 void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now);
 
 /// Lines of the plan.

@@ -43,8 +43,8 @@ struct Verdict {
   double expected = 0;
   double error = 0;  ///< |value - expected|, over |expected| when the kind is relative
   bool passed = false;
-  std::string reason;       ///< why nothing could be looked at, or how far it is off; empty when passed
-  std::string not_binding;  ///< the expectation's
+  std::string reason = {};  ///< why nothing could be looked at, or how far it is off; empty when passed
+  std::string not_binding = {};  ///< the expectation's
 };
 
 /// Series by name, rows in order of time, with the series `time` among them.

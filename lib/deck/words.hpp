@@ -9,7 +9,7 @@ namespace tanktread::deck {
 /// The shortest decimal text that reads back to the same double, at most 17 digits: `0.1`, `12`, `1e-05`.
 std::string number_text(double value);
 
-/// The same with a point in it, which every YAML reader takes for a real number: `12.0`, `1.0e-05`.
+/// The same with a point in it, which every YAML reader takes for a real number: `12.0`, `1.0e-05`; `.nan`, `.inf`, `-.inf`.
 std::string real_text(double value);
 
 /// Text in double quotes, with `"`, `\` and characters that no line of text holds escaped.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "output/checksum.hpp"
 #include "output/file.hpp"
 #include "output/hdf.hpp"
@@ -29,11 +29,7 @@ int step_of(const std::string& name) {
 
 }  // namespace
 
-std::string snapshot_name(int step) {
-  char name[40];
-  std::snprintf(name, sizeof name, "snapshot_%06d.hdf", step);
-  return name;
-}
+std::string snapshot_name(int step) { return formatted("snapshot_%06d.hdf", step); }
 
 std::string checksum(const Checkpoint& checkpoint) {
   Checksum sum;
@@ -50,20 +46,19 @@ std::string checksum(const Checkpoint& checkpoint) {
 
 Checkpoint read_checkpoint(const fs::path& path) {
   const hdf::Id file = hdf::open(path);
-  const hdf::Id root = hdf::group(file, "checkpoint");
-  const hdf::Id arrays = hdf::group(root, "arrays"), numbers = hdf::group(root, "numbers"), texts = hdf::group(root, "texts");
   Checkpoint checkpoint;
   hdf::Shape shape;
-  for (const auto& name : hdf::names(arrays)) {
-    const auto values = hdf::read_doubles(arrays, name, shape);
+  for (const auto& name : hdf::datasets(file, "checkpoint/arrays")) {
+    const auto values = hdf::read_doubles(file, "checkpoint/arrays/" + name, shape);
     if (shape.size() != 2) throw std::runtime_error(path.string() + ": array " + name + " is no matrix");
     checkpoint.arrays[name] =
         Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(shape[1]));
   }
-  for (const auto& name : hdf::names(numbers)) checkpoint.numbers[name] = hdf::read_doubles(numbers, name, shape).at(0);
-  for (const auto& name : hdf::names(texts)) checkpoint.texts[name] = hdf::read_text(texts, name);
-  const auto keys = hdf::attribute_names(root, ".");  // versions before had no checksum
-  if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(root, ".", "checksum") != checksum(checkpoint))
+  for (const auto& name : hdf::datasets(file, "checkpoint/numbers"))
+    checkpoint.numbers[name] = hdf::read_doubles(file, "checkpoint/numbers/" + name, shape).at(0);
+  for (const auto& name : hdf::datasets(file, "checkpoint/texts")) checkpoint.texts[name] = hdf::read_text(file, "checkpoint/texts/" + name);
+  const auto keys = hdf::attribute_names(file, "checkpoint");  // versions before had no checksum
+  if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(file, "checkpoint", "checksum") != checksum(checkpoint))
     throw std::runtime_error(path.string() + ": the checkpoint is not as it was written");
   return checkpoint;
 }
@@ -77,19 +72,14 @@ std::vector<Snapshot> snapshots(const fs::path& directory) {
   return found;
 }
 
-std::optional<Picture> pictured(const fs::path& path) {
-  try {
-    const hdf::Id file = hdf::open(path);
-    const hdf::Id numbers = hdf::group(hdf::group(file, "checkpoint"), "numbers"),
-                  texts = hdf::group(hdf::group(file, "checkpoint"), "texts");
-    const auto held = hdf::names(numbers);
-    hdf::Shape shape;
-    const char* time = std::ranges::count(held, "picture time") > 0 ? "picture time" : "time";
-    return Picture{hdf::read_doubles(numbers, time, shape).at(0),
-                   std::ranges::count(hdf::names(texts), "run") > 0 ? hdf::read_text(texts, "run") : ""};
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
+std::optional<Picture> pictured(const fs::path& path) try {
+  const hdf::Id file = hdf::open(path);
+  const auto has = [&](const char* group, const char* name) { return std::ranges::count(hdf::datasets(file, group), name) > 0; };
+  const char* time = has("checkpoint/numbers", "picture time") ? "checkpoint/numbers/picture time" : "checkpoint/numbers/time";
+  hdf::Shape shape;
+  return Picture{hdf::read_doubles(file, time, shape).at(0), has("checkpoint/texts", "run") ? hdf::read_text(file, "checkpoint/texts/run") : ""};
+} catch (const std::exception&) {
+  return std::nullopt;
 }
 
 std::optional<Saved> newest_checkpoint(const fs::path& directory) {

@@ -4,11 +4,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include <fcntl.h>
-#include <sys/stat.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "base/errors.hpp"
@@ -49,70 +48,46 @@ void in_directory(const fs::path& directory, const Act& act) try {
   throw RunFailure(std::string("cannot ") + what + " " + path.string() + ": " + std::strerror(errno));
 }
 
-/// An open file, which it closes.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  operator int() const { return number_; }
-  bool close() { return ::close(std::exchange(number_, -1)) == 0; }
-
- private:
-  int number_;
-};
-
 /// Some file systems know no fsync, of directories above all.
 bool synced(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == EROFS; }
 
-void write_all(const Descriptor& file, const fs::path& path, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t done = ::write(file, bytes.data(), bytes.size());
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) fail("write", path);
-    bytes.remove_prefix(static_cast<std::size_t>(done));
+/// An existing file or directory; a pipe does not let wait.
+struct Opened {
+  explicit Opened(const fs::path& path) : number(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    if (number < 0) fail("read", path);
   }
-}
-
-/// An existing file; a pipe does not let wait.
-int open_to_read(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0) fail("read", path);
-  return file;
-}
+  ~Opened() { ::close(number); }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+  int number;
+};
 
 }  // namespace
 
 void write_whole(const fs::path& path, std::string_view bytes, Durable durable) {
   const fs::path beside = path.string() + std::string(unfinished);
-  Descriptor file(::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (file < 0) fail("write", path);
-  write_all(file, path, bytes);
-  if (durable == Durable::yes && !synced(file)) fail("write", path);
-  if (!file.close() || std::rename(beside.c_str(), path.c_str()) != 0) fail("write", path);
+  std::FILE* const file = std::fopen(beside.c_str(), "wbe");
+  if (!file) fail("write", path);
+  bool done = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
+  done = done && (durable == Durable::no || synced(fileno(file)));
+  if (std::fclose(file) != 0 || !done || std::rename(beside.c_str(), path.c_str()) != 0) fail("write", path);
 }
 
 void sync(const fs::path& path) {
-  const Descriptor file(open_to_read(path));
-  if (!synced(file)) fail("write", path);
+  if (!synced(Opened(path).number)) fail("write", path);
 }
 
 void check_opens(const fs::path& path) {
-  const Descriptor file(open_to_read(path));
-  struct stat status;
-  if (::fstat(file, &status) != 0) fail("read", path);
-  if (!S_ISREG(status.st_mode)) throw RunFailure("cannot read " + path.string() + ": it is no regular file");
+  const Opened file(path);
+  if (!fs::is_regular_file(path)) throw RunFailure("cannot read " + path.string() + ": it is no regular file");
 }
 
 void check_readable(const fs::path& path) {
   check_opens(path);
-  const Descriptor file(open_to_read(path));
+  const Opened file(path);
   std::array<char, 1 << 16> bytes;
   for (ssize_t n = 1; n != 0;)
-    if (n = ::read(file, bytes.data(), bytes.size()); n < 0 && errno != EINTR) fail("read", path);
+    if (n = ::read(file.number, bytes.data(), bytes.size()); n < 0 && errno != EINTR) fail("read", path);
 }
 
 fs::path set_aside(const fs::path& path) {
@@ -144,6 +119,19 @@ void tidy_directory(const fs::path& directory) {
   in_directory(directory, [&] {
     for (const auto& old : files_where(directory, is_unfinished)) fs::remove(old);
   });
+}
+
+Occupation::Occupation(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  descriptor_ = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  close(descriptor_);
+  throw UserError("another run is writing to the directory " + directory.string());
+}
+
+Occupation::~Occupation() {
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 }  // namespace tanktread::output

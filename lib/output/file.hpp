@@ -1,5 +1,5 @@
 #pragma once
-// Files that are whole at every moment: written beside their place, then renamed into it.
+// Files that are whole at every moment: written beside their place, then renamed into it; and the directory of a run.
 
 #include <filesystem>
 #include <string>
@@ -34,5 +34,19 @@ void start_directory(const std::filesystem::path& directory);
 
 /// The same for `--resume`: removes only unfinished files.
 void tidy_directory(const std::filesystem::path& directory);
+
+/// Holds a directory, which is made where there is none, for this process alone. It is free again when this object or the process ends, however
+/// it ends; nothing is left behind. File systems that know no locks, and directories that cannot be opened, hold nothing.
+class Occupation {
+ public:
+  /// Throws UserError when another process holds the directory.
+  explicit Occupation(const std::filesystem::path& directory);
+  ~Occupation();
+  Occupation(const Occupation&) = delete;
+  Occupation& operator=(const Occupation&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
 
 }  // namespace tanktread::output

@@ -15,8 +15,7 @@ namespace tanktread::output::hdf {
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t), const std::string& what);
-  ~Id();
-  Id(Id&& other) noexcept;
+  ~Id() { close_(id_); }
   Id(const Id&) = delete;
   Id& operator=(const Id&) = delete;
   operator hid_t() const { return id_; }
@@ -34,30 +33,24 @@ std::string image(const Id& file);
 /// An existing file, for reading. Throws RunFailure when the system does not open it as a file, std::runtime_error when it is no HDF5 file.
 Id open(const std::filesystem::path& path);
 
-Id new_group(hid_t parent, const std::string& name);
-Id group(hid_t parent, const std::string& name);
-std::vector<std::string> names(hid_t group);  ///< of the members, in alphabetical order
-std::vector<std::string> datasets(hid_t group);  ///< in it and in the groups below, `group/name`
-
 using Shape = std::vector<hsize_t>;  ///< empty: a scalar
 
-/// Datasets, row-major; groups on the way to `group/name` are made. `read_*` fill `shape` with what was found.
-void write(hid_t parent, const std::string& name, std::span<const double> values, const Shape& shape);
-void write(hid_t parent, const std::string& name, std::span<const std::int64_t> values);
-void write(hid_t parent, const std::string& name, std::span<const std::uint8_t> values);
-void write(hid_t parent, const std::string& name, const std::string& text);
+/// Datasets of a file, row-major; groups on the way to `group/name` are made. `read_doubles` fills `shape` with what was found.
+void write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape);
+void write(hid_t file, const std::string& name, std::span<const std::int64_t> values);
+void write(hid_t file, const std::string& name, std::span<const std::uint8_t> values);
+void write(hid_t file, const std::string& name, const std::string& text);
+void write_group(hid_t file, const std::string& name);  ///< an empty one
+std::vector<double> read_doubles(hid_t file, const std::string& name, Shape& shape);
+std::string read_text(hid_t file, const std::string& name);
 
-/// A column that can grow to `capacity` values, and its growth to these values, of which it holds the first `known` already.
-Id new_column(hid_t parent, const std::string& name, std::size_t capacity);
-void grow(const Id& column, std::span<const double> values, std::size_t known);
+/// What stands after `group/` in the names of the datasets below a group, in alphabetical order; none where there is no such group.
+std::vector<std::string> datasets(hid_t file, const std::string& group);
 
-std::vector<double> read_doubles(hid_t parent, const std::string& name, Shape& shape);
-std::string read_text(hid_t parent, const std::string& name);
-
-/// Attributes of the object `name` under `parent` ("." for the parent itself).
-void attribute(hid_t parent, const std::string& name, const std::string& key, const std::string& text);
-void attribute(hid_t parent, const std::string& name, const std::string& key, std::span<const std::int64_t> values);
-std::string read_attribute(hid_t parent, const std::string& name, const std::string& key);
-std::vector<std::string> attribute_names(hid_t parent, const std::string& name);
+/// Attributes of the object `name`.
+void attribute(hid_t file, const std::string& name, const std::string& key, const std::string& text);
+void attribute(hid_t file, const std::string& name, const std::string& key, std::span<const std::int64_t> values);
+std::string read_attribute(hid_t file, const std::string& name, const std::string& key);
+std::vector<std::string> attribute_names(hid_t file, const std::string& name);
 
 }  // namespace tanktread::output::hdf

@@ -1,26 +1,15 @@
 #include "output/progress.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdarg>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "output/text.hpp"
+#include "base/formatted.hpp"
 
 namespace tanktread::output {
 namespace {
-
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  std::array<char, 256> text;
-  std::va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text.data(), text.size(), pattern, arguments);
-  va_end(arguments);
-  return text.data();
-}
 
 double share_done(double time, double begin, double end) { return end > begin ? std::clamp((time - begin) / (end - begin), 0.0, 1.0) : 1; }
 
@@ -31,6 +20,14 @@ std::size_t terminal_width(std::FILE* out) {
 
 }  // namespace
 
+std::string duration(double seconds) {
+  const long whole = std::lround(seconds);
+  if (seconds < 9.95) return formatted("%.1f s", seconds);
+  if (whole < 60) return formatted("%ld s", whole);
+  if (whole < 3600) return formatted("%ld min %02ld s", whole / 60, whole % 60);
+  return formatted("%ld h %02ld min", whole / 3600, whole % 3600 / 60);
+}
+
 std::string progress_line(const Moment& moment, double begin, double end, double seconds, int bar) {
   const double done = share_done(moment.time, begin, end);
   std::string line;
@@ -38,7 +35,7 @@ std::string progress_line(const Moment& moment, double begin, double end, double
     const auto filled = static_cast<std::size_t>(done * bar);
     line = "[" + std::string(filled, '#') + std::string(static_cast<std::size_t>(bar) - filled, '-') + "] ";
   }
-  line += format("%3.0f %%  t %.4g/%.4g  step %d  %d iteration%s  D %.4f", std::floor(100 * done), moment.time, end, moment.step,
+  line += formatted("%3.0f %%  t %.4g/%.4g  step %d  %d iteration%s  D %.4f", std::floor(100 * done), moment.time, end, moment.step,
                  moment.iterations, moment.iterations == 1 ? "" : "s", moment.deformation);
   if (done > 0 && done < 1) line += "  " + duration(seconds * (1 - done) / done) + " left";
   return line;
@@ -100,12 +97,12 @@ std::string closing_table(const Phases& phases, const Entries<long>& counts, con
   const int column = static_cast<int>(width);
   const double total = phases.total();
 
-  std::string text = format("  %-*s %10s %6s %10s\n", column, "phase", "seconds", "share", "calls");
+  std::string text = formatted("  %-*s %10s %6s %10s\n", column, "phase", "seconds", "share", "calls");
   for (const auto& phase : phases.all())
-    text += format("  %-*s %10.3f %4.0f %% %10ld\n", column, phase.name.c_str(), phase.seconds, total > 0 ? 100 * phase.seconds / total : 0,
+    text += formatted("  %-*s %10.3f %4.0f %% %10ld\n", column, phase.name.c_str(), phase.seconds, total > 0 ? 100 * phase.seconds / total : 0,
                    phase.calls);
-  text += format("  %-*s %10.3f\n", column, "total", total);
-  for (const auto& [name, count] : counts) text += format("  %-*s %10ld\n", column, name.c_str(), count);
+  text += formatted("  %-*s %10.3f\n", column, "total", total);
+  for (const auto& [name, count] : counts) text += formatted("  %-*s %10ld\n", column, name.c_str(), count);
   return text + "  results in " + results.string() + "\n";
 }
 

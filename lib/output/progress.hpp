@@ -49,6 +49,9 @@ class Progress {
 /// many characters: "[###-----]  45 %  t 3.375/7.5  step 24  9 iterations  D 0.3987  12 s left".
 std::string progress_line(const Moment& moment, double begin, double end, double seconds, int bar);
 
+/// "0.8 s", "42 s", "3 min 08 s", "2 h 05 min".
+std::string duration(double seconds);
+
 /// The closing table: seconds and share of each phase, work counts, where the results are.
 std::string closing_table(const Phases& phases, const Entries<long>& counts, const std::filesystem::path& results);
 

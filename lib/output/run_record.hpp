@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,14 +23,12 @@ struct Series {
 /// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks) and which `run` it is of.
 ///
 /// The rows live here, and `write` puts all of them on disk in one step (write_whole): HDF5 1.10 cannot append to a file so that a process killed
-/// within leaves one that every reader opens (its single-writer mode leaves a mark that refuses them). In memory the file stays open, and grows by
-/// the rows that are new. Serial: on several ranks only the first has a record.
+/// within leaves one that every reader opens (its single-writer mode leaves a mark that refuses them). Serial: on several ranks only the first has a
+/// record.
 class RunRecord {
  public:
   /// A record without rows.
   RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance);
-  ~RunRecord();
-  RunRecord(RunRecord&&) noexcept;
 
   /// The record that stands at `path`. Throws UserError when it is missing or damaged.
   static RunRecord load(const std::filesystem::path& path);
@@ -49,7 +46,7 @@ class RunRecord {
   /// Replaces deck and provenance (the resumed run may have other ranks and another final time). Writes nothing.
   void describe(std::string deck, std::map<std::string, std::string> provenance);
 
-  void write(Durable durable = Durable::no);
+  void write(Durable durable = Durable::no) const;
 
   /// Of the first `rows` rows of every series, in whatever order the series were declared (Checksum).
   std::string checksum(std::size_t rows) const;
@@ -61,14 +58,10 @@ class RunRecord {
   const std::map<std::string, std::string>& provenance() const { return provenance_; }
 
  private:
-  struct Image;
-  void lay_out();
-
   std::filesystem::path path_;
   std::string deck_;
   std::map<std::string, std::string> provenance_;
   std::vector<Series> series_;
-  std::unique_ptr<Image> image_;  ///< since the last write
 };
 
 }  // namespace tanktread::output

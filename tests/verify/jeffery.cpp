@@ -41,7 +41,7 @@ struct Tumbling {
   double inclination() {
     const std::vector<double> row = body->row(state, {}, 0);
     for (size_t k = 0; k < row.size(); ++k)
-      if (body->columns()[k].name == "inclination") return row[k];
+      if (body->series()[k].name == "inclination") return row[k];
     return NAN;
   }
 };

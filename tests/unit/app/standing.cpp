@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/diagnostics.hpp"
+#include "app/series.hpp"
 #include "deck/document.hpp"
 
 namespace tanktread {
@@ -69,7 +69,7 @@ TEST(Standing, WarningsGoOnWhereTheyWere) {
 }
 
 TEST(Series, AnUnknownNameIsAnError) {
-  const std::vector<Column> all = columns(all_series());
+  const std::vector<Series>& all = all_series();
   const std::vector<double> row(all.size(), 2.5);
   EXPECT_EQ(entry(all, row, "area"), 2.5);
   EXPECT_THROW(entry(all, row, "taylor"), std::out_of_range);

@@ -15,7 +15,6 @@
 #include "coupling/ranks.hpp"
 #include "output/file.hpp"
 #include "output/snapshot.hpp"
-#include "output/snapshot_series.hpp"
 #include "output/state.hpp"
 #include "patches.hpp"
 #include "scratch.hpp"
@@ -32,14 +31,14 @@ struct Scene {
     add_patch(space, net, 4, [](double s, double t) { return Vec3(1 + s, t, (1 + s) * t); });
     nodes.emplace(surface::BezierMap(space), lagrange_mesh(space, net));
   }
-  std::vector<Field> fields(NodeRange range) const {
-    std::vector<Field> result = picture(*nodes, net, range);
-    result.push_back({"velocity", nodes->values(net, range)});
-    result.push_back({"height", nodes->values(net, range).col(2)});
+  std::vector<Field> fields() const {
+    std::vector<Field> result = picture(*nodes, net);
+    result.push_back({"velocity", nodes->values(net)});
+    result.push_back({"height", nodes->values(net).col(2)});
     return result;
   }
   void write(const std::filesystem::path& path, const Checkpoint& checkpoint) const {
-    write_snapshot(path, checkpoint, nodes->mesh(), fields(nodes->all()));
+    write_snapshot(path, checkpoint, nodes->mesh(), fields());
   }
 };
 

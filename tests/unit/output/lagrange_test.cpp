@@ -80,20 +80,6 @@ TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) 
   }
 }
 
-TEST(Nodes, WhatIsThereDoesNotDependOnTheRangeThatItIsAskedForWith) {
-  const Sheet sheet_;
-  const Nodes nodes(surface::BezierMap(sheet_.space), lagrange_mesh(sheet_.space, sheet_.net));
-  const Net values = nodes.values(sheet_.net), normals = nodes.normals(sheet_.net);
-  const std::vector<surface::Jet> jets = nodes.jets(sheet_.net);
-  for (const NodeRange range : {NodeRange{0, 1}, NodeRange{5, 17}, NodeRange{16, 51}, NodeRange{20, 20}, nodes.all()}) {
-    EXPECT_EQ(nodes.values(sheet_.net, range), values.middleRows(range.begin, range.size()));
-    EXPECT_EQ(nodes.normals(sheet_.net, range), normals.middleRows(range.begin, range.size()));
-    const std::vector<surface::Jet> some = nodes.jets(sheet_.net, range);
-    ASSERT_EQ(some.size(), static_cast<std::size_t>(range.size()));
-    for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k].st, jets[k + static_cast<std::size_t>(range.begin)].st);
-  }
-}
-
 TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   spline::Space space;
   Net net;

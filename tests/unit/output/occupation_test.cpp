@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "output/occupation.hpp"
+#include "output/file.hpp"
 #include "scratch.hpp"
 
 namespace tanktread::output {

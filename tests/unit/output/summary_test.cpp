@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "deck/words.hpp"
 #include "output/file.hpp"
-#include "output/text.hpp"
+#include "output/progress.hpp"
 #include "scratch.hpp"
 
 namespace tanktread::output {
@@ -17,15 +18,15 @@ TEST(Numbers, ReadBackAsTheSameDouble) {
   std::mt19937_64 random(3);
   for (int k = 0; k < 1000; ++k) {
     const double value = std::ldexp(std::uniform_real_distribution<>(-1, 1)(random), std::uniform_int_distribution<>(-1000, 1000)(random));
-    EXPECT_EQ(std::stod(number(value)), value);
+    EXPECT_EQ(std::stod(deck::real_text(value)), value);
   }
 }
 
 TEST(Numbers, AlwaysShowAPoint) {
-  EXPECT_EQ(number(1), "1.0");
-  EXPECT_EQ(number(1e-6), "1.0e-06");
-  EXPECT_EQ(number(-0.), "-0.0");
-  EXPECT_EQ(number(1e22), "1.0e+22");
+  EXPECT_EQ(deck::real_text(1), "1.0");
+  EXPECT_EQ(deck::real_text(1e-6), "1.0e-06");
+  EXPECT_EQ(deck::real_text(-0.), "-0.0");
+  EXPECT_EQ(deck::real_text(1e22), "1.0e+22");
 }
 
 TEST(Durations, AreReadAtAGlance) {
@@ -44,7 +45,7 @@ TEST(Summary, IsReadByPythonAsItWasMeant) {
   summary.seconds = {{"far field: near: self", 1.25}};
   summary.plan = {{"flow", "simple shear, γ̇ = 1: \"λ = 1\" # no double layer\n\tC:\\"}, {"yes", ""}};
   summary.warnings = {"the load: \"strong\" # it fails"};
-  write_summary(scratch / "summary.yaml", summary);
+  write_whole(scratch / "summary.yaml", yaml(summary));
   write_whole(scratch / "check.py", R"(
 import math, sys, yaml
 s = yaml.safe_load(open(sys.argv[1], encoding='utf-8'))

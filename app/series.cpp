@@ -1,0 +1,235 @@
+#include "app/series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "app/exact_body.hpp"
+#include "base/errors.hpp"
+#include "stokes/ambient_flow.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr unsigned all_particles = of_deforming | of_rigid | of_free | of_prescribed;
+constexpr unsigned moving = of_deforming | of_rigid | of_free;
+constexpr unsigned told_or_among_others = of_rigid | of_prescribed;
+constexpr unsigned timed = of_run | of_free;
+constexpr const char* axes = "x1 x2 x3";
+
+/// One series, or several with the names of their components behind their own, which stand in the description for each `#`.
+struct Statement {
+  const char *name, *components, *unit, *description;
+  unsigned owners;
+  double (*value)(const Moment& now, int component);
+  Needs needs = Needs::nothing;
+};
+
+double stresslet(const Moment& m, int component) {
+  constexpr int places[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  return m.stresslet(places[component][0], places[component][1]);
+}
+
+/// Of the centroid, in the cross-section of a tube.
+double migration_velocity(const Moment& m, int) {
+  const auto place = m.centre.tail<2>(), velocity = m.velocity.tail<2>();
+  return place.dot(velocity) > 0 ? -velocity.norm() : velocity.norm();
+}
+
+constexpr Statement table[] = {
+    {"time", "", "time", "simulated time; 0 of a steady problem", timed | of_prescribed, [](const Moment& m, int) { return m.time; }},
+    {"time_step", "", "time", "size of the step that ended here", timed, [](const Moment& m, int) { return m.step.step; }},
+    {"taylor_inertia", "", "1", "Taylor parameter (6.2) of the ellipsoid with the same second moments, in the plane of the flow", of_deforming,
+     [](const Moment& m, int) { return m.shape.taylor_inertia; }},
+    {"taylor_surface", "", "1", "Taylor parameter (6.2) of the longest and shortest distance from the centroid, in the plane of the flow",
+     of_deforming, [](const Moment& m, int) { return m.shape.taylor_surface; }},
+    {"inclination", "", "degree",
+     "angle of the long axis of inertia with the first direction of the plane of the flow (x1), towards the second (x3)", moving,
+     [](const Moment& m, int) { return m.shape.inclination; }},
+    {"volume", "", "length^3", "enclosed volume (P-43)", of_deforming | told_or_among_others, [](const Moment& m, int) { return m.measures.volume; }},
+    {"volume_error", "", "1", "V/V0 - 1", of_deforming, [](const Moment& m, int) { return m.volume_error; }},
+    {"refit_error", "", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over R_C", of_deforming,
+     [](const Moment& m, int) { return m.refit_error; }, Needs::adaptation},
+    {"area", "", "length^2", "area of the surface", of_deforming | told_or_among_others, [](const Moment& m, int) { return m.measures.area; }},
+    {"energy", "", "force length", "energy stored in the membrane", of_deforming | of_several, [](const Moment& m, int) { return m.energy; }},
+    {"smallest_tension", "", "1", "smallest principal tension over G_s", of_deforming, [](const Moment& m, int) { return m.tension.smallest; }},
+    {"compressed_area", "", "1", "share of the area with a negative principal tension", of_deforming,
+     [](const Moment& m, int) { return m.tension.compressed_area; }},
+    {"stresslet_", "11 22 33 12 13 23", "force length", "particle stresslet (6.7), component #", all_particles | of_several, stresslet},
+    {"length_", axes, "length", "extent along #", moving, [](const Moment& m, int c) { return m.shape.lengths[c]; }},
+    {"normal_velocity", "", "1",
+     "largest |v.n| over rate x R_C (in a tube over the mean velocity; there and in parabolic flow in the particle's frame): "
+     "zero when the shape is steady",
+     of_deforming, [](const Moment& m, int) { return m.normal_velocity; }},
+    {"shape_velocity", "", "1", "what smooth changes of shape have of it, root mean square (6.8): `Time/steady tolerance` is held against this",
+     of_deforming, [](const Moment& m, int) { return m.shape_velocity; }},
+    {"n_control_points", "", "1", "control points of the surface", all_particles | of_several,
+     [](const Moment& m, int) { return double(m.n_points); }},
+    {"step_error", "", "1", "estimated error of the step, in the norm of Time/tolerance", timed, [](const Moment& m, int) { return m.step.error; }},
+    {"rejected_steps", "", "1", "attempts given up in this step", timed, [](const Moment& m, int) { return double(m.step.rejected); }},
+    {"iterations", "", "1", "nonlinear iterations or sub-iterations in this step", of_run,
+     [](const Moment& m, int) { return double(m.step.iterations); }},
+    {"evaluations", "", "1", "velocity evaluations so far", timed, [](const Moment& m, int) { return double(m.work.evaluations); }},
+    {"assemblies", "", "1", "assemblies of the frozen layer operator so far", of_run, [](const Moment& m, int) { return double(m.work.assemblies); }},
+    {"solver_iterations", "", "1", "iterations of the linear solver so far", of_run | of_free_in_tube | of_prescribed,
+     [](const Moment& m, int) { return double(m.work.solver_iterations); }},
+    {"velocity_iterations", "", "1", "iterations of the systems that velocities come from so far (viscosity ratio other than 1)", of_run,
+     [](const Moment& m, int) { return double(m.work.velocity_iterations); }},
+    {"wall_seconds", "", "s", "time since the run was started, earlier parts of a resumed run included", timed | of_prescribed,
+     [](const Moment& m, int) { return m.wall_seconds; }},
+    {"centroid_", axes, "length", "centroid (P-42), component #; x1 in a tube is what the frame has travelled", of_deforming | of_rigid,
+     [](const Moment& m, int c) { return m.centre[c]; }},
+    {"center_", axes, "length", "centre of the rigid body, component #", of_free, [](const Moment& m, int c) { return m.centre[c]; }},
+    {"velocity_", axes, "length/time", "of the centroid (6.4), or of the centre of a rigid body, component #; of several particles the mean",
+     moving | of_several, [](const Moment& m, int c) { return m.velocity[c]; }},
+    {"angular_velocity_", axes, "1/time", "of the rigid body, component #", of_rigid | of_free,
+     [](const Moment& m, int c) { return m.angular_velocity[c]; }},
+    {"quaternion_", "0 1 2 3", "1", "turn from the initial place, component #, of which 0 is the scalar part", of_rigid | of_free,
+     [](const Moment& m, int c) { return m.quaternion[c]; }},
+    {"axis_", "1 2 3", "length", "semi-axis # of the ellipsoid with the same second moments (6.1), the longest one first", of_deforming | of_free,
+     [](const Moment& m, int c) { return m.axes.lengths[c]; }},
+    {"axis_1_", axes, "1", "direction of the longest one, component #; the first that is not zero is positive. Any where two are longest",
+     of_deforming | of_free, [](const Moment& m, int c) { return m.axes.directions(c, 0); }},
+    {"tank_treading_velocity", "", "length/time",
+     "mean tangential velocity relative to the centroid on the curve that the plane of the flow through it cuts out (6.5); positive where the side "
+     "of larger x3 moves along x1, clockwise with x1 to the right and x3 up",
+     of_deforming | of_free, [](const Moment& m, int) { return m.treading.velocity; }},
+    {"tank_treading_frequency", "", "1/time",
+     "mean angular velocity of the material points of that curve about the centroid (6.6), in radians over time and of the same sense: 2 pi over "
+     "the period of a steady motion; of a rigid body its angular velocity",
+     of_deforming | of_free, [](const Moment& m, int) { return m.treading.frequency; }},
+    {"phase", "", "degree",
+     "angle about the centroid, in the plane of the flow and of the same sense, of the material point that starts at the angle 0, on the side of "
+     "x1, counted on past whole turns; of a drop whose mesh slides the integral of tank_treading_frequency",
+     of_deforming | of_free, [](const Moment& m, int) { return m.phase; }},
+    {"intrinsic_viscosity", "", "1", "S:E/(2 mu V E:E) with the stresslet S (6.7) and the rate of strain E of the flow: 5/2 of a rigid sphere",
+     moving, [](const Moment& m, int) { return m.intrinsic_viscosity; }, Needs::strain},
+    {"migration_velocity", "", "length/time", "speed of the centroid in the x2 x3 plane, positive towards the axis of the tube",
+     of_deforming | of_free, migration_velocity, Needs::tube},
+    {"disturbed_pressure_drop", "", "force/length^2", "pressure drop that the particle adds (2.7)", timed | of_prescribed,
+     [](const Moment& m, int) { return m.pressure_drop; }, Needs::tube},
+    {"gap", "", "length", "smallest distance between particle and wall", timed | of_prescribed,
+     [](const Moment& m, int) { return m.gap; }, Needs::tube},
+    {"smallest_gap", "", "length", "smallest distance between two of several particles", of_several,
+     [](const Moment& m, int) { return m.nearest.gap; }},
+    {"first_of_gap", "", "1", "number of the first of these two, from 1 in the order of the deck", of_several,
+     [](const Moment& m, int) { return double(m.nearest.first); }},
+    {"second_of_gap", "", "1", "number of the second one", of_several, [](const Moment& m, int) { return double(m.nearest.second); }},
+    {"gap_", axes, "length", "place between their nearest points, component #", of_several,
+     [](const Moment& m, int c) { return m.nearest.place[c]; }},
+    {"disturbance_flux", "", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", of_run,
+     [](const Moment& m, int) { return m.tube.flux; }, Needs::tube},
+    {"force_imbalance", "", "1",
+     "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: should vanish (2.14)", of_run,
+     [](const Moment& m, int) { return m.tube.force; }, Needs::tube},
+    {"cap_velocity", "", "1", "largest disturbance velocity left on the caps, over the mean velocity", of_run,
+     [](const Moment& m, int) { return m.tube.cap_velocity; }, Needs::tube},
+    {"pressure_drop_by_flux", "", "force/length^2", "disturbed pressure drop for which the flux of the disturbance vanishes", of_run,
+     [](const Moment& m, int) { return m.tube.pressure_by_flux; }, Needs::tube},
+    {"pressure_drop_by_force", "", "force/length^2", "disturbed pressure drop for which the axial forces balance", of_run,
+     [](const Moment& m, int) { return m.tube.pressure_by_force; }, Needs::tube},
+    {"drag_", axes, "force", "force on the particle, component #", told_or_among_others, [](const Moment& m, int c) { return m.drag[c]; }},
+    {"torque_", axes, "force length", "torque on the particle about its centre, component #", told_or_among_others,
+     [](const Moment& m, int c) { return m.torque[c]; }},
+    {"drag_error", "", "1", "|F - F_exact|/|F_exact|, where the exact force is known and not zero", of_prescribed,
+     [](const Moment& m, int) { return m.drag_error; }, Needs::exact_force},
+    {"drag_error_of_traction", "", "1", "the same, of the integral of the traction alone", of_prescribed,
+     [](const Moment& m, int) { return m.drag_error_of_traction; }, Needs::exact_force},
+    {"torque_error", "", "1", "|T - T_exact|/|T_exact|, where the exact torque is known and not zero", of_prescribed,
+     [](const Moment& m, int) { return m.torque_error; }, Needs::exact_torque},
+    {"pressure_l2_error", "", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n (6.3), where that is known", of_prescribed,
+     [](const Moment& m, int) { return m.pressure_error; }, Needs::exact_pressure},
+    {"normal_l2_error", "", "1", "L2 norm of n_h - n over that of n (6.3), where that is known", of_prescribed,
+     [](const Moment& m, int) { return m.normal_error; }, Needs::exact},
+    {"kernel_evaluations", "", "1", "of the layer operator, all rules together", of_prescribed,
+     [](const Moment& m, int) { return m.kernel_evaluations; }},
+};
+
+std::vector<Series> stated() {
+  std::vector<Series> all;
+  for (const Statement& one : table) {
+    std::istringstream components(one.components);
+    std::string component, description = one.description;
+    components >> component;
+    for (int c = 0; c == 0 || components >> component; ++c) {
+      description = one.description;
+      if (const auto at = description.find('#'); at != description.npos) description.replace(at, 1, component);
+      all.push_back({one.name + component, one.unit, description, one.owners, one.needs, c, one.value});
+    }
+  }
+  return all;
+}
+
+bool holds(const Scene& scene, Needs needs) {
+  if (needs == Needs::nothing) return true;
+  if (needs == Needs::tube) return scene.tube.present;
+  if (needs == Needs::strain) return strains(scene);
+  if (needs == Needs::adaptation) return scene.adaptation.enabled;
+  const auto exact = scene.tube.present ? std::nullopt : exact_body(scene);
+  if (!exact || needs == Needs::exact) return exact.has_value();
+  if (needs == Needs::exact_pressure) return exact->presses();
+  return (needs == Needs::exact_force ? exact->force() : exact->torque()).norm() > 0;
+}
+
+}  // namespace
+
+const std::vector<Series>& all_series() {
+  static const std::vector<Series> all = stated();
+  return all;
+}
+
+std::vector<Series> series(const Scene& scene, Owner owner) {
+  unsigned owners = owner;
+  if (owner == of_run && !scene.particles.empty()) owners |= of_several;
+  if (owner == of_free && scene.tube.present) owners |= of_free_in_tube;
+  std::vector<Series> found;
+  for (const Series& one : all_series())
+    if ((one.owners & owners) && holds(scene, one.needs)) found.push_back(one);
+  return found;
+}
+
+std::vector<Series> run_series(const Scene& scene) {
+  if (scene.particle.motion == "free") return series(scene, of_free);
+  if (scene.particle.motion == "prescribed") return series(scene, of_prescribed);
+  std::vector<Series> all = series(scene, of_run);
+  for (const Scene& one : scene.alone())
+    for (Series& own : series(one, one.particle.rigid() ? of_rigid : of_deforming)) {
+      if (!one.name.empty()) own.name = one.name + "/" + own.name;
+      all.push_back(std::move(own));
+    }
+  return all;
+}
+
+std::vector<double> row(std::span<const Series> of, const Moment& now) {
+  std::vector<double> values;
+  for (const Series& one : of) {
+    values.push_back(one.value(now, one.component));
+    if (std::isnan(values.back())) throw RunFailure("the series " + one.name + " is not a number");
+  }
+  return values;
+}
+
+double entry(const std::vector<Series>& series, const std::vector<double>& row, std::string_view name) {
+  const auto at = std::ranges::find(series, name, &Series::name);
+  if (at == series.end()) throw std::out_of_range("there is no series '" + std::string(name) + "'");
+  return row.at(static_cast<size_t>(at - series.begin()));
+}
+
+std::vector<double> entries_of_particles(const std::vector<Series>& series, const std::vector<double>& row, std::string_view name) {
+  std::vector<double> found;
+  for (size_t k = 0; k < series.size(); ++k)
+    if (series[k].name.ends_with("/" + std::string(name))) found.push_back(row.at(k));
+  if (found.empty() && std::ranges::count(series, name, &Series::name) > 0) found.push_back(entry(series, row, name));
+  return found;
+}
+
+bool strains(const Scene& scene) {
+  if (scene.tube.present) return false;
+  const stokes::AmbientFlow flow(scene.flow);
+  const Mat3 gradient = flow.gradient(Vec3::Zero());
+  return flow.affine() && (gradient + gradient.transpose()).norm() > 1e-10 * gradient.norm();
+}
+
+}  // namespace tanktread

@@ -1,0 +1,91 @@
+#pragma once
+// The series of a run: each is stated once, with its unit, what it is, which particles have it, and where its value comes from.
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/scene.hpp"
+#include "coupling/capsule.hpp"
+#include "coupling/tube.hpp"
+#include "membrane/membrane.hpp"
+#include "motion/integrator.hpp"
+#include "surface/geometry.hpp"
+#include "surface/principal_axes.hpp"
+#include "surface/transport.hpp"
+
+namespace tanktread {
+
+/// The two of several particles that are nearest to each other, by their numbers from 1 in the order of the deck, and the place between them.
+struct Nearest {
+  double gap = std::numeric_limits<double>::infinity();
+  int first = 0, second = 0;
+  Vec3 place = Vec3::Zero();
+};
+
+/// What a row is taken from. A particle fills in what its series ask for. Vectors are in the axes of space.
+struct Moment {
+  double time = 0, wall_seconds = 0;
+  motion::StepReport step;
+  coupling::Work work;
+  int n_points = 0;
+  surface::Measures measures;
+  surface::Deformation shape;
+  surface::PrincipalAxes axes;
+  double volume_error = 0, refit_error = 0, energy = 0, normal_velocity = 0, shape_velocity = 0;
+  membrane::TensionSummary tension;
+  Mat3 stresslet = Mat3::Zero();
+  double intrinsic_viscosity = 0;
+  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< the scalar part first
+  surface::Treading treading;
+  double phase = 0;
+  double pressure_drop = 0, gap = 0;  ///< in a tube
+  Nearest nearest;                    ///< among others
+  coupling::Tube::Checks tube;
+  Vec3 drag = Vec3::Zero(), torque = Vec3::Zero();  ///< on a prescribed body; errors against the exact solution
+  double drag_error = 0, drag_error_of_traction = 0, torque_error = 0, pressure_error = 0, normal_error = 0, kernel_evaluations = 0;
+};
+
+/// Whose row a series is in, as bits: the run's, which of several particles is that of all; a capsule's or drop's; that of a rigid body among several
+/// particles; of a free body, in a tube only; of a prescribed one.
+enum Owner : unsigned { of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64 };
+
+/// What a scene must have beside; the last four: an exact solution of a prescribed body, which has a force, a torque, a pressure that is not zero.
+enum class Needs { nothing, tube, strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
+
+/// A column of `/series` and its value.
+struct Series {
+  std::string name;
+  const char* unit;
+  std::string description;
+  unsigned owners;
+  Needs needs;
+  int component;  ///< the number of one of several that are stated together, from 0
+  double (*value)(const Moment& now, int component);
+};
+
+/// All of them, whatever particle has them.
+const std::vector<Series>& all_series();
+
+/// Those of one row, as the owner has them in this scene.
+std::vector<Series> series(const Scene& scene, Owner owner);
+
+/// Those of the run of a scene, one particle after another: `<name>`, of one of several particles `<particle>/<name>`.
+std::vector<Series> run_series(const Scene& scene);
+
+/// One row. Throws RunFailure, which names the series, where a value is not a number.
+std::vector<double> row(std::span<const Series> of, const Moment& now);
+
+/// The value of one series in a row. Throws std::out_of_range where there is no such series.
+double entry(const std::vector<Series>& series, const std::vector<double>& row, std::string_view name);
+
+/// Those of all particles, `name` and `<particle>/name`, in their order; without the run's own where particles have it.
+std::vector<double> entries_of_particles(const std::vector<Series>& series, const std::vector<double>& row, std::string_view name);
+
+/// Whether the unbounded flow has one rate of strain, which is not zero: what `intrinsic_viscosity` takes.
+bool strains(const Scene& scene);
+
+}  // namespace tanktread
