@@ -24,7 +24,6 @@
 #include "base/formatted.hpp"
 #include "coupling/agreement.hpp"
 #include "coupling/kernel_count.hpp"
-#include "motion/dense_output.hpp"
 #include "motion/guarded.hpp"
 #include "motion/integrator.hpp"
 #include "output/progress.hpp"

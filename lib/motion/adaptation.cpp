@@ -91,100 +91,77 @@ double allowed_length(const surface::MidLine& line, const AdaptationOptions& opt
   return options.reference_length.value() * factor;
 }
 
-}  // namespace
-
-std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options) {
-  std::vector<spline::Mark> found;
-  for (size_t e = 0; e < metrics.size(); ++e) {
-    bool cut[2];
-    for (int a = 0; a < 2; ++a) {
-      const surface::MidLine& line = metrics[e].along[a];
-      cut[a] = line.length > options.minimum_length &&
-               (line.length > allowed_length(line, options) || metrics[e].aspect_ratio(a) > options.limit_aspect_ratio.value());
-    }
-    if (cut[0] || cut[1]) found.push_back({static_cast<int>(e), cut[0], cut[1]});
-  }
-  return found;
-}
-
-std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options) {
-  std::vector<spline::Merge> found;
-  for (size_t e = 0; e < metrics.size(); ++e) {
-    bool merge[2];
-    for (int a = 0; a < 2; ++a) {
-      const surface::MidLine& line = metrics[e].along[a];
-      merge[a] = 2 * line.length < options.coarsening_margin * allowed_length(line, options) &&
-                 2 * metrics[e].aspect_ratio(a) < options.coarsening_margin * options.limit_aspect_ratio.value();
-    }
-    // Both at once keeps the aspect ratio, whatever it would be in between.
-    const surface::ElementMetrics& m = metrics[e];
-    if (!merge[0] && !merge[1] && std::max(m.aspect_ratio(0), m.aspect_ratio(1)) < options.coarsening_margin * options.limit_aspect_ratio.value())
-      merge[0] = merge[1] = 2 * m.along[0].length < options.coarsening_margin * allowed_length(m.along[0], options) &&
-                            2 * m.along[1].length < options.coarsening_margin * allowed_length(m.along[1], options);
-    if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0] ? 1 : 0, merge[1] ? 1 : 0});
-  }
-  return found;
-}
-
-namespace {
-
-double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
-
-}  // namespace
-
-void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
-               std::vector<spline::Mark>& marks) {
-  std::vector<spline::Mark> found;
-  auto marked = marks.begin();
-  for (int e = 0; e < static_cast<int>(lengths.size()); ++e) {
-    const auto k = static_cast<size_t>(e);
-    const double most = longest(widths[k], options);
-    spline::Mark mark{e, lengths[k][0] > most, lengths[k][1] > most};
-    if (marked != marks.end() && marked->element == e) mark.s |= marked->s, mark.t |= marked->t, ++marked;
-    if (mark.s || mark.t) found.push_back(mark);
-  }
-  marks = std::move(found);
-}
-
-void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
-                std::vector<spline::Merge>& merges) {
-  for (spline::Merge& merge : merges) {
-    const auto k = static_cast<size_t>(merge.element);
-    const double most = options.coarsening_margin * longest(widths[k], options);
-    if (2 * lengths[k][0] > most) merge.s = 0;
-    if (2 * lengths[k][1] > most) merge.t = 0;
-  }
-  std::erase_if(merges, [](const spline::Merge& merge) { return merge.s == 0 && merge.t == 0; });
-}
-
-namespace {
-
-/// Largest estimated error over its tolerance.
+/// The largest estimated error over its tolerance.
 double excess(const surface::Errors& errors, const AdaptationOptions& options) {
   const double surface = errors.surface / options.surface_tolerance;
   return options.load_tolerance ? std::max(surface, errors.load / *options.load_tolerance) : surface;
 }
 
-}  // namespace
+/// The length of an element beside a film of this width, at most.
+double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
 
-std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options) {
-  std::vector<spline::Mark> found;
-  for (size_t e = 0; e < resolution.size(); ++e) {
-    bool cut[2];
-    for (int a = 0; a < 2; ++a) cut[a] = resolution[e][a].length > options.minimum_length && excess(resolution[e][a].errors, options) > 1;
-    if (cut[0] || cut[1]) found.push_back({static_cast<int>(e), cut[0], cut[1]});
+/// Marks or merges of those of n elements for which wanted(element, direction) holds along s or t.
+template <class Entry, class Wanted>
+std::vector<Entry> collected(std::size_t n, const Wanted& wanted) {
+  std::vector<Entry> found;
+  for (std::size_t e = 0; e < n; ++e) {
+    const bool along_s = wanted(e, 0), along_t = wanted(e, 1);
+    if (along_s || along_t) found.push_back({static_cast<int>(e), along_s, along_t});
   }
   return found;
 }
 
+}  // namespace
+
+std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options) {
+  return collected<spline::Mark>(metrics.size(), [&](std::size_t e, int a) {
+    const surface::MidLine& line = metrics[e].along[a];
+    return line.length > options.minimum_length &&
+           (line.length > allowed_length(line, options) || metrics[e].aspect_ratio(a) > options.limit_aspect_ratio.value());
+  });
+}
+
+std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options) {
+  const double margin = options.coarsening_margin;
+  const auto slender = [&](double ratio) { return ratio >= margin * options.limit_aspect_ratio.value(); };
+  const auto is_short = [&](const surface::MidLine& line) { return 2 * line.length < margin * allowed_length(line, options); };
+  const auto alone = [&](std::size_t e, int a) { return is_short(metrics[e].along[a]) && !slender(2 * metrics[e].aspect_ratio(a)); };
+  const auto both = [&](const surface::ElementMetrics& m) {  // which keeps the aspect ratio, whatever it would be in between
+    return !slender(std::max(m.aspect_ratio(0), m.aspect_ratio(1))) && is_short(m.along[0]) && is_short(m.along[1]);
+  };
+  return collected<spline::Merge>(metrics.size(),
+                                  [&](std::size_t e, int a) { return alone(e, a) || (!alone(e, 1 - a) && both(metrics[e])); });
+}
+
+std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options) {
+  return collected<spline::Mark>(resolution.size(), [&](std::size_t e, int a) {
+    return resolution[e][a].length > options.minimum_length && excess(resolution[e][a].errors, options) > 1;
+  });
+}
+
 std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options) {
-  std::vector<spline::Merge> found;
-  for (size_t e = 0; e < resolution.size(); ++e) {
-    int merge[2];
-    for (int a = 0; a < 2; ++a) merge[a] = excess(resolution[e][a].merged, options) < options.coarsening_margin;
-    if (merge[0] || merge[1]) found.push_back({static_cast<int>(e), merge[0], merge[1]});
+  return collected<spline::Merge>(resolution.size(), [&](std::size_t e, int a) {
+    return excess(resolution[e][a].merged, options) < options.coarsening_margin;
+  });
+}
+
+void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
+               std::vector<spline::Mark>& marks) {
+  std::vector<std::array<bool, 2>> marked(lengths.size());
+  for (const spline::Mark& mark : marks) marked[mark.element] = {mark.s, mark.t};
+  marks = collected<spline::Mark>(lengths.size(),
+                                  [&](std::size_t e, int a) { return marked[e][a] || lengths[e][a] > longest(widths[e], options); });
+}
+
+void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
+                std::vector<spline::Merge>& merges) {
+  for (spline::Merge& merge : merges) {
+    const std::array<double, 2>& length = lengths[merge.element];
+    const double most = options.coarsening_margin * longest(widths[merge.element], options);
+    if (2 * length[0] > most) merge.s = 0;
+    if (2 * length[1] > most) merge.t = 0;
   }
-  return found;
+  std::erase_if(merges, [](const spline::Merge& merge) { return merge.s == 0 && merge.t == 0; });
 }
 
 }  // namespace tanktread::motion

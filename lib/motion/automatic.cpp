@@ -1,9 +1,7 @@
-#include "motion/automatic.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "motion/stiffness.hpp"
+#include "motion/schemes.hpp"
 
 namespace tanktread::motion {
 
@@ -27,17 +25,11 @@ struct Automatic::Choice {
   double work = 0;        ///< of TR-BDF2 per unit of time, in evaluations; 0: not tried yet
   double since = 0;       ///< steps since the last change of scheme
   double then = 0;        ///< stiffness at the last change
-
-  static constexpr size_t size = 7;
-  static Choice from(const std::vector<double>& m) {
-    return m.size() >= size ? Choice{m[0], m[1], m[2], m[3], m[4], m[5], m[6]} : Choice{};
-  }
-  std::vector<double> values() const { return {scheme, stiffness, age, points, work, since, then}; }
 };
 
-Integrator& Automatic::chosen(const Choice& choice) {
+Scheme& Automatic::chosen(const Choice& choice) {
   if (choice.scheme == rkc2) return stabilised_;
-  return choice.scheme == tr_bdf2 ? static_cast<Integrator&>(implicit_) : explicit_;
+  return choice.scheme == tr_bdf2 ? static_cast<Scheme&>(implicit_) : explicit_;
 }
 
 void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const {
@@ -75,7 +67,7 @@ void Automatic::reconsider(const State& state, const StepReport& report, Choice&
 
 StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
-  Choice choice = Choice::from(state.memory);
+  Choice choice = remembered<Choice>(state.memory);
   if (dynamics.frozen_bytes() > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
     choice.scheme = rkc2;
   } else {
@@ -89,7 +81,8 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
 
   // The scheme sees its own part of the memory only.
   State inner = state;
-  inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(std::min(Choice::size, inner.memory.size())));
+  const std::size_t own = std::min(values_of(choice).size(), inner.memory.size());
+  inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(own));
   const double before = choice.scheme;
   if (before == bs3 && choice.stiffness > 0 && !options_.fixed_step) inner.step = std::min(inner.step, stable / choice.stiffness);
   const StepReport report = chosen(choice).advance(dynamics, inner, limit);
@@ -100,7 +93,7 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
       inner.memory.clear();
     }
   }
-  const std::vector<double> values = choice.values();
+  const std::vector<double> values = values_of(choice);
   inner.memory.insert(inner.memory.begin(), values.begin(), values.end());
   state = std::move(inner);
   return report;

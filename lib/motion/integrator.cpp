@@ -2,16 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "base/errors.hpp"
-#include "motion/automatic.hpp"
-#include "motion/bdf3.hpp"
-#include "motion/bs3.hpp"
-#include "motion/crank_nicolson.hpp"
-#include "motion/rkc2.hpp"
-#include "motion/tr_bdf2.hpp"
+#include "motion/schemes.hpp"
 
 namespace tanktread::motion {
 
@@ -87,22 +81,23 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 
-double step_factor(double error, double previous, int power) {
-  const double e = std::max(error, 1e-3), old = previous > 0 ? std::max(previous, 1e-3) : e;
-  return std::clamp(0.9 * std::pow(1 / e, 0.7 / power) * std::pow(old / e, 0.4 / power), 0.3, 2.0);
-}
-
-void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options) {
-  if (options.fixed_step || step >= options.least_step() || time + step >= limit) return;
-  std::ostringstream text;
-  text << "the step fell to " << step << ", below Time/minimum step " << options.least_step();
-  throw RunFailure(text.str());
-}
-
 double step_towards(double time, double limit, double step) {
   const double rest = limit - time;
   if (step >= rest * (1 - 1e-9)) return rest;
   return step > 0.5 * rest ? 0.5 * rest : step;
+}
+
+DenseOutput::DenseOutput(const State& before, const State& after)
+    : start_(before.time), step_(after.time - before.time), x0_(before.x), x1_(after.x), v0_(before.history.front()), v1_(after.history.front()) {}
+
+Net DenseOutput::place(double time) const {
+  const double s = (time - start_) / step_, r = 1 - s;
+  return r * r * (1 + 2 * s) * x0_ + s * s * (1 + 2 * r) * x1_ + step_ * s * r * (r * v0_ - s * v1_);
+}
+
+Net DenseOutput::slope(double time) const {
+  const double s = (time - start_) / step_, r = 1 - s;
+  return 6 * s * r / step_ * (x1_ - x0_) + r * (r - 2 * s) * v0_ + s * (s - 2 * r) * v1_;
 }
 
 }  // namespace tanktread::motion

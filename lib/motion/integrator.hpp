@@ -70,15 +70,22 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::sh
 /// derivative is taken for the rate of the motion times the second, or times its own square: whatever the unit of time, it is the same step.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
-/// Factor for the next step of a PI controller: the error over the tolerance, that of the accepted step before (0: none), and the power of the
-/// step that the error goes with. Between 0.3 and 2. Gustafsson 1991.
-double step_factor(double error, double previous, int power);
-
-/// Throws RunFailure when the controller asks for a step below `Time/minimum step`, unless only a sliver before `limit` is left.
-void refuse_tiny_step(double step, double time, double limit, const TimeOptions& options);
-
 /// The step to take towards `limit` when the controller proposes `step`: the whole rest if it fits, half of it if two are needed,
 /// so that no sliver is left over.
 double step_towards(double time, double limit, double step);
+
+/// The motion within a step: the cubic that has the places and slopes of both ends (Hermite), fourth order in the step at no evaluation.
+class DenseOutput {
+ public:
+  /// Both states with their slopes in history.front(), on one mesh, `after` later than `before`.
+  DenseOutput(const State& before, const State& after);
+
+  Net place(double time) const;
+  Net slope(double time) const;  ///< the derivative of `place`, third order
+
+ private:
+  double start_, step_;
+  Net x0_, x1_, v0_, v1_;
+};
 
 }  // namespace tanktread::motion

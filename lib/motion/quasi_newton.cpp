@@ -45,7 +45,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
   }
 }
 
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double error, int power, Memory& memory) {
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, Stage& last, double error, int power, Memory& memory) {
   // A fresh operator helps only where the shape has moved on; the rest of the contraction rate is the part left out of (4.3).
   const double moved = dynamics.norm(state.x - state.frozen);
   if (last.solved ? last.contraction > options.contraction_limit && moved > worth_assembling : moved > 0) dynamics.freeze(state.frozen = state.x);
@@ -54,23 +54,20 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
     if (options.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
     return {};
   }
-  const bool accepted = error <= 1 || options.fixed_step;
-  return {accepted, step_factor(error, accepted ? memory.error : 0, power)};
+  const bool small = error <= 1 || options.fixed_step;
+  if (small) dynamics.restore_volume(last.y);
+  return {small && last.y.allFinite(), step_factor(error, small ? memory.error : 0, power)};
 }
 
-bool accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
-            double error, double factor, StepReport& report) {
-  Net y = last.y;
-  dynamics.restore_volume(y);
-  if (!y.allFinite()) return false;
-  report.step = dt;
-  report.error = error * options.tolerance;
-  report.displacement = dynamics.norm(y - state.x);
-  state.x = std::move(y);
-  state.time = dt == limit - state.time ? limit : state.time + dt;
-  // A step shortened to meet `limit` says nothing against the longer one.
-  state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options.maximum_step.value_or(1e300));
-  return true;
+Net interpolated(std::span<const double> times, std::span<const Net* const> nets, double t) {
+  Net sum = Net::Zero(nets[0]->rows(), 3);
+  for (std::size_t i = 0; i < nets.size(); ++i) {
+    double weight = 1;
+    for (std::size_t j = 0; j < nets.size(); ++j)
+      if (j != i) weight *= (t - times[j]) / (times[i] - times[j]);
+    sum += weight * *nets[i];
+  }
+  return sum;
 }
 
 }  // namespace tanktread::motion

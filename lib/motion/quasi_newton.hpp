@@ -1,10 +1,9 @@
 #pragma once
 // What the implicit schemes share: the stage equation, its quasi-Newton iteration and the memory of how fast that contracts.
 
-#include <vector>
+#include <span>
 
-#include "coupling/dynamics.hpp"
-#include "motion/integrator.hpp"
+#include "motion/schemes.hpp"
 
 namespace tanktread::motion {
 
@@ -13,9 +12,6 @@ struct Memory {
   double contraction = 0.3;  ///< contraction rate of the quasi-Newton iteration at the step `step`
   double error = 0;          ///< local error of the last accepted step over the tolerance; 0 before the first
   double step = 0;           ///< its size
-
-  static Memory from(const std::vector<double>& m) { return m.size() >= 3 ? Memory{m[0], m[1], m[2]} : Memory{}; }
-  std::vector<double> values() const { return {contraction, error, step}; }
 
   /// The contraction rate to expect of a step dt: the part left out of (4.3) grows with the step.
   double expected_contraction(double dt) const;
@@ -41,13 +37,12 @@ struct Verdict {
 };
 
 /// After an attempt that ended with the stage `last` and the local error `error`, over the tolerance, of a scheme whose error falls with this
-/// power of the step. Assembles the layer operator anew at state.x where the iteration failed or contracted too slowly and the shape has moved
-/// on since the last time. Throws RunFailure when a step of fixed size was not solved.
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double error, int power, Memory& memory);
+/// power of the step. Restores the volume of an accepted end, and accepts none of which that fails. Assembles the layer operator anew at state.x
+/// where the iteration failed or contracted too slowly and the shape has moved on since the last time. Throws RunFailure when a step of fixed size
+/// was not solved.
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, Stage& last, double error, int power, Memory& memory);
 
-/// Ends the step dt towards `limit`, where h was proposed, at the stage `last`, its volume restored: place, time and next step of the state, and
-/// the report. The scheme's history and memory are its own. False where the volume cannot be restored: the state is then unchanged.
-bool accept(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, const Stage& last, double dt, double h, double limit,
-            double error, double factor, StepReport& report);
+/// The value at t of the polynomial through nets[i] at times[i].
+Net interpolated(std::span<const double> times, std::span<const Net* const> nets, double t);
 
 }  // namespace tanktread::motion

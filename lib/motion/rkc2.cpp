@@ -1,11 +1,8 @@
-#include "motion/rkc2.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "base/errors.hpp"
-#include "motion/stiffness.hpp"
+#include "motion/schemes.hpp"
 
 namespace tanktread::motion {
 
@@ -21,9 +18,6 @@ struct Memory {
   double age = 0;        ///< steps since
   double error = 0;      ///< of the last accepted step over the tolerance
   double points = 0;     ///< control points of the mesh on which it was measured
-
-  static Memory from(const std::vector<double>& m) { return m.size() == 4 ? Memory{m[0], m[1], m[2], m[3]} : Memory{}; }
-  std::vector<double> values() const { return {stiffness, age, error, points}; }
 };
 
 void measure(coupling::Dynamics& dynamics, State& state, Memory& memory, StepReport& report) {
@@ -78,45 +72,33 @@ int rkc2_stages(double dt, double rho) { return std::max(2, 1 + static_cast<int>
 
 StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
-  Memory memory = Memory::from(state.memory);
-  StepReport report;
-  if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure(dynamics, state, memory, report);
-  double h = options_.fixed_step ? *options_.fixed_step : state.step;
+  Memory memory = remembered<Memory>(state.memory);
+  Attempts attempts(options_, state, limit);
+  if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure(dynamics, state, memory, attempts.report);
 
-  for (;; ++report.rejected) {
+  for (;;) {
     const double rho = margin * memory.stiffness;
-    if (rho > 0) h = std::min(h, (most_stages * most_stages - 1) / (1.54 * rho));
-    refuse_tiny_step(h, state.time, limit, options_);
-    const double dt = step_towards(state.time, limit, h);
+    const double dt = attempts.next(rho > 0 ? (most_stages * most_stages - 1) / (1.54 * rho) : 1e300);
     const Net& v = state.history.front();
     const int stages = rkc2_stages(dt, rho);
     Net y = step(dynamics, state.x, v, state.time, dt, stages);
     dynamics.restore_volume(y);
     dynamics.at(state.time + dt, state.time);
     const Net slope = dynamics.velocity(y);
-    report.iterations += stages;
+    attempts.report.iterations += stages;
 
     const double error = dynamics.norm(0.8 * (state.x - y) + 0.4 * dt * (v + slope)) / options_.tolerance;
-    const bool finite = std::isfinite(error);
-    if (!finite && options_.fixed_step) throw RunFailure("the stabilised step of fixed size ended in numbers that are not finite");
-    const bool accepted = finite && (error <= 1 || options_.fixed_step);
-    const double factor = finite ? step_factor(error, accepted ? memory.error : 0, 3) : 0.3;
-    if (!accepted) {
-      h = dt * std::min(factor, 0.8);
-      if (memory.age > 0) measure(dynamics, state, memory, report);
-      continue;
+    const bool accepted = attempts.holds(error, "stabilised");
+    const double factor = std::isfinite(error) ? step_factor(error, accepted ? memory.error : 0, 3) : 0.3;
+    if (accepted) {
+      memory.age += 1;
+      memory.error = error;
+      state.memory = values_of(memory);
+      state.history = {slope};
+      return attempts.accept(dynamics, std::move(y), error, factor);
     }
-    report.step = dt;
-    report.error = error * options_.tolerance;
-    report.displacement = dynamics.norm(y - state.x);
-    state.x = y;
-    state.history = {slope};
-    state.time = dt == limit - state.time ? limit : state.time + dt;
-    state.step = std::min(dt < h ? std::max(h, dt * factor) : dt * factor, options_.maximum_step.value_or(1e300));
-    memory.age += 1;
-    memory.error = error;
-    state.memory = memory.values();
-    return report;
+    attempts.reject(std::min(factor, 0.8));
+    if (memory.age > 0) measure(dynamics, state, memory, attempts.report);
   }
 }
 

@@ -8,10 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "motion/dense_output.hpp"
 #include "motion/integrator.hpp"
-#include "motion/rkc2.hpp"
-#include "motion/stiffness.hpp"
+#include "motion/schemes.hpp"
 
 namespace tanktread::motion {
 namespace {

@@ -1,0 +1,88 @@
+#include "motion/schemes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+
+namespace tanktread::motion {
+
+double step_factor(double error, double previous, int power) {
+  const double e = std::max(error, 1e-3), old = previous > 0 ? std::max(previous, 1e-3) : e;
+  return std::clamp(0.9 * std::pow(1 / e, 0.7 / power) * std::pow(old / e, 0.4 / power), 0.3, 2.0);
+}
+
+double Attempts::next(double longest) {
+  proposed_ = std::min(proposed_, longest);
+  if (!options_.fixed_step && !(proposed_ >= options_.least_step()) && !(state_.time + proposed_ >= limit_))
+    throw RunFailure(formatted("the step fell to %g, below Time/minimum step %g", proposed_, options_.least_step()));
+  return size_ = step_towards(state_.time, limit_, proposed_);
+}
+
+bool Attempts::holds(double error, const char* kind) const {
+  const bool finite = std::isfinite(error);
+  if (!finite && options_.fixed_step) throw RunFailure(std::string("the ") + kind + " step of fixed size ended in numbers that are not finite");
+  return finite && (error <= 1 || options_.fixed_step);
+}
+
+void Attempts::reject(double part) {
+  proposed_ = size_ * part;
+  ++report.rejected;
+}
+
+StepReport Attempts::accept(const coupling::Dynamics& dynamics, Net y, double error, double factor) {
+  report.step = size_;
+  report.error = error * options_.tolerance;
+  report.displacement = dynamics.norm(y - state_.x);
+  state_.x = std::move(y);
+  state_.time = size_ == limit_ - state_.time ? limit_ : state_.time + size_;
+  state_.step = std::min(size_ < proposed_ ? std::max(proposed_, size_ * factor) : size_ * factor, options_.maximum_step.value_or(1e300));
+  return report;
+}
+
+StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+  begin(dynamics, state);
+  for (Attempts attempts(options_, state, limit);;) {
+    const double dt = attempts.next();
+    const Net& k1 = state.history.front();
+    const auto slope = [&](double part, const Net& x) {
+      dynamics.at(state.time + part * dt, state.time);
+      return dynamics.velocity(x);
+    };
+    const Net k2 = slope(0.5, state.x + dt / 2 * k1);
+    const Net k3 = slope(0.75, state.x + 3 * dt / 4 * k2);
+    Net y = state.x + dt * (2. / 9 * k1 + 1. / 3 * k2 + 4. / 9 * k3);
+    dynamics.restore_volume(y);
+    const Net k4 = slope(1, y);
+    attempts.report.iterations += 3;
+
+    const double error = dynamics.norm(dt * (-5. / 72 * k1 + 1. / 12 * k2 + 1. / 9 * k3 - 1. / 8 * k4)) / options_.tolerance;
+    const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(std::max(error, 1e-6), -1. / 3), 0.3, 2.0) : 0.3;
+    if (attempts.holds(error, "explicit")) {
+      state.history = {k4};
+      return attempts.accept(dynamics, std::move(y), error, factor);
+    }
+    attempts.reject(std::min(factor, 0.9));
+  }
+}
+
+double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations) {
+  if (direction.rows() != x.rows()) {  // rough, so that every mode is in it
+    std::minstd_rand generator(1);     // the same numbers from every library
+    direction = Net::NullaryExpr(x.rows(), 3, [&] { return static_cast<double>(generator()) / std::minstd_rand::max() - 0.5; });
+  }
+  direction /= dynamics.norm(direction);
+  double rho = 0;
+  for (int k = 0; k < iterations; ++k) {
+    const Net image = dynamics.derivative(x, v, direction);
+    rho = dynamics.norm(image);
+    if (!(rho > 0) || !std::isfinite(rho)) return rho;
+    direction = image / rho;
+  }
+  return rho;
+}
+
+}  // namespace tanktread::motion
