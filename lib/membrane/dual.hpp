@@ -1,5 +1,7 @@
 #pragma once
-// Numbers that carry their derivative along one direction.
+// Numbers that carry their derivative along one direction, and vectors of any kind of number.
+
+#include <array>
 
 #include "base/pack.hpp"
 
@@ -59,6 +61,17 @@ template <class N>
 Dual<N> sqrt(const Dual<N>& a) {
   const N root = sqrt(a.value);
   return {root, 0.5 * a.slope / root};
+}
+
+template <class N>
+using Vector = std::array<N, 3>;
+template <class N>
+N dot(const Vector<N>& a, const Vector<N>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class N>
+Vector<N> cross(const Vector<N>& a, const Vector<N>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 }  // namespace tanktread::membrane

@@ -73,6 +73,23 @@ struct SurfaceTension {
   double modulus() const { return tension; }
 };
 
+/// x_,s.x_,s, x_,s.x_,t and x_,t.x_,t of a surface.
+template <class Number>
+struct SurfaceMetric {
+  Number s, st, t;
+};
+
+/// Squares of the principal stretches from the unstressed to the present surface, the larger first: the eigenvalues of the stretch tensor h in the
+/// orthonormal frame that starts with X_,s. So written, equal stretches stay equal to round-off.
+template <class Number>
+std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, const SurfaceMetric<Number>& now) {
+  const Number det = before.s * before.t - before.st * before.st, turn = before.st / before.s;
+  const Number h11 = now.s / before.s, h12 = (now.st - turn * now.s) / sqrt(det);
+  const Number h22 = (now.t - 2.0 * turn * now.st + turn * turn * now.s) * before.s / det;
+  const Number apart = 0.5 * (h11 - h22), larger = 0.5 * (h11 + h22) + sqrt(apart * apart + h12 * h12);
+  return {larger, (h11 * h22 - h12 * h12) / larger};
+}
+
 /// A law of the deck's choice; visited once outside the hot loops.
 using Law = std::variant<NeoHookean, Skalak, SurfaceTension>;
 

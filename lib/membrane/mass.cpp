@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "membrane/points_kernel.hpp"
+
 namespace tanktread::membrane {
 namespace {
 

@@ -28,10 +28,4 @@ class MassMatrix {
   Eigen::SparseMatrix<double> matrix_;
 };
 
-/// entries[pair] = sum_q weight_q N_A N_B for all A, B <= A in the order (0,0), (1,0), (1,1), (2,0), …; n: Gauss points.
-void mass_entries(int functions, int n, const Pack* values, const Pack* weight, Pack* entries);
-
-/// Gauss weights times J = |x_,s x x_,t|, from tangents in the layout of packed.hpp.
-void area_weights(int n, const Pack* a, const double* weight, Pack* area);
-
 }  // namespace tanktread::membrane

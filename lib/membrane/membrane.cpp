@@ -2,17 +2,80 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
-#include "membrane/part.hpp"
+#include "membrane/packed.hpp"
+#include "membrane/points_kernel.hpp"
 
 namespace tanktread::membrane {
 namespace {
 
-constexpr std::size_t parts_kept = 3;  // all elements, a rank's own, and one more
-constexpr int max_values = 6 * max_order * max_order;
+constexpr std::size_t parts_kept = 3;       // all elements, a rank's own, and one more
+constexpr double compressed_below = -1e-9;  // of the modulus: a membrane at rest is not compressed by round-off
+constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
+
+/// The elements that one caller works on, packed, with the unstressed surface at their Gauss points.
+struct Part {
+  std::vector<int> elements;
+  std::vector<Material> materials;
+  std::vector<Group> groups;
+  std::vector<std::vector<ReferencePoint>> reference;  ///< a group; point q of batch k at n_gauss k + q
+  std::vector<std::vector<Pack>> relaxed_curvature;    ///< c0 of `Bending` at the same places, a group; empty for groups without bending
+
+  Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
+
+  /// A batch with what is known of its n Gauss points, the first of which is number `first` of group g; c0 is null without bending.
+  struct Points {
+    const Group& group;
+    const Batch& batch;
+    const Material& material;
+    const ReferencePoint* reference;
+    const Pack* c0;
+    std::size_t g, first;
+    int n;
+  };
+  template <class Use>
+  void each_batch(const Use& use) const {
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (std::size_t k = 0; k < groups[g].batches.size(); ++k) {
+        const std::size_t first = k * groups[g].n_gauss();
+        const Pack* c0 = relaxed_curvature[g].empty() ? nullptr : &relaxed_curvature[g][first];
+        use(Points{groups[g], groups[g].batches[k], materials[groups[g].material], &reference[g][first], c0, g, first, groups[g].n_gauss()});
+      }
+  }
+  template <class Use>
+  void each_bending_batch(const Use& use) const {
+    each_batch([&](const Points& at) {
+      if (at.c0) use(at);
+    });
+  }
+};
+
+Part::Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface)
+    : elements(list.begin(), list.end()), materials(of_surface.all), groups(pack(space, list, order, of_surface.of_element)) {
+  Pack a[15 * max_gauss];
+  for (const Group& group : groups) {
+    const int n = group.n_gauss();
+    const Bending& bending = materials[group.material].bending;
+    std::vector<ReferencePoint>& points = reference.emplace_back(n * group.batches.size());
+    std::vector<Pack>& curvature = relaxed_curvature.emplace_back(bending.modulus > 0 ? points.size() : 0, Pack{});
+    for (std::size_t k = 0; k < group.batches.size(); ++k) {
+      const Batch& batch = group.batches[k];
+      ReferencePoint* first = &points[k * n];
+      tangents(group, batch, unstressed, a);
+      reference_points(n, a, group.weight.data(), first);
+      for (int q = 0; q < n; ++q)
+        for (int l = batch.used; l < lanes; ++l) first[q].area[l] = 0;
+      if (curvature.empty() || !bending.curved_when_relaxed) continue;
+      jets(group, batch, unstressed, a);
+      curvatures(n, a, &curvature[k * n]);
+    }
+  }
+}
 
 Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order)
     : space_(&space), unstressed_(unstressed), materials_(materials), order_(order), all_(space.elements.size()) {
@@ -39,14 +102,16 @@ double Membrane::energy(const Net& x, std::span<const int> elements) const {
 }
 
 std::vector<double> Membrane::element_energies(const Net& x, std::span<const int> elements) const {
-  const auto mine = part(elements);
   std::vector<double> sum(space_->elements.size(), 0.);
-  if (materials_.bend()) add_bending_energies(materials_, *mine, x, sum);
-  mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
-    Pack a[max_values];
-    tangents(group, batch, x, a);
-    const Pack energies = membrane::energy(materials_.all[group.material].law, group.n_gauss(), reference, a);
-    for (int l = 0; l < batch.used; ++l) sum[batch.elements[l]] += energies[l];
+  part(elements)->each_batch([&](const Part::Points& at) {
+    Pack a[15 * max_gauss];
+    tangents(at.group, at.batch, x, a);
+    Pack energies = membrane::energy(at.material.law, at.n, at.reference, a);
+    if (at.c0) {
+      jets(at.group, at.batch, x, a);
+      energies += bending_energy(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, a);
+    }
+    for (int l = 0; l < at.batch.used; ++l) sum[at.batch.elements[l]] += energies[l];
   });
   return sum;
 }
@@ -54,19 +119,108 @@ std::vector<double> Membrane::element_energies(const Net& x, std::span<const int
 void Membrane::load(const Net& x, std::span<const int> elements, Net& d) const {
   d.setZero(space_->n_points, 3);
   const auto mine = part(elements);
-  mine->each_batch([&](const Group& group, const Batch& batch, const ReferencePoint* reference, auto...) {
-    Pack a[max_values], p[max_values];
-    tangents(group, batch, x, a);
-    stresses(materials_.all[group.material].law, group.n_gauss(), reference, a, p);
-    add_transpose(group, batch, p, d);
+  mine->each_batch([&](const Part::Points& at) {
+    Pack a[6 * max_gauss], p[6 * max_gauss];
+    tangents(at.group, at.batch, x, a);
+    stresses(at.material.law, at.n, at.reference, a, p);
+    add_transpose(at.group, at.batch, p, d);
   });
-  if (materials_.bend()) add_bending_load(materials_, *mine, x, d);
+  mine->each_bending_batch([&](const Part::Points& at) {
+    Pack j[15 * max_gauss], p[15 * max_gauss];
+    jets(at.group, at.batch, x, j);
+    bending_stresses(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, j, p);
+    add_jet_transpose(at.group, at.batch, p, d);
+  });
 }
 
 Net Membrane::load(const Net& x) const {
   Net d;
   load(x, all_, d);
   return d;
+}
+
+TensionSummary Membrane::tension_summary(const Net& x) const {
+  const ElementTensions all = element_tensions(x, all_);
+  const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
+  return {all.smallest, sum(all.compressed) / sum(all.area)};
+}
+
+ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements) const {
+  const std::vector<double> none(space_->elements.size(), 0.);
+  ElementTensions result{std::numeric_limits<double>::infinity(), none, none};
+  Pack smallest = Pack{} + result.smallest;
+  part(elements)->each_batch([&](const Part::Points& at) {
+    Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss], area{}, compressed{};
+    const double unit = modulus(at.material.law);
+    tangents(at.group, at.batch, x, a);
+    smaller_tensions(at.material.law, at.n, at.reference, a, tension, share);
+    for (int q = 0; q < at.n; ++q) {
+      smallest = tension[q] / unit < smallest ? tension[q] / unit : smallest;
+      area += share[q];
+      compressed += tension[q] < compressed_below * unit ? share[q] : Pack{};
+    }
+    for (int l = 0; l < at.batch.used; ++l) {
+      result.area[at.batch.elements[l]] = area[l];
+      result.compressed[at.batch.elements[l]] = compressed[l];
+    }
+  });
+  for (int l = 0; l < lanes; ++l) result.smallest = std::min(result.smallest, smallest[l]);
+  return result;
+}
+
+Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstressed, std::span<const surface::Jet> now) {
+  const auto metric = [](const surface::Jet& a) { return SurfaceMetric<double>{a.s.dot(a.s), a.s.dot(a.t), a.t.dot(a.t)}; };
+  Eigen::MatrixX2d result(now.size(), 2);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const auto [larger, smaller] = squared_stretches(metric(unstressed[i]), metric(now[i]));
+    const auto [one, other] = principal_tensions(law, std::sqrt(larger), std::sqrt(smaller));
+    result.row(i) << std::min(one, other) / modulus(law), std::max(one, other) / modulus(law);
+  }
+  return result;
+}
+
+struct Tangent::Points {
+  std::shared_ptr<const Part> part;
+  std::vector<std::vector<TangentPoint>> of_group;
+  std::vector<std::vector<Pack>> jets;  // of x, where there is bending
+};
+
+Tangent::Tangent(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
+Tangent::~Tangent() = default;
+Tangent::Tangent(Tangent&&) noexcept = default;
+
+void Tangent::update(const Net& x, std::span<const int> elements) {
+  points_->part = membrane_->part(elements);
+  const Part& part = *points_->part;
+  points_->of_group.resize(part.groups.size());
+  points_->jets.resize(part.groups.size());
+  for (std::size_t g = 0; g < part.groups.size(); ++g) {
+    points_->of_group[g].resize(part.reference[g].size());
+    points_->jets[g].resize(15 * part.relaxed_curvature[g].size());
+  }
+  part.each_batch([&](const Part::Points& at) {
+    Pack a[6 * max_gauss];
+    tangents(at.group, at.batch, x, a);
+    tangent_points(at.material.law, at.n, at.reference, a, &points_->of_group[at.g][at.first]);
+  });
+  part.each_bending_batch([&](const Part::Points& at) { jets(at.group, at.batch, x, &points_->jets[at.g][15 * at.first]); });
+}
+
+void Tangent::apply(const Net& u, Net& hu) const {
+  hu.setZero(membrane_->space().n_points, 3);
+  points_->part->each_batch([&](const Part::Points& at) {
+    Pack gradient[6 * max_gauss], p[6 * max_gauss];
+    tangents(at.group, at.batch, u, gradient);
+    membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
+    add_transpose(at.group, at.batch, p, hu);
+  });
+  points_->part->each_bending_batch([&](const Part::Points& at) {
+    Pack gradient[15 * max_gauss], p[15 * max_gauss];
+    jets(at.group, at.batch, u, gradient);
+    const Pack* now = &points_->jets[at.g][15 * at.first];
+    bending_apply(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, now, gradient, p);
+    add_jet_transpose(at.group, at.batch, p, hu);
+  });
 }
 
 Net unstressed(const Net& rest, const Vec3& centre, double alpha) {

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "membrane/bending.hpp"
-#include "membrane/laws.hpp"
 #include "membrane/material.hpp"
 #include "spline/space.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::membrane {
+
+struct Part;
 
 /// Smallest principal tension over the modulus, and the share of the current area where it is negative (`smallest_tension`,
 /// `compressed_area` of the series); at the Gauss points. A tension counts as negative below -1e-9 of the modulus.

@@ -1,8 +1,12 @@
 #include "membrane/points_kernel.hpp"
 
+#include "membrane/dual.hpp"
+#include "membrane/packed.hpp"
+
 namespace tanktread::membrane {
 namespace {
 
+using membrane::dot;
 Pack dot(const Pack* a, const Pack* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 struct Metric {
@@ -21,6 +25,44 @@ void visit_points(const Law& law, int n, const ReferencePoint* reference, const 
         for (int q = 0; q < n; ++q) use(l, q, reference[q], Metric(a + 6 * q));
       },
       law);
+}
+
+// With N = x_,s x x_,t, J = |N| and M = (g22 x_,ss - 2 g12 x_,st + g11 x_,tt) . N:  2 chi = -M/J^3.
+template <class Number>
+struct Curved {
+  Vector<Number> s, t, ss, st, tt, normal, turned;  // turned: the bracket of M
+  Number g11, g12, g22, j, curvature;
+
+  explicit Curved(const Vector<Number>* jet) : s(jet[0]), t(jet[1]), ss(jet[2]), st(jet[3]), tt(jet[4]), normal(cross(s, t)) {
+    g11 = dot(s, s), g12 = dot(s, t), g22 = dot(t, t);
+    const Number square = dot(normal, normal);
+    j = sqrt(square);
+    for (int c = 0; c < 3; ++c) turned[c] = g22 * ss[c] - 2.0 * (g12 * st[c]) + g11 * tt[c];
+    curvature = -(dot(turned, normal) / (square * j));
+  }
+
+  // d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ, by the five vectors of the jet
+  void gradient(double modulus, const Pack& c0, Vector<Number>* p) const {
+    const Number excess = curvature - c0, inverse = 1.0 / j;
+    const Number by_m = -modulus * (excess * inverse * inverse);                                              // of M
+    const Number by_j = 0.5 * modulus * (excess * excess) - 3.0 * modulus * (excess * curvature);             // of J
+    const Number css = dot(ss, normal), cst = dot(st, normal), ctt = dot(tt, normal), by_n = by_j * inverse;  // dJ = N.dN/J
+    Vector<Number> n;                                                                                         // by N
+    for (int c = 0; c < 3; ++c) n[c] = by_m * turned[c] + by_n * normal[c];
+    const Vector<Number> ns = cross(t, n), nt = cross(n, s);
+    for (int c = 0; c < 3; ++c) {
+      p[0][c] = ns[c] + 2.0 * (by_m * (ctt * s[c] - cst * t[c]));
+      p[1][c] = nt[c] + 2.0 * (by_m * (css * t[c] - cst * s[c]));
+      p[2][c] = by_m * g22 * normal[c];
+      p[3][c] = -2.0 * (by_m * g12 * normal[c]);
+      p[4][c] = by_m * g11 * normal[c];
+    }
+  }
+};
+
+void read(const Pack* jet, Vector<Pack>* x) {
+  for (int k = 0; k < 5; ++k)
+    for (int c = 0; c < 3; ++c) x[k][c] = jet[3 * k + c];
 }
 
 }  // namespace
@@ -56,15 +98,11 @@ void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack
   });
 }
 
-// The stretch tensor h in the orthonormal frame that starts with X_,s: so written, equal stretches stay equal to round-off. Its eigenvalues are
-// the squares of the principal stretches.
 void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* tension, Pack* area) {
   visit_points(law, n, reference, a, [&](const auto& l, int q, const ReferencePoint& r, const Metric& m) {
-    const Pack det = 1.0 / r.inverse_det, before = r.g22 * det, turn = -r.g12 / r.g22;  // X_,s.X_,s, and X_,s.X_,t over it
-    const Pack h11 = m.g11 / before, h12 = (m.g12 - turn * m.g11) / sqrt(det);
-    const Pack h22 = (m.g22 - 2.0 * turn * m.g12 + turn * turn * m.g11) * before * r.inverse_det;
-    const Pack apart = 0.5 * (h11 - h22), larger = 0.5 * (h11 + h22) + sqrt(apart * apart + h12 * h12);
-    const Pack squared_ratio = h11 * h22 - h12 * h12, ratio = sqrt(squared_ratio), smaller = squared_ratio / larger;
+    const Pack det = 1.0 / r.inverse_det;
+    const auto [larger, smaller] = squared_stretches<Pack>({r.g22 * det, -r.g12 * det, r.g11 * det}, {m.g11, m.g12, m.g22});
+    const Pack squared_ratio = larger * smaller, ratio = sqrt(squared_ratio);
     const auto psi = l.response(larger + smaller - 2.0, squared_ratio - 1.0);
     const Pack along = 2.0 * psi.psi1 / ratio, around = 2.0 * ratio * psi.psi2;
     const Pack of_larger = along * larger + around, of_smaller = along * smaller + around;
@@ -105,6 +143,70 @@ void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p) {
     for (int c = 0; c < 3; ++c) {
       p[6 * q + c] = t.s11 * u1[c] + t.s12 * u2[c] + d11 * t.a1[c] + d12 * t.a2[c];
       p[6 * q + 3 + c] = t.s12 * u1[c] + t.s22 * u2[c] + d12 * t.a1[c] + d22 * t.a2[c];
+    }
+  }
+}
+
+void curvatures(int n, const Pack* jets, Pack* curvature) {
+  for (int q = 0; q < n; ++q) {
+    Vector<Pack> x[5];
+    read(jets + 15 * q, x);
+    curvature[q] = Curved<Pack>(x).curvature;
+  }
+}
+
+Pack bending_energy(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets) {
+  Pack sum{};
+  for (int q = 0; q < n; ++q) {
+    Vector<Pack> x[5];
+    read(jets + 15 * q, x);
+    const Curved<Pack> at(x);
+    const Pack excess = at.curvature - c0[q];
+    sum += (0.5 * modulus * weight[q]) * excess * excess * at.j;
+  }
+  return sum;
+}
+
+void bending_stresses(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* p) {
+  for (int q = 0; q < n; ++q) {
+    Vector<Pack> x[5], f[5];
+    read(jets + 15 * q, x);
+    Curved<Pack>(x).gradient(modulus * weight[q], c0[q], f);
+    for (int k = 0; k < 5; ++k)
+      for (int c = 0; c < 3; ++c) p[15 * q + 3 * k + c] = f[k][c];
+  }
+}
+
+void bending_apply(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, const Pack* u, Pack* p) {
+  for (int q = 0; q < n; ++q) {
+    Vector<Dual<Pack>> x[5], f[5];
+    for (int k = 0; k < 5; ++k)
+      for (int c = 0; c < 3; ++c) x[k][c] = {jets[15 * q + 3 * k + c], u[15 * q + 3 * k + c]};
+    Curved<Dual<Pack>>(x).gradient(modulus * weight[q], c0[q], f);
+    for (int k = 0; k < 5; ++k)
+      for (int c = 0; c < 3; ++c) p[15 * q + 3 * k + c] = f[k][c].slope;
+  }
+}
+
+void area_weights(int n, const Pack* a, const double* weight, Pack* area) {
+  for (int q = 0; q < n; ++q, a += 6) {
+    const Pack n1 = a[1] * a[5] - a[2] * a[4], n2 = a[2] * a[3] - a[0] * a[5], n3 = a[0] * a[4] - a[1] * a[3];
+    area[q] = weight[q] * sqrt(n1 * n1 + n2 * n2 + n3 * n3);
+  }
+}
+
+void mass_entries(int functions, int n, const Pack* values, const Pack* weight, Pack* entries) {
+  Pack row[max_order * max_order];
+  for (int a = 0; a < functions; ++a) {
+    for (int q = 0; q < n; ++q) row[q] = weight[q] * values[a * n + q];
+    for (int b = 0; b <= a; ++b) {
+      Pack even{}, odd{};
+      for (int q = 0; q + 1 < n; q += 2) {
+        even += row[q] * values[b * n + q];
+        odd += row[q + 1] * values[b * n + q + 1];
+      }
+      if (n % 2) even += row[n - 1] * values[b * n + n - 1];
+      *entries++ = even + odd;
     }
   }
 }

@@ -1,8 +1,10 @@
 #pragma once
-// What happens at one Gauss point of the membrane: stored energy, its gradient and its Hessian by the tangents x_,s and x_,t.
+// What happens at the Gauss points of a batch: stored energy, its gradient and its Hessian by the tangents x_,s and x_,t; bending energy, its
+// gradient and its Hessian by the jets x_,s x_,t x_,ss x_,st x_,tt; mass. Tangents and jets are laid out as packed.hpp says, `weight` is that of the
+// Gauss rule.
 
-#include "membrane/laws.hpp"
 #include "base/pack.hpp"
+#include "membrane/laws.hpp"
 
 namespace tanktread::membrane {
 
@@ -20,7 +22,7 @@ struct TangentPoint {
   Pack c11, c12, c13, c22, c23, c33;  ///< moduli C, weights included
 };
 
-/// The reference from its tangents, a[6 q + c] as `packed.hpp` lays them out; `weight[q]` of the Gauss rule.
+/// The reference from its tangents.
 void reference_points(int n, const Pack* a, const double* weight, ReferencePoint* reference);
 
 /// int Psi over the elements of a batch, lane by lane.
@@ -38,5 +40,23 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
 
 /// p = d^2E/da^2 u, for displacement gradients u in the layout of a.
 void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p);
+
+/// 2 chi = div n at every Gauss point; twice the mean curvature, 2/R on a sphere.
+void curvatures(int n, const Pack* jets, Pack* curvature);
+
+/// Eb/2 int (2 chi - c0)^2 dGamma over the elements of a batch, lane by lane, c0 at every point.
+Pack bending_energy(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets);
+
+/// p = its gradient by the jets.
+void bending_stresses(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* p);
+
+/// p = its Hessian at `jets` times u.
+void bending_apply(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, const Pack* u, Pack* p);
+
+/// entries[pair] = sum_q weight_q N_A N_B for all A, B <= A in the order (0,0), (1,0), (1,1), (2,0), …; n: Gauss points.
+void mass_entries(int functions, int n, const Pack* values, const Pack* weight, Pack* entries);
+
+/// Gauss weights times J = |x_,s x x_,t|.
+void area_weights(int n, const Pack* a, const double* weight, Pack* area);
 
 }  // namespace tanktread::membrane

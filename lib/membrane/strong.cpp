@@ -1,6 +1,5 @@
 // The strong form of the load, t = -div_s tau (P-3), by dual numbers.
 
-#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -13,13 +12,12 @@ namespace tanktread::membrane {
 namespace {
 
 using Number = Dual<double>;
-using Vector = std::array<Number, 3>;
-Vector with_slope(const Vec3& v, const Vec3& d) { return {Number{v[0], d[0]}, Number{v[1], d[1]}, Number{v[2], d[2]}}; }
-Number dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+using Tangents = std::array<Vector<Number>, 2>;
+Vector<Number> with_slope(const Vec3& v, const Vec3& d) { return {Number{v[0], d[0]}, Number{v[1], d[1]}, Number{v[2], d[2]}}; }
 
 // Component `row` of sqrt(g) tau^{row b} g_b, a vector per local coordinate; X_,s X_,t in `r`, x_,s x_,t in `a`.
 template <class AnyLaw>
-Vector flux(const AnyLaw& law, const std::array<Vector, 2>& r, const std::array<Vector, 2>& a, int row) {
+Vector<Number> flux(const AnyLaw& law, const Tangents& r, const Tangents& a, int row) {
   const Number r11 = dot(r[0], r[0]), r12 = dot(r[0], r[1]), r22 = dot(r[1], r[1]), inverse = 1.0 / (r11 * r22 - r12 * r12);
   const Number a11 = dot(a[0], a[0]), a12 = dot(a[0], a[1]), a22 = dot(a[1], a[1]);
   const Number i1 = (r22 * a11 - 2.0 * r12 * a12 + r11 * a22) * inverse - 2.0, i2 = (a11 * a22 - a12 * a12) * inverse - 1.0;
@@ -27,7 +25,7 @@ Vector flux(const AnyLaw& law, const std::array<Vector, 2>& r, const std::array<
   const Number scale = 2.0 * sqrt(inverse);  // 2 sqrt|G| / |G|, with G^ab and |g| g^ab in cofactors
   const Number same = scale * (psi.psi1 * (row == 0 ? r22 : r11) + psi.psi2 * (row == 0 ? a22 : a11));
   const Number mixed = scale * (psi.psi1 * (-r12) + psi.psi2 * (-a12));
-  Vector sum;
+  Vector<Number> sum;
   for (int c = 0; c < 3; ++c) sum[c] = same * a[row][c] + mixed * a[1 - row][c];
   return sum;
 }
@@ -40,10 +38,10 @@ Vec3 Membrane::strong_load(const Net& x, const spline::Site& site) const {
   const surface::Jet now = surface::jet(surface::ElementPoints(*space_, x, site.element).patch(), site.s, site.t);
   return std::visit(
       [&](const auto& l) {
-        const Vector by_s = flux(l, {with_slope(before.s, before.ss), with_slope(before.t, before.st)},
-                                 {with_slope(now.s, now.ss), with_slope(now.t, now.st)}, 0);
-        const Vector by_t = flux(l, {with_slope(before.s, before.st), with_slope(before.t, before.tt)},
-                                 {with_slope(now.s, now.st), with_slope(now.t, now.tt)}, 1);
+        const auto by_s = flux(l, {with_slope(before.s, before.ss), with_slope(before.t, before.st)},
+                               {with_slope(now.s, now.ss), with_slope(now.t, now.st)}, 0);
+        const auto by_t = flux(l, {with_slope(before.s, before.st), with_slope(before.t, before.tt)},
+                               {with_slope(now.s, now.st), with_slope(now.t, now.tt)}, 1);
         Vec3 t;
         for (int c = 0; c < 3; ++c) t[c] = -(by_s[c].slope + by_t[c].slope);
         return Vec3(t / now.s.cross(now.t).norm());

@@ -1,4 +1,4 @@
-#include "membrane/bending.hpp"
+#include "membrane/material.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
