@@ -40,7 +40,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       mass_matrix_(space),
       membrane_(space, unstressed, materials(parameters_.particles)),
       tangent_(membrane_),
-      layer_(space, parameters.quadrature),
+      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, parameters.quadrature),
       collocation_(parameters.solvers.direct, parameters.symmetry),
       mass_(parameters.solvers.direct, parameters.symmetry),
       krylov_(parameters.solvers.krylov, parameters.solvers.belos),
@@ -59,7 +59,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_symmetry(symmetry);
   layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   if (auto contrasts = viscosity_contrasts(particles()); !contrasts.empty()) {
-    double_layer_.emplace(space, parameters.quadrature, std::move(contrasts));
+    double_layer_.emplace(stokes::Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, std::move(contrasts));
     double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
   }
   if (by_sites()) sites_ = collocation_matrix(space);
@@ -271,7 +271,8 @@ Net Capsule::applied(const Net& x, const Net& f) {
   if (f.isZero(0)) return u;
   {
     const auto clock = phases_.time("single layer");
-    layer_.apply(x, f, measure(), own_points_, u);
+    layer_.place(x, measure());
+    layer_.apply(f, own_points_, u);
   }
   layer_.shared() ? add(u) : replicate(u);
   return u;
@@ -326,7 +327,7 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
   stokes::Rows<double> made;
-  if (!assembled) double_layer_->assemble(x, own, made);
+  if (!assembled) double_layer_->assemble(own, made);
   stokes::Rows<double> rows = stokes::Rows<double>::Zero(3 * static_cast<Eigen::Index>(targets.size()), 3 * x.rows());
   Eigen::Index next = 0;
   for (std::size_t k = 0; k < targets.size(); ++k) {
@@ -347,7 +348,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   constexpr double most_bytes = 1e9;
   const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
   const bool assembled = double_layer_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
-  if (assembled) double_layer_->assemble(x, own_points_, double_rows_);
+  if (double_layer_) double_layer_->place(x);
+  if (assembled) double_layer_->assemble(own_points_, double_rows_);
   const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall
     if (!double_layer_) return v;
     Net hv(n, 3);
@@ -355,7 +357,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
       const Eigen::VectorXd rows = double_rows_ * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
       for (size_t k = 0; k < own_points_.size(); ++k) hv.row(own_points_[k]) = rows.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
     } else {
-      double_layer_->apply(x, v, own_points_, hv);
+      double_layer_->apply(v, own_points_, hv);
     }
     !assembled && double_layer_->shared() ? add(hv) : replicate(hv);
     if (rigid_.told()) hv -= applied(x, rigid_.completing_load(v)) / parameters_.viscosity;

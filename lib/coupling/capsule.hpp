@@ -29,8 +29,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/ambient_flow.hpp"
-#include "stokes/double_layer.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
 #include "surface/symmetry.hpp"
@@ -190,8 +189,8 @@ class Capsule : public Dynamics {
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
-  stokes::SingleLayer layer_;
-  std::optional<stokes::DoubleLayer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
+  stokes::Layer layer_;
+  std::optional<stokes::Layer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov krylov_, inner_krylov_;

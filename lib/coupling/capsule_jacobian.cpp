@@ -11,9 +11,8 @@ namespace tanktread::coupling {
 void Capsule::freeze(const Net& x) {
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
-  const auto assemble = [&](std::span<const int> targets, auto&&... of) {
-    layer_.assemble(x, stokes::Measure::reference, targets, of...);
-  };
+  const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer_.assemble(targets, of...); };
+  layer_.place(x, stokes::Measure::reference);
   if (parameters_.solvers.frozen_operator == "nodal") {
     const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
     const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
@@ -27,8 +26,9 @@ void Capsule::freeze(const Net& x) {
     tube_->freeze();
   }
   if (!double_layer_) return;
+  double_layer_->place(x);
   frozen_double_.assemble(own_points_, space_.n_points,
-                          [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(x, targets, rows); });
+                          [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(targets, rows); });
 }
 
 double Capsule::frozen_bytes() const {

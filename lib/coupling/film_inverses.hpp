@@ -9,7 +9,7 @@
 
 #include "base/types.hpp"
 #include "coupling/one_body.hpp"
-#include "stokes/dense_rows.hpp"
+#include "stokes/layer.hpp"
 
 namespace tanktread::coupling {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 
 namespace tanktread::coupling {
 

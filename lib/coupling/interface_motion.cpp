@@ -10,7 +10,7 @@
 #include <Eigen/SVD>
 
 #include "coupling/collocation.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
@@ -37,9 +37,9 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     std::ranges::copy_if(own_elements, std::back_inserter(own_elements_), [&](int e) { return e >= block.first_element && e < end; });
     std::vector<int> targets;
     for (const int i : drop.points) targets.push_back(i - block.first_point);
-    stokes::SingleLayer layer(*particle.space, quadrature);
-    layer.set_reference(block.rows(initial));
-    layer.assemble(block.rows(initial), stokes::Measure::reference, targets, drop.layer);
+    stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, quadrature);
+    layer.place(block.rows(initial));
+    layer.assemble(targets, drop.layer);
   }
 }
 

@@ -13,7 +13,7 @@
 #include "membrane/symmetric_solver.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
-#include "stokes/dense_rows.hpp"
+#include "stokes/layer.hpp"
 
 namespace tanktread::coupling {
 

@@ -10,7 +10,7 @@
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 #include "stokes/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
@@ -35,7 +35,7 @@ class NodalOperator {
     surface::Symmetry symmetry;          ///< of surface and densities; of no points: none
   };
 
-  /// Fills blocks A_iC of near control points as SingleLayer::assemble does.
+  /// Fills blocks A_iC of near control points as Layer::assemble does.
   using Assemble = std::function<void(std::span<const int> targets, const stokes::NearPoints& near, std::vector<double>& entries)>;
 
   /// `far_sum`: as in quadrature::Options.

@@ -6,8 +6,7 @@
 #include <Eigen/LU>
 
 #include "coupling/collocation.hpp"
-#include "stokes/double_layer.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 
 namespace tanktread::coupling {
 
@@ -32,14 +31,17 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   std::vector<int> all(static_cast<std::size_t>(particle.space->n_points));
   std::iota(all.begin(), all.end(), 0);
   stokes::Rows<double> matrix;
-  stokes::DoubleLayer(*particle.space, quadrature).assemble(own, all, matrix);  // -H of the factor -1
-  stokes::SingleLayer layer(*particle.space, quadrature);
-  layer.set_reference(own);
+  const spline::Space& space = *particle.space;
+  stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
+  double_layer.place(own);
+  double_layer.assemble(all, matrix);  // -H of the factor -1
+  stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
+  layer.place(own);
   const Vec3 centre = bodies.rest_centre(p);
   for (int k = 0; k < 6; ++k) {
     Net field = rigid_velocity(own, unit_motion(k), centre), at_sites = factors->sites * field;
     if (factors->told) {
-      layer.apply(own, field / particle.radius, stokes::Measure::reference, all, at_sites);
+      layer.apply(field / particle.radius, all, at_sites);
       at_sites += factors->sites * bodies.lacking(p, k) / particle.radius;
     }
     matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * bodies.mean_functional(p, k).transpose();

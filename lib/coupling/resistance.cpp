@@ -19,7 +19,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
       quadrature_(quadrature),
       ranks_(ranks),
       phases_(phases),
-      layer_(space, quadrature),
+      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
       collocation_(solvers.direct),
       tube_(tube),
       place_(surface),
@@ -42,7 +42,8 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
   weight_ = 2 * radius / 3 / flux_.cwiseProduct(normal_).sum();
 
   layer_.set_reference(surface);
-  layer_.assemble(surface, stokes::Measure::reference, own_points_, rows_);
+  layer_.place(surface, stokes::Measure::reference);
+  layer_.assemble(own_points_, rows_);
   if (tube_) {
     tube_->set_reference(surface);
     tube_->place(surface);
@@ -90,37 +91,25 @@ stokes::Evaluations Resistance::kernel_evaluations() const {
 
 Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
   const auto clock = phases_.time("reciprocal correction");
-  const auto [sites, weights] = between_sites(space_, surface_);
-  const Net x = value_matrix(space_, sites) * surface_;
-  const Net given = u(x);
-  // The layer has as many targets as control points: the sites take their turns.
-  const size_t n = static_cast<size_t>(space_.n_points);
-  Eigen::VectorXd work = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(z.size()));
-  spline::Space turn = space_;
-  const Tube::Response response = tube_ ? tube_->respond(f * turn_.transpose()) : Tube::Response{};
-  for (size_t first = 0; first < sites.size(); first += n) {
-    for (size_t i = 0; i < n; ++i) turn.collocation[i] = {sites[std::min(first + i, sites.size() - 1)]};
-    stokes::SingleLayer layer(turn, quadrature_);
-    layer.set_reference(surface_);
-    Net v(space_.n_points, 3);
-    layer.apply(surface_, f, stokes::Measure::reference, own_points_, v);
-    if (tube_) {
-      Net at(v.rows(), 3), answer(v.rows(), 3);
-      for (const int i : own_points_)
-        at.row(i) = surface::value(space_, place_, turn.collocation[static_cast<size_t>(i)].front()).transpose();
-      tube_->velocity_at(at, response, own_points_, answer);
-      for (const int i : own_points_) v.row(i) -= viscosity_ * answer.row(i) * turn_;
-    }
-    ranks_.replicate(v);
-    residual_evaluations_.far += layer.evaluations().far;
-    residual_evaluations_.near += layer.evaluations().near;
-    residual_evaluations_.self += layer.evaluations().self;
-    for (size_t i = 0; i < n && first + i < sites.size(); ++i) {
-      const Vec3 rest = (given.row(static_cast<Eigen::Index>(first + i)) - v.row(static_cast<Eigen::Index>(i)) / viscosity_).transpose();
-      for (size_t k = 0; k < z.size(); ++k)
-        work[static_cast<Eigen::Index>(k)] += weights[first + i] * surface::value(space_, z[k], sites[first + i]).dot(rest);
-    }
+  const auto [sites, areas] = between_sites(space_, surface_);
+  const Eigen::SparseMatrix<double> at_sites = value_matrix(space_, sites);
+  const std::vector<int> own = ranks_.share(static_cast<int>(sites.size()));
+  stokes::Layer layer(stokes::Layer::Kernel::single_layer, space_, sites, quadrature_);
+  layer.place(surface_);
+  Net v = Net::Zero(at_sites.rows(), 3);
+  layer.apply(f, own, v);
+  if (tube_) {
+    Net answer(v.rows(), 3);
+    tube_->velocity_at(at_sites * place_, tube_->respond(f * turn_.transpose()), own, answer);
+    for (const int i : own) v.row(i) -= viscosity_ * answer.row(i) * turn_;
   }
+  ranks_.add({v.data(), static_cast<std::size_t>(v.size())});
+  const stokes::Evaluations& count = layer.evaluations();
+  residual_evaluations_ = {residual_evaluations_.far + count.far, residual_evaluations_.near + count.near, residual_evaluations_.self + count.self};
+  const Net rest = u(at_sites * surface_) - v / viscosity_;
+  const Net weighted = Eigen::Map<const Eigen::VectorXd>(areas.data(), rest.rows()).asDiagonal() * rest;
+  Eigen::VectorXd work(static_cast<Eigen::Index>(z.size()));
+  for (std::size_t k = 0; k < z.size(); ++k) work[static_cast<Eigen::Index>(k)] = (at_sites * z[k]).cwiseProduct(weighted).sum();
   return work;
 }
 

@@ -15,7 +15,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/ambient_flow.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 
 namespace tanktread::coupling {
 
@@ -83,7 +83,7 @@ class Resistance {
   Ranks& ranks_;
   Phases& phases_;
   std::vector<int> own_points_;
-  stokes::SingleLayer layer_;
+  stokes::Layer layer_;
   Eigen::SparseMatrix<double> sites_;  // R
   membrane::DirectSolver collocation_;
   Eigen::SparseMatrix<double> mass_;

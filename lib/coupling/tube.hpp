@@ -13,7 +13,7 @@
 #include "spline/space.hpp"
 #include "stokes/duct_flow.hpp"
 #include "stokes/kernels.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 #include "surface/tube_wall.hpp"
 
 namespace tanktread::coupling {

@@ -5,7 +5,7 @@
 
 namespace tanktread::coupling {
 
-using stokes::CrossLayer;
+using stokes::Layer;
 
 Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& how)
     : space(particle),
@@ -13,7 +13,7 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
       geometry(particle),
       collocation(collocation_matrix(particle)),
       from_sites(how.direct),
-      single(particle, how.quadrature, CrossLayer::Kernel::single_layer) {
+      single(Layer::Kernel::single_layer, particle, {}, how.quadrature) {
   own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
   ranks.own(own, space.n_points);
   from_sites.factor(collocation);
@@ -25,7 +25,7 @@ void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
   if (contrasts.isZero(0))
     dual.reset();
   else
-    dual.emplace(space, parameters.quadrature, CrossLayer::Kernel::double_layer);
+    dual.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
 }
 
 void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wall) {

@@ -11,7 +11,7 @@
 #include "coupling/tube.hpp"
 #include "coupling/wall.hpp"
 #include "membrane/direct_solver.hpp"
-#include "stokes/cross_layer.hpp"
+#include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
@@ -26,7 +26,7 @@ struct Tube::Particle {
   void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
   void freeze(Wall& wall);
 
-  const stokes::CrossLayer::Near* kept(const std::optional<stokes::CrossLayer::Near>& near) const { return near ? &*near : nullptr; }
+  const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
 
   /// v at the collocation point of the particle that is nearest to each one of the wall.
   Net nearest_values(const Net& v) const;
@@ -43,8 +43,8 @@ struct Tube::Particle {
   surface::Geometry geometry;
   Eigen::SparseMatrix<double> collocation;  ///< R
   membrane::DirectSolver from_sites;        ///< R^-1
-  stokes::CrossLayer single;
-  std::optional<stokes::CrossLayer> dual;  ///< where a lambda is not 1
+  stokes::Layer single;
+  std::optional<stokes::Layer> dual;  ///< where a lambda is not 1
   Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
 
   Net shape;                                                            ///< in the wall's frame
@@ -53,7 +53,7 @@ struct Tube::Particle {
   Net inlet;                                                            ///< (1/mu) c there
   Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
   std::vector<int> nearest;                                             ///< to a collocation point of the wall
-  std::optional<stokes::CrossLayer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;

@@ -53,7 +53,7 @@ Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<i
 
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases)
     : surface_(wall),
-      layer_(surface_.space, quadrature, stokes::CrossLayer::Kernel::single_layer),
+      layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
       inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
       sites_(collocation_points(wall.space, wall.net)) {
   const int n = wall.space.n_points;
@@ -62,8 +62,9 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (phases) ranks_.measure(*phases);
   layer_.place(wall.net);
 
-  stokes::SingleLayer own_layer(surface_.space, sharper(quadrature));
-  own_layer.assemble(wall.net, stokes::Measure::current, own_, rows_);
+  stokes::Layer own_layer(stokes::Layer::Kernel::single_layer, surface_.space, surface_.space.collocation, sharper(quadrature));
+  own_layer.place(wall.net);
+  own_layer.assemble(own_, rows_);
   assembly_ = own_layer.evaluations();
   matrix_ = everybodys(rows_, own_, n, phases);
   factors_.emplace(matrix_);

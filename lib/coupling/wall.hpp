@@ -11,8 +11,7 @@
 #include "coupling/ranks.hpp"
 #include "quadrature/options.hpp"
 #include "stokes/cap.hpp"
-#include "stokes/cross_layer.hpp"
-#include "stokes/single_layer.hpp"
+#include "stokes/layer.hpp"
 #include "surface/tube_wall.hpp"
 
 namespace tanktread::coupling {
@@ -28,7 +27,7 @@ class Wall {
   const std::vector<int>& own() const { return own_; }  ///< rows of this rank
   const Net& sites() const { return sites_; }           ///< collocation points
   const Ranks& ranks() const { return ranks_; }
-  stokes::CrossLayer& layer() { return layer_; }  ///< of the wall, at points off it
+  stokes::Layer& layer() { return layer_; }  ///< of the wall, at points off it
   const stokes::Cap& inlet() const { return inlet_; }
 
   Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG
@@ -49,7 +48,7 @@ class Wall {
   surface::TubeWall surface_;
   std::vector<int> own_;
   Ranks ranks_;
-  stokes::CrossLayer layer_;
+  stokes::Layer layer_;
   stokes::Cap inlet_;
   Net sites_, inlet_column_, pumped_;
   stokes::Rows<double> rows_;

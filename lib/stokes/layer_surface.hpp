@@ -18,12 +18,11 @@ namespace tanktread::stokes {
 /// Whether `far sum` of the options means clusters for this space (TreeSum) or every target against every node.
 bool sums_by_tree(const spline::Space& space, const quadrature::Options& options);
 
-/// The present surface as a layer operator integrates over it: panels, far nodes, and which rule each target needs on which panel.
+/// The present surfaces as a layer integrates over them: panels, far nodes, and which rule each target needs on which panel.
 class LayerSurface {
  public:
-  /// `steep`: where near rules are for an integrand like 1 / r^2. `order`: Gauss points a direction of the far rule; 0: what targets on the
-  /// surface need.
-  LayerSurface(const spline::Space& space, const quadrature::Options& options, Steep steep = Steep::nowhere, int order = 0);
+  /// `sites`: targets on the surfaces; none: all targets are off them. `steep`: the integrand grows like 1 / r^2 across gaps.
+  LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
 
   /// States that all shapes to come are of this symmetry.
   void set_symmetry(const surface::Symmetry& symmetry);
@@ -34,46 +33,35 @@ class LayerSurface {
   /// All images of the symmetry but the identity, about the middle of the shape placed.
   const std::vector<surface::Reflection>& reflections() const { return images_.reflections; }
 
-  /// Takes a shape; the one that it has already, at no cost.
-  void place(const Net& x);
+  /// Takes a shape. Returns false, at no cost, for the one that it has already.
+  bool place(const Net& x);
 
-  /// The same without Bezier points and far nodes: those of panel e are there after locate(e). Functions that name panels see to their Bezier points.
-  void place_lazily(const Net& x);
-  void locate(int e);
+  /// Site i of the shape, and the value there of the field with these Bezier points.
+  Vec3 site(int i) const { return value(i, bezier); }
+  Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
-  /// Collocation points of the shape.
-  void collocation_points(std::span<const int> targets, std::vector<Vec3>& at);
-
-  /// Far nodes of some panels, panel by panel, and some collocation points with all their images into a tree. Clusters must not depend on who asks
-  /// for which targets: all who share the sums give the same.
-  void place(TreeSum& tree, std::span<const int> some, std::span<const int> points);
-
-  /// Those of all panels, and all collocation points (and images, where there is a symmetry).
-  void place(TreeSum& tree);
-
-  /// The panels that collocation point i lies on and that have a rule of their own for it: all but under the rule `desingularised`.
+  /// The panels that site i lies on and that have a rule of their own for it: all but under the rule `desingularised`.
   std::span<SelfPair> own(int i);
 
-  /// Panels that need a near rule for the collocation point i at x0; those that it lies on are not among them.
-  const std::vector<int>& near(int i, const Vec3& x0);
-  /// The same for a point off the surface.
-  const std::vector<int>& near(const Vec3& x0);
+  /// Panels that need a near rule for a target; those of `own`, which it lies on, are not among them.
+  const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> own);
+
+  /// Far nodes of the fundamental panels and all targets with their images into a tree. Clusters must not depend on who asks for which targets: all
+  /// who share the sums give the same.
+  void place(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;
   int n_points;
   Panels panels;
   NearField near_field;
   SelfField self_field;
-  std::vector<double> bezier;   ///< Bezier points of the shape, where they are there
+  std::vector<double> bezier;   ///< Bezier points of the shape
   std::vector<double> node[3];  ///< far nodes
 
  private:
-  void shape(int e);
-
   Net placed_;
   surface::FundamentalElements fundamental_;
   PanelImages images_;
-  std::vector<char> shaped_, located_;  // panels whose Bezier points, and far nodes, are there
   std::vector<int> near_;
 };
 

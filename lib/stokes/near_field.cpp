@@ -63,7 +63,7 @@ double clearance(double area, double longest, const quadrature::Demand& demand, 
 
 }  // namespace
 
-NearField::NearField(const Panels& panels, double tolerance, int smooth_order, Steep steep)
+NearField::NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface)
     : panels_(panels),
       demand_{0, 0, tolerance, smooth_order},
       steep_(steep),
@@ -71,6 +71,7 @@ NearField::NearField(const Panels& panels, double tolerance, int smooth_order, S
       views_(panels.size()),
       reach_(panels.size()) {
   n_surfaces_ = connected(panels, surface_);
+  across_gaps_ = off_surface || n_surfaces_ > 1;
   for (auto& c : centre_) c.resize(panels.size());
 }
 
@@ -104,10 +105,9 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
     view.demand = demand_;
     view.demand.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * area);
     view.across = view.demand;
-    if (steep_ != Steep::nowhere) view.across.steep = std::sqrt(area / (4 * std::numbers::pi));
-    const bool across_gaps = steep_ == Steep::everywhere || n_surfaces_ > 1;
+    if (steep_) view.across.steep = std::sqrt(area / (4 * std::numbers::pi));
     const double longest = std::max(view.flat.u.norm(), view.flat.v.norm());
-    const auto& strictest = across_gaps ? view.across : view.demand;
+    const auto& strictest = across_gaps_ ? view.across : view.demand;
     const double reach = view.radius + view.bulge + clearance(view.area, longest, strictest, panels_[e].table->order);
     reach_[e] = reach * reach;
   }

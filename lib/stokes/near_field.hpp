@@ -15,17 +15,13 @@
 
 namespace tanktread::stokes {
 
-/// At which targets the integrand grows like 1 / r^2 rather than 1 / r: none (single layer); those that are not on the closed surface of the panel,
-/// for on it the density less its value at the target takes one order away (double layer at its own collocation points); all (double layer of targets
-/// off the surface).
-enum class Steep { nowhere, across_gaps, everywhere };
-
 /// Near rules by tolerance. A pure function of the present shape: no memory of earlier ones.
 class NearField {
  public:
   /// `tolerance`: accuracy relative to int dG / r over the closed surface that a panel belongs to, about sqrt(4 pi area), however many others there
-  /// are.
-  NearField(const Panels& panels, double tolerance, int smooth_order, Steep steep);
+  /// are. `steep`: the integrand grows like 1 / r^2 rather than 1 / r at targets that are not on the closed surface of the panel; on it the density
+  /// less its value at the target takes one order away (double layer). `off_surface`: there are targets on no surface.
+  NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
   /// Takes the shape from the Bezier points of panels that are no images. They must outlive the calls below, which ask for those of `panel`, too.
   void update(const std::vector<double>& bezier, const PanelImages& images);
@@ -52,7 +48,7 @@ class NearField {
   quadrature::Demand demand_;  ///< but for what goes with the area
   std::vector<int> surface_;   ///< of each panel: which of the surfaces it belongs to
   int n_surfaces_ = 1;
-  Steep steep_;
+  bool steep_, across_gaps_;
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;

@@ -42,10 +42,10 @@ Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
 
 }  // namespace
 
-SelfField::SelfField(const spline::Space& space, const quadrature::Options& options)
+SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options)
     : options_(options), radial_(radial_points(options.tolerance)), first_{0} {
-  for (const auto& sites : space.collocation) {
-    for (const spline::Site& site : sites) {
+  for (const auto& places : sites) {
+    for (const spline::Site& site : places) {
       const int degree = space.elements[site.element].degree, n = degree + 1;
       SelfPair pair;
       pair.panel = site.element, pair.s = site.s, pair.t = site.t;

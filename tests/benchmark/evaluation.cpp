@@ -18,8 +18,8 @@
 #include "spline/extraction.hpp"
 #include "stokes/ambient_flow.hpp"
 #include "stokes/far_kernel.hpp"
-#include "stokes/single_layer.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace {
 

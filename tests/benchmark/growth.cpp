@@ -18,8 +18,8 @@
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
 #include "stokes/ambient_flow.hpp"
-#include "stokes/single_layer.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace {
 

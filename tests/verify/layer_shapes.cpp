@@ -13,11 +13,9 @@
 #include "spline/extraction.hpp"
 #include "spline/stacked.hpp"
 #include "spline/t_mesh.hpp"
-#include "stokes/cross_layer.hpp"
-#include "stokes/double_layer.hpp"
-#include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 #include "tests/verify/layers_reference.hpp"
 
 namespace tanktread {

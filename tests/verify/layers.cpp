@@ -11,11 +11,9 @@
 #include "spline/polar.hpp"
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
-#include "stokes/cross_layer.hpp"
-#include "stokes/double_layer.hpp"
-#include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 #include "tests/verify/layers_reference.hpp"
 
 namespace tanktread {

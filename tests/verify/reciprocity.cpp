@@ -9,9 +9,9 @@
 #include "quadrature/gauss.hpp"
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
-#include "stokes/cross_layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace tanktread::stokes {
 namespace {

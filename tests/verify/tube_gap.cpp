@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "coupling/collocation.hpp"
-#include "stokes/cross_layer.hpp"
 #include "surface/geometry.hpp"
+#include "tests/layers.hpp"
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {

@@ -8,7 +8,7 @@
 
 #include "coupling/collocation.hpp"
 #include "coupling/krylov.hpp"
-#include "stokes/double_layer.hpp"
+#include "tests/layers.hpp"
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/collocation.hpp"
+#include "tests/layers.hpp"
 #include "tests/unit/coupling/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {

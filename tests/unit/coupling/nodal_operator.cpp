@@ -8,6 +8,7 @@
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace tanktread::coupling {
 namespace {

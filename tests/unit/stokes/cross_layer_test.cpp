@@ -8,9 +8,9 @@
 
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
-#include "stokes/cross_layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 #include "tests/verify/layers_reference.hpp"
 
 namespace tanktread::stokes {

@@ -1,4 +1,3 @@
-#include "stokes/double_layer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +5,9 @@
 
 #include "spline/extraction.hpp"
 #include "spline/stacked.hpp"
-#include "stokes/single_layer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -114,13 +113,6 @@ TEST(DoubleLayer, AssembledRowsOfTwoSurfacesTimesAVelocityAreTheSum) {
   const Eigen::VectorXd rows = a * v.reshaped<Eigen::RowMajor>();
   EXPECT_LT((u.bottomRows(scene().space.n_points).reshaped<Eigen::RowMajor>() - rows).norm(),
             1e-11 * rows.norm());  // round-off, 1 / gap^2 times
-}
-
-// Tolerance: the requested accuracy.
-TEST(SingleLayer, GivesNothingForTheNormal) {
-  Net u = Net::Zero(scene().space.n_points, 3);
-  SingleLayer(scene().space, {.tolerance = 1e-10}).apply_to_normal(scene().x, scene().all, u);
-  EXPECT_LT(largest(u), 1e-10);  // int G n dG = 0
 }
 
 TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {

@@ -1,4 +1,3 @@
-#include "stokes/single_layer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include "spline/stacked.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace tanktread::stokes {
 namespace {

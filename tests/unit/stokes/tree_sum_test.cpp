@@ -8,9 +8,8 @@
 #include <string>
 
 #include "spline/extraction.hpp"
-#include "stokes/double_layer.hpp"
-#include "stokes/single_layer.hpp"
 #include "surface/shapes.hpp"
+#include "tests/layers.hpp"
 
 namespace tanktread::stokes {
 namespace {

@@ -1,0 +1,342 @@
+#include "stokes/layer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "stokes/pair_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+constexpr double eighth_of_pi = 1 / (8 * std::numbers::pi);
+
+/// Rules are chosen for int G f dG; the double layer, steeper by one order, errs up to five times as much under them (tests/verify/layers.cpp).
+quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
+  if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
+  return options;
+}
+
+std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
+  std::vector<Vec3> result;
+  result.reserve(rows.size());
+  for (const int i : rows) result.push_back(net.row(i).transpose());
+  return result;
+}
+
+}  // namespace
+
+/// Targets of one call, and where they are.
+struct Layer::Targets {
+  std::span<const int> rows, far_rows;  ///< rows of u with near rules, and with far sums
+  const Net& at;                        ///< places
+  const Net& f0;                        ///< what is taken from the density of a double layer
+  std::span<const int> in_tree;         ///< all targets that clusters are made of, ascending
+  bool sites;                           ///< they are sites of the surfaces
+  const Near* kept = nullptr;
+};
+
+Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
+    : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
+  if (sums_by_tree(space, options)) tree_.emplace(single() ? options.tolerance : options.tolerance / 2);  // measured: it errs by half of its share
+  fundamental_sites_.resize(sites.size());
+  std::iota(fundamental_sites_.begin(), fundamental_sites_.end(), 0);
+}
+
+void Layer::set_symmetry(const surface::Symmetry& symmetry) {
+  surface_.set_symmetry(symmetry);
+  fundamental_sites_ = symmetry.fundamental();
+}
+
+void Layer::set_reference(const Net& unstressed) {
+  surface_.panels.bezier(unstressed, bezier_unstressed_);
+  node_weights(surface_.panels, bezier_unstressed_, weight_unstressed_);
+  surface_.self_field.forget_weights();
+  measure_.reset();
+}
+
+void Layer::share(int part, int parts, std::vector<int> everybody) {
+  if (!tree_ || parts == 1) return;
+  everybody_ = std::move(everybody);
+  tree_->share(part, parts);
+}
+
+void Layer::place(const Net& x, Measure measure) {
+  assert((measure == Measure::current || !weight_unstressed_.empty()) && "set_reference() comes first");
+  const auto clock = phases_.time("setup");
+  if (!surface_.place(x) && measure == measure_) return;
+  measure_ = measure;
+  tree_rows_.clear();
+  if (!single() || surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
+  if (single() && measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_);
+  if (single() && measure == Measure::reference) weight_ = weight_unstressed_;
+  for (int e = 0; e < surface_.panels.size() && !factor_.empty(); ++e)
+    for (auto* const carrier : {&normal_[0], &normal_[1], &normal_[2], &weight_})
+      for (int k = 0; k < surface_.panels[e].table->n_nodes && !carrier->empty(); ++k) (*carrier)[surface_.panels[e].first_node + k] *= factor_[e];
+}
+
+void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
+  surface_.panels.bezier(field, bezier_f_);
+  node_values(surface_.panels, bezier_f_, value);
+}
+
+/// The density at the far nodes.
+void Layer::load(const Net& f) {
+  const auto clock = phases_.time("setup");
+  values(f, density_);
+  if (!single()) return;
+  for (auto& component : density_)
+    for (int k = 0; k < n_nodes(); ++k) component[k] *= weight_[k];
+}
+
+PointForces Layer::forces() const {
+  const auto &x = surface_.node, &f = density_;
+  return {n_nodes(), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
+}
+
+Stresslets Layer::stresslets() const {
+  const auto &x = surface_.node, &f = density_, &n = normal_;
+  return {n_nodes(),   x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(),
+          f[2].data(), n[0].data(), n[1].data(), n[2].data()};
+}
+
+void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
+  load(f);
+  const std::span<const int> far_rows = shared() ? everybody_ : sites, in_tree = tree_ ? std::span<const int>(fundamental_sites_) : sites;
+  Net at(u.rows(), 3), f0 = Net::Zero(u.rows(), 3);
+  for (const int i : in_tree) at.row(i) = surface_.site(i).transpose();
+  for (const auto rows : {far_rows, sites})
+    for (const int i : rows)
+      if (!single()) f0.row(i) = surface_.value(i, bezier_f_).transpose();
+  integrate({sites, far_rows, at, f0, in_tree, true}, u);
+}
+
+void Layer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
+  apply(f, Net::Zero(at.rows(), 3), at, targets, u, kept);
+}
+
+void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
+  load(f);
+  std::vector<int> all(static_cast<std::size_t>(at.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  integrate({targets, targets, at, f0, all, false, kept}, u);
+}
+
+/// The far sum over all panels, and in its place better rules for those that are close to a target or that it lies on.
+void Layer::integrate(const Targets& targets, Net& u) {
+  add_far(targets, u);
+  {
+    const auto clock = phases_.time("near");
+    if (targets.kept) add_kept(targets, u);
+    for (const int i : targets.rows) {
+      if (targets.kept) break;
+      const Vec3 at = targets.at.row(i), f0 = targets.f0.row(i);
+      const std::span<SelfPair> own = targets.sites ? surface_.own(i) : std::span<SelfPair>();
+      for (const int e : surface_.near(at, own))
+        u.row(i) += beyond_far_sum(e, surface_.near_field.rule(e, at, own), nullptr, at, f0, evaluations_.near).transpose();
+    }
+  }
+  if (targets.sites) {
+    const auto clock = phases_.time("self");
+    for (const int i : targets.rows)
+      for (SelfPair& pair : surface_.own(i)) {
+        const PointTable& table = surface_.self_field.rule(pair, surface_.panels, surface_.bezier);
+        u.row(i) += beyond_far_sum(pair.panel, table, &pair, targets.at.row(i), targets.f0.row(i), evaluations_.self).transpose();
+      }
+    if (single() && surface_.options.rule == "desingularised") subtract_identities(targets.rows, u);
+  }
+  for (const int i : targets.far_rows) u.row(i) *= eighth_of_pi;
+}
+
+/// What the rule `table` for panel e gives a target beyond the far sum.
+Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count) {
+  const Panel& panel = surface_.panels[e];
+  const double *x = &surface_.bezier[panel.first_bezier], *f = &bezier_f_[panel.first_bezier];
+  Vec3 better, far;
+  if (single()) {
+    single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data());
+    node_sum(forces().part(panel.first_node, panel.table->n_nodes), at.data(), far.data());
+  } else {
+    double_sum(table, x, f, at.data(), f0.data(), better.data());
+    node_sum(stresslets().part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
+  }
+  count += table.points + panel.table->n_nodes;
+  return factor(e) * better - far;
+}
+
+void Layer::add_far(const Targets& targets, Net& u) {
+  const auto clock = phases_.time("far");
+  if (tree_) return add_by_clusters(targets, u);
+  const std::vector<Vec3> at = rows_of(targets.at, targets.far_rows);
+  Net sums(targets.far_rows.size(), 3);
+  single() ? far_sums(forces(), at, sums.data()) : far_sums(stresslets(), at, rows_of(targets.f0, targets.far_rows), sums.data());
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.far_rows[k]) = sums.row(static_cast<Eigen::Index>(k));
+  evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
+}
+
+/// The tree of this shape and these targets, and of a double layer sum_q T_ijk n_k at them: Krylov solvers ask for one shape many times. Row
+/// k + g n of its sums is that of image g of target k of n.
+void Layer::place_tree(const Targets& targets) {
+  std::vector<Vec3> at = rows_of(targets.at, targets.in_tree);
+  if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
+  tree_at_ = std::move(at);
+  tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
+  surface_.place(*tree_, tree_at_);
+  std::vector<int> wanted;
+  for (std::size_t g = 0; g <= surface_.reflections().size(); ++g)
+    for (const int i : tree_rows_) {
+      const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
+      assert(targets.in_tree[k] == i && "rows are of fundamental sites");
+      wanted.push_back(static_cast<int>(k + static_cast<std::ptrdiff_t>(g * tree_at_.size())));
+    }
+  tree_->want(wanted);
+  if (single()) return;
+  assert(surface_.reflections().empty());
+  stress_.resize(6 * tree_at_.size());
+  tree_->sum<NormalStressKernel>({normal_[0].data(), normal_[1].data(), normal_[2].data()}, stress_.data());
+  evaluations_.far += tree_->interactions();
+}
+
+void Layer::add_by_clusters(const Targets& targets, Net& u) {
+  place_tree(targets);
+  single() ? add_forces_by_clusters(targets, u) : add_stresslets_by_clusters(targets, u);
+  evaluations_.far += tree_->interactions();
+}
+
+/// (2.19)
+void Layer::add_forces_by_clusters(const Targets& targets, Net& u) {
+  const auto& [fundamental, weight] = surface_.fundamental();
+  const std::vector<surface::Reflection>& images = surface_.reflections();
+  std::vector<double> carried[3];
+  for (std::size_t k = 0; k < fundamental.size(); ++k) {
+    const Panel& panel = surface_.panels[fundamental[k]];
+    for (int c = 0; c < 3; ++c)
+      for (int q = 0; q < panel.table->n_nodes; ++q) carried[c].push_back(weight[k] * density_[c][panel.first_node + q]);
+  }
+  const std::size_t n = tree_at_.size();
+  Net there(n * (images.size() + 1), 3);
+  tree_->sum<StokesletKernel>({carried[0].data(), carried[1].data(), carried[2].data()}, there.data());
+  for (const int i : targets.far_rows) {
+    const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
+    u.row(i) = there.row(k);
+    for (std::size_t g = 0; g < images.size(); ++g)
+      u.row(i) += there.row(k + static_cast<Eigen::Index>((g + 1) * n)).cwiseProduct(images[g].signs.transpose());
+  }
+}
+
+/// sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives 0 exactly.
+void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
+  Vec3 mean;
+  for (int c = 0; c < 3; ++c) mean[c] = Eigen::Map<const Eigen::VectorXd>(density_[c].data(), n_nodes()).mean();
+  constexpr int at[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  std::array<const double*, 6> carried;
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = at[c];
+    moment_[c].resize(n_nodes());
+    for (int k = 0; k < n_nodes(); ++k)
+      moment_[c][k] = ((density_[i][k] - mean[i]) * normal_[j][k] + (density_[j][k] - mean[j]) * normal_[i][k]) / 2;
+    carried[c] = moment_[c].data();
+  }
+  Net there(tree_at_.size(), 3);
+  tree_->sum<StressletKernel>(carried, there.data());
+  for (const int i : targets.far_rows) {
+    const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
+    const double* s = &stress_[static_cast<std::size_t>(6 * k)];
+    Mat3 stress;
+    stress << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
+    u.row(i) = there.row(k) - (stress * (targets.f0.row(i).transpose() - mean)).transpose();
+  }
+}
+
+/// Weights of a rule on panel e, area included. On a panel that the target lies on those of the unstressed surface are kept.
+const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
+  const auto& surface = measure_ == Measure::current ? surface_.bezier : bezier_unstressed_;
+  const bool kept = pair && measure_ == Measure::reference;
+  std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
+  if (kept && !weights.empty()) return weights.data();
+  weights.resize(table.packs());
+  area_weights(table, &surface[surface_.panels[e].first_bezier], weights.data());
+  return weights.data();
+}
+
+/// Bernstein moments of panel e by a rule, without k.
+void Layer::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
+  const double* bezier = &surface_.bezier[surface_.panels[e].first_bezier];
+  scratch_.resize(static_cast<std::size_t>(6) * table.packs());
+  if (single())
+    single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch_.data(), moments);
+  else
+    double_moments(table, bezier, at.data(), scratch_.data(), moments);
+  for (int k = 0; k < 6 * surface_.panels[e].table->n_bernstein && !factor_.empty(); ++k) moments[k] *= factor_[e];
+}
+
+Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
+  const auto clock = phases_.time("near");
+  Near kept{{0}, {}, {}};
+  for (const int i : targets) {
+    const Vec3 y = at.row(i).transpose();
+    for (const int e : surface_.near(y, {})) {
+      const Panel& panel = surface_.panels[e];
+      const NodeTable& t = *panel.table;
+      const std::size_t first = kept.moments.size();
+      kept.panels.push_back(e);
+      kept.moments.resize(first + static_cast<std::size_t>(6) * t.n_bernstein);
+      double* moments = &kept.moments[first];
+      const PointTable& table = surface_.near_field.rule(e, y, {});
+      panel_moments(e, table, nullptr, y, moments);
+      evaluations_.near += table.points + t.n_nodes;
+      for (int k = 0; k < t.n_nodes; ++k) {  // less those of the far rule
+        const int node = panel.first_node + k;
+        const Vec3 r = Vec3(surface_.node[0][node], surface_.node[1][node], surface_.node[2][node]) - y;
+        const Mat3 g = single() ? Mat3(weight_[node] * stokeslet(r)) : stresslet(r, Vec3(normal_[0][node], normal_[1][node], normal_[2][node]));
+        const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
+        for (int b = 0; b < t.n_bernstein; ++b)
+          for (int c = 0; c < 6; ++c) moments[6 * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
+      }
+    }
+    kept.first.push_back(kept.panels.size());
+  }
+  return kept;
+}
+
+void Layer::add_kept(const Targets& targets, Net& u) const {
+  const Near& kept = *targets.kept;
+  const double* m = kept.moments.data();
+  for (std::size_t k = 0; k < targets.rows.size(); ++k) {
+    const int i = targets.rows[k];
+    double sum[3] = {0, 0, 0};
+    for (std::size_t pair = kept.first[k]; pair < kept.first[k + 1]; ++pair) {
+      const Panel& panel = surface_.panels[kept.panels[pair]];
+      const int n_b = panel.table->n_bernstein;
+      const double* f = &bezier_f_[panel.first_bezier];
+      for (int b = 0; b < n_b; ++b, m += 6) {
+        const double f1 = f[b] - targets.f0(i, 0), f2 = f[n_b + b] - targets.f0(i, 1), f3 = f[2 * n_b + b] - targets.f0(i, 2);
+        sum[0] += m[0] * f1 + m[1] * f2 + m[2] * f3;
+        sum[1] += m[1] * f1 + m[3] * f2 + m[4] * f3;
+        sum[2] += m[2] * f1 + m[4] * f2 + m[5] * f3;
+      }
+    }
+    for (int c = 0; c < 3; ++c) u(i, c) += sum[c];
+  }
+}
+
+Eigen::VectorXd Layer::moments(const std::vector<double>& g) const {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(surface_.n_points);
+  Eigen::VectorXd of_bezier;
+  for (int e = 0; e < surface_.panels.size(); ++e) {
+    const Panel& panel = surface_.panels[e];
+    const NodeTable& t = *panel.table;
+    of_bezier = Eigen::Map<const Rows<double>>(t.value.data(), t.n_bernstein, t.n_nodes) *
+                Eigen::Map<const Eigen::VectorXd>(&g[panel.first_node], t.n_nodes);
+    const double* extraction = surface_.panels.extraction(e);
+    for (int a = 0; a < panel.functions; ++a, extraction += t.n_bernstein)
+      sums[surface_.panels.points(e)[a]] += Eigen::Map<const Eigen::VectorXd>(extraction, t.n_bernstein).dot(of_bezier);
+  }
+  return sums;
+}
+
+}  // namespace tanktread::stokes

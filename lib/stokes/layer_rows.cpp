@@ -1,0 +1,275 @@
+// Assembled rows of a layer: far moments sixteen targets at a time, own rules target by target. Whole rows, or what near control points add to them.
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+#include "stokes/assembly_kernel.hpp"
+#include "stokes/identity_kernel.hpp"
+#include "stokes/layer.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+
+/// Basis functions of some panels at their far nodes, and the row of the sums that each adds to. Padded to whole tiles; padded functions and those
+/// of other control points add to a spare row.
+template <class Real>
+struct FarBasis {
+  std::vector<int> panels, index;  ///< the panels; of each panel of the surface its number among them, -1: it is not there
+  std::vector<Real> values;
+  std::vector<int> rows;
+  std::vector<std::size_t> first_value, first_row;
+
+  void clear(const Panels& all) {
+    panels.clear(), values.clear(), rows.clear(), first_value.clear(), first_row.clear();
+    index.assign(static_cast<std::size_t>(all.size()), -1);
+  }
+
+  void add(const Panels& all, int e, const std::vector<int>& row_of_point, int spare_row) {
+    const NodeTable& t = *all[e].table;
+    const int m = all[e].functions, padded = (m + assembly_tile - 1) / assembly_tile * assembly_tile;
+    index[e] = static_cast<int>(panels.size());
+    panels.push_back(e);
+    first_value.push_back(values.size());
+    first_row.push_back(rows.size());
+    values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
+    for (int a = 0; a < m; ++a)  // a sum per entry in one order, wherever the arrays lie
+      for (int b = 0; b < t.n_bernstein; ++b) {
+        const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
+        const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];
+        Real* to = &values[first_value.back() + static_cast<std::size_t>(t.n_nodes) * a];
+        for (int k = 0; k < t.n_nodes; ++k) to[k] += share * static_cast<Real>(from[k]);
+      }
+    for (int a = 0; a < padded; ++a) rows.push_back(a < m ? row_of_point[all.points(e)[a]] : spare_row);
+  }
+
+  /// What the far nodes of the k-th panel need but for weights or normals.
+  PanelNodes<Real> nodes(const LayerSurface& surface, std::size_t k) const {
+    const Panel& p = surface.panels[panels[k]];
+    PanelNodes<Real> nodes;
+    nodes.n_nodes = p.table->n_nodes, nodes.functions = (p.functions + assembly_tile - 1) / assembly_tile * assembly_tile;
+    nodes.x = &surface.node[0][p.first_node], nodes.y = &surface.node[1][p.first_node], nodes.z = &surface.node[2][p.first_node];
+    nodes.basis = &values[first_value[k]], nodes.rows = &rows[first_row[k]];
+    return nodes;
+  }
+};
+
+/// Adds Bernstein moments of panel e, moment[6 b + c], to the sums of one target: sums[6 block rows[A] + block c].
+template <class Real>
+void add_moments(const Panels& panels, int e, const int* rows, const double* moments, Real* sums) {
+  const int n_b = panels[e].table->n_bernstein;
+  const Eigen::Map<const Rows<double>> extraction(panels.extraction(e), panels[e].functions, n_b);
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> moment(moments, n_b, 6);
+  for (int a = 0; a < panels[e].functions; ++a) {
+    const Eigen::Matrix<double, 1, 6> row = extraction.row(a).lazyProduct(moment);
+    Real* to = sums + static_cast<std::ptrdiff_t>(6 * assembly_block) * rows[a];
+    for (int c = 0; c < 6; ++c) to[assembly_block * c] += static_cast<Real>(row[c]);
+  }
+}
+
+/// Three rows of the operator from the sums 11, 12, 13, 22, 23, 33 of one target with every control point, over 8 pi.
+template <class Real>
+void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
+  constexpr int entry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  const Real scale = static_cast<Real>(1 / (8 * std::numbers::pi));
+  for (int i = 0; i < 3; ++i) {
+    Real* to = &a(row + i, 0);
+    const Real* from = sums;
+    for (int p = 0; p < n_points; ++p, from += 6 * assembly_block, to += 3)
+      for (int j = 0; j < 3; ++j) to[j] = scale * from[assembly_block * entry[3 * i + j]];
+  }
+}
+
+void sort_and_drop_repeated(std::vector<int>& numbers) {
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+}  // namespace
+
+/// Sums over the panels of a basis, for up to sixteen targets at a time.
+template <class Real>
+class Layer::RowSums {
+ public:
+  /// `at`: places of the targets by their rows, off the surfaces; nothing: they are sites.
+  RowSums(Layer& layer, const Net* at) : layer_(layer), at_(at) {}
+
+  FarBasis<Real> basis;
+  std::vector<Real> sums;  ///< [6 block row + block c + l]
+
+  void add(std::span<const int> targets, int rows) {
+    sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
+    skip_.assign(basis.panels.size(), 0u);
+    double place[3 * assembly_block];
+    for (int l = 0; l < assembly_block; ++l) {
+      const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
+      for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = x0[c];
+    }
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], l);
+    for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
+  }
+
+ private:
+  Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
+
+  /// Those that need a rule of their own for the target, number l of its block.
+  void add_close_panels(int target, int l) {
+    LayerSurface& surface = layer_.surface_;
+    const Vec3 x0 = place_of(target);
+    const std::span<SelfPair> own = at_ ? std::span<SelfPair>() : surface.own(target);
+    for (const int e : surface.near(x0, own))
+      if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, own), nullptr, x0, l);
+    for (SelfPair& pair : own)
+      if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
+  }
+
+  void add_panel(int e, const PointTable& table, SelfPair* pair, const Vec3& x0, int l) {
+    const Panels& panels = layer_.surface_.panels;
+    const auto k = static_cast<std::size_t>(basis.index[e]);
+    skip_[k] |= 1u << l;
+    moments_.resize(static_cast<std::size_t>(6) * panels[e].table->n_bernstein);
+    layer_.panel_moments(e, table, pair, x0, moments_.data());
+    add_moments(panels, e, &basis.rows[basis.first_row[k]], moments_.data(), &sums[l]);
+    (pair ? layer_.evaluations_.self : layer_.evaluations_.near) += table.points;
+  }
+
+  void add_far_panel(std::size_t k, const double* place, int n_targets) {
+    const int first = layer_.surface_.panels[basis.panels[k]].first_node;
+    PanelNodes<Real> nodes = basis.nodes(layer_.surface_, k);
+    if (layer_.single()) nodes.weight = &layer_.weight_[first];
+    for (int c = 0; c < 3 && !layer_.single(); ++c) nodes.normal[c] = &layer_.normal_[c][first];
+    kernel_.resize(static_cast<std::size_t>(6) * assembly_block * nodes.n_nodes);
+    add_far_moments<Real>(nodes, place, skip_[k], kernel_.data(), sums.data());
+    layer_.evaluations_.far += static_cast<long long>(n_targets) * nodes.n_nodes;
+  }
+
+  Layer& layer_;
+  const Net* at_;
+  std::vector<Real> kernel_;
+  std::vector<double> moments_;
+  std::vector<std::uint32_t> skip_;
+};
+
+/// - N_B(x_i) sum_C A_iC in the sums of a site: what a double layer takes from its density, by the same rules.
+template <class Real>
+void Layer::subtract_density_at_site(int site, Real* sums) const {
+  double total[6] = {};
+  for (int p = 0; p < surface_.n_points; ++p)
+    for (int c = 0; c < 6; ++c) total[c] += sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(p) + c)];
+  const auto [panel, basis] = surface_.self_field.basis(site, surface_.panels);
+  for (int b = 0; b < basis.size(); ++b)
+    for (int c = 0; c < 6; ++c)
+      sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(surface_.panels.points(panel)[b]) + c)] -= static_cast<Real>(basis[b] * total[c]);
+}
+
+template <class Real>
+void Layer::assemble_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
+  const auto clock = phases_.time("assembly");
+  constexpr std::size_t block = assembly_block;
+  const Panels& panels = surface_.panels;
+  RowSums<Real> rows(*this, at);
+  std::vector<int> row_of_point(static_cast<std::size_t>(surface_.n_points));
+  std::iota(row_of_point.begin(), row_of_point.end(), 0);
+  rows.basis.clear(panels);
+  for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, surface_.n_points);
+  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * surface_.n_points);
+  for (std::size_t first = 0; first < targets.size(); first += block) {
+    const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
+    rows.add(some, surface_.n_points);
+    for (std::size_t l = 0; l < some.size(); ++l) {
+      if (!single() && !at) subtract_density_at_site(some[l], &rows.sums[l]);
+      write_rows(3 * static_cast<int>(first + l), surface_.n_points, &rows.sums[l], a);
+    }
+  }
+  if (single() && surface_.options.rule == "desingularised") subtract_identities(targets, a);
+}
+
+void Layer::assemble(std::span<const int> sites, Rows<float>& a) { assemble_rows(sites, nullptr, a); }
+void Layer::assemble(std::span<const int> sites, Rows<double>& a) { assemble_rows(sites, nullptr, a); }
+void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a) { assemble_rows(targets, &at, a); }
+void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
+
+void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
+  const auto clock = phases_.time("assembly");
+  constexpr std::size_t block = assembly_block;
+  constexpr double scale = 1 / (8 * std::numbers::pi);
+  const Panels& panels = surface_.panels;
+  std::vector<std::vector<int>> panels_of(static_cast<std::size_t>(surface_.n_points));
+  for (int e = 0; e < panels.size(); ++e)
+    for (int a = 0; a < panels[e].functions; ++a) panels_of[panels.points(e)[a]].push_back(e);
+  RowSums<double> rows(*this, nullptr);
+  std::vector<int> row_of_point;
+  entries.resize(6 * near.point.size());
+  for (std::size_t first = 0; first < sites.size(); first += block) {
+    const std::span<const int> some = sites.subspan(first, std::min(block, sites.size() - first));
+    std::vector<int> wanted(near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first]),
+                            near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first + some.size()]));
+    sort_and_drop_repeated(wanted);
+    const int spare = static_cast<int>(wanted.size());
+    row_of_point.assign(static_cast<std::size_t>(surface_.n_points), spare);
+    for (int k = 0; k < spare; ++k) row_of_point[wanted[k]] = k;
+    std::vector<int> carriers;
+    for (const int point : wanted) carriers.insert(carriers.end(), panels_of[point].begin(), panels_of[point].end());
+    sort_and_drop_repeated(carriers);
+    rows.basis.clear(panels);
+    for (const int e : carriers) rows.basis.add(panels, e, row_of_point, spare);
+    rows.add(some, spare);
+    for (std::size_t l = 0; l < some.size(); ++l)
+      for (std::size_t j = near.first[first + l]; j < near.first[first + l + 1]; ++j)
+        for (std::size_t c = 0; c < 6; ++c)
+          entries[6 * j + c] = scale * rows.sums[block * (6 * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
+  }
+  if (surface_.options.rule == "desingularised") subtract_identities(sites, near, entries);
+}
+
+/// M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,
+///   M f = sum_q w [G (f_n n + f_t (n0.n) + n0 (f_t.n)) - (n0.r) T f_t n],
+/// which is 0 for an exact rule. f is measured as the density is.
+Mat3 Layer::identities(int site) const {
+  const auto normal_of = [&](const std::vector<double>& bezier) -> Vec3 {
+    const auto [a1, a2] = surface_.self_field.tangents(site, surface_.panels, bezier);
+    return a1.cross(a2);
+  };
+  const Vec3 at = surface_.site(site), a = normal_of(surface_.bezier), n0 = a.normalized();
+  const auto& node = surface_.node;
+  const IdentitySums s = identity_sums(n_nodes(), node[0].data(), node[1].data(), node[2].data(), normal_[0].data(), normal_[1].data(),
+                                       normal_[2].data(), at.data(), n0.data());
+  const Mat3 tangential = Mat3::Identity() - n0 * n0.transpose();
+  const Mat3 m = Vec3(s.pressure) * n0.transpose() + Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.shear) * tangential;
+  return measure_ == Measure::current ? m : Mat3(m * (normal_of(bezier_unstressed_).norm() / a.norm()));
+}
+
+void Layer::subtract_identities(std::span<const int> sites, Net& u) {
+  for (const int i : sites) u.row(i) -= (identities(i) * surface_.value(i, bezier_f_)).transpose();
+  evaluations_.self += static_cast<long long>(sites.size()) * n_nodes();
+}
+
+template <class Real>
+void Layer::subtract_identities(std::span<const int> sites, Rows<Real>& a) const {
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    const Mat3 m = identities(sites[k]) / (8 * std::numbers::pi);
+    const auto [panel, basis] = surface_.self_field.basis(sites[k], surface_.panels);
+    for (int b = 0; b < basis.size(); ++b)
+      a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * surface_.panels.points(panel)[b]) -= (basis[b] * m).template cast<Real>();
+  }
+}
+
+void Layer::subtract_identities(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) const {
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    const Mat3 m = identities(sites[k]) / (8 * std::numbers::pi);
+    const auto [panel, basis] = surface_.self_field.basis(sites[k], surface_.panels);
+    const std::span<const int> points(surface_.panels.points(panel), static_cast<std::size_t>(basis.size()));
+    for (std::size_t j = near.first[k]; j < near.first[k + 1]; ++j) {
+      const auto b = std::ranges::find(points, near.point[j]) - points.begin();
+      if (b == basis.size()) continue;
+      for (std::size_t c = 0; c < 6; ++c) entries[6 * j + c] -= basis[b] * m(upper[c][0], upper[c][1]);
+    }
+  }
+}
+
+}  // namespace tanktread::stokes
