@@ -20,7 +20,7 @@ endfunction()
 
 set(teuchos teuchosparameterlist teuchosparser teuchoscomm teuchosnumerics teuchoscore)
 list(TRANSFORM teuchos PREPEND trilinos_)
-foreach(name noxlapack nox amesos2 belos tpetra kokkoscore) # as files: their targets list all of Trilinos, and the shared HDF5
+foreach(name nox amesos2 stratimikosbelos belos thyratpetra thyracore tpetra kokkoscore) # as files: their targets list all of Trilinos, and the shared HDF5
   find_library(TRILINOS_${name} trilinos_${name} HINTS ${Trilinos_LIBRARY_DIRS} REQUIRED)
   list(APPEND trilinos ${TRILINOS_${name}})
 endforeach()

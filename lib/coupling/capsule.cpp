@@ -43,8 +43,9 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, parameters.quadrature),
       collocation_(parameters.solvers.direct, parameters.symmetry),
       mass_(parameters.solvers.direct, parameters.symmetry),
-      krylov_(parameters.solvers.krylov, parameters.solvers.belos),
-      inner_krylov_(parameters.solvers.krylov, parameters.solvers.belos),
+      velocity_solver_(parameters.solvers.krylov, parameters.solvers.belos),
+      step_solver_(parameters.solvers.krylov, parameters.solvers.belos),
+      inner_solver_(parameters.solvers.krylov, parameters.solvers.belos),
       rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature),
       tube_(std::move(tube)) {
   surface::Symmetry& symmetry = parameters_.symmetry;
@@ -389,7 +390,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     alone_->solve(rigid_, y);
     Eigen::Map<Net>(out, n, 3) = y;
   };
-  note(krylov_.solve(apply, right, v, parameters_.solvers.tolerance, alone_->empty() ? Krylov::Apply() : precondition), v);
+  const LinearSystem system{velocity_blocks(), apply, alone_->empty() ? Apply() : precondition};
+  note(velocity_solver_.solve(system, right, v, parameters_.solvers.tolerance), v);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
   return solution;
@@ -399,11 +401,19 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
   const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
-  const Net on_wall = tube_->load_on_wall(f);
-  BlockVector x{rhs, Net::Zero(on_wall.rows(), 3), 0, 0};
-  note(coupling::solve(system, parameters_.solvers.tube, krylov_, {rhs, on_wall, tube_->pressure_of(f), 0}, x, parameters_.solvers.tolerance),
-       Eigen::Map<const Eigen::VectorXd>(x.velocity.data(), x.velocity.size()));
-  return x.velocity;
+  const Eigen::VectorXd right = system.right_hand_side(rhs, f);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
+  x.head(rhs.size()) = right.head(rhs.size());
+  note(velocity_solver_.solve(system.linear_system(velocity_blocks(), parameters_.solvers.tube), right, x, parameters_.solvers.tolerance), x);
+  return Eigen::Map<const Net>(x.data(), rhs.rows(), 3);
+}
+
+Blocks Capsule::velocity_blocks() const {
+  if (particles().size() == 1) return {{"velocity", 3 * space_.n_points}};
+  Blocks blocks;
+  for (const Particle& particle : particles())
+    blocks.push_back({formatted("velocity of particle %d", static_cast<int>(blocks.size()) + 1), 3 * particle.block.n_points});
+  return blocks;
 }
 
 /// V = b.x/3, for V is a cubic of x without lower terms. Where that leads nowhere, x is not finite any more.

@@ -171,6 +171,7 @@ class Capsule : public Dynamics {
   Net fluid_velocity_change(const Net& delta);
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
   Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near);
+  Blocks velocity_blocks() const;
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
@@ -193,7 +194,7 @@ class Capsule : public Dynamics {
   std::optional<stokes::Layer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
-  Krylov krylov_, inner_krylov_;
+  Krylov velocity_solver_, step_solver_, inner_solver_;
   NodalOperator nodal_;                     // or frozen_, as the options say
   FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
   RigidParticles rigid_;

@@ -89,7 +89,7 @@ Net Capsule::fluid_velocity_change(const Net& delta) {
   const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = frozen_viscous(Eigen::Map<const Net>(in, n, 3)); };
   Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   const Eigen::VectorXd right = v;
-  work_.solver_iterations += inner_krylov_.solve(apply, right, v, 1e-3).iterations;
+  work_.solver_iterations += inner_solver_.solve({velocity_blocks(), apply, {}}, right, v, 1e-3).iterations;
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
@@ -107,7 +107,8 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
   const Net rhs = interface_ ? r : frozen_viscous(r);
-  const SolveReport report = krylov_.solve(apply, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
+  const LinearSystem system{{{"displacement", 3 * n}}, apply, {}};
+  const SolveReport report = step_solver_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
   work_.solver_iterations += report.iterations;
   return symmetric(Eigen::Map<const Net>(solution.data(), n, 3));

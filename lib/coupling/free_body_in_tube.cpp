@@ -36,7 +36,7 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * n + 6);
   Eigen::Map<Net>(rhs.data(), n, 3) = -body_.ambient(flow_);
   rhs.tail<6>() << turn.transpose() * driven_.force / force_unit, turn.transpose() * driven_.torque / (force_unit * radius_);
-  const SolveReport report = krylov_.solve(apply, rhs, unknowns_, tolerance_);
+  const SolveReport report = krylov_.solve({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, {}}, rhs, unknowns_, tolerance_);
   iterations_ += report.iterations;
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
 

@@ -1,5 +1,5 @@
 #pragma once
-// One Belos solve on short replicated vectors with an operator of ours.
+// Linear systems of named blocks of unknowns, solved by Belos.
 
 #include <functional>
 #include <memory>
@@ -14,32 +14,49 @@ class ParameterList;
 
 namespace tanktread::coupling {
 
+/// Unknowns that belong together, as a velocity, a traction or a pressure drop.
+struct UnknownBlock {
+  std::string name;
+  Eigen::Index size = 0;
+  bool operator==(const UnknownBlock&) const = default;
+};
+using Blocks = std::vector<UnknownBlock>;
+
+/// A linear map of all blocks, one after another, to all of them.
+using Apply = std::function<void(const double* in, double* out)>;
+
+/// A linear system. Its operators may be distributed inside; they must return the same numbers on every rank, but for round-off.
+struct LinearSystem {
+  Blocks blocks;
+  Apply product;
+  Apply precondition;  ///< an approximate inverse of the product, from the right, so that residuals are those of the system; or none
+};
+
 /// What a linear solve did.
 struct SolveReport {
   int iterations = 0;
   bool converged = false;
-  std::vector<double> history;  ///< relative residual after each iteration; on the first rank, which is the one that speaks
+  /// Of each block, over the norm of the right-hand side, where it did not converge.
+  std::vector<std::pair<std::string, double>> residuals;
 };
 
-/// Throws RunFailure with the residual history when `report` is of a solve of `system` that did not reach `tolerance`.
+/// Throws RunFailure with the residuals when `report` is of a solve of `system` that did not reach `tolerance`.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
-/// Belos, called through its factory, on short vectors that every rank holds whole (Vectors): every rank does the same arithmetic on the whole short
-/// vector, which is the first rank's where it comes from outside, so dot products need no message and an iteration count cannot differ between
-/// ranks. The operator may be distributed inside; it must return the same vector on every rank, but for round-off.
+/// One of Belos' solvers, with its list, through Thyra (thyra_blocks.hpp).
 class Krylov {
  public:
-  using Apply = std::function<void(const double* in, double* out)>;
+  /// The names of solvers: those of Belos' factory.
+  static std::vector<std::string> names();
 
-  /// `solver` is a name of Belos' factory ("GMRES", "BICGSTAB", …); `list` goes to Belos as it is, after our defaults.
-  /// Throws UserError for a name or a list that Belos does not know.
-  Krylov(std::string solver, std::shared_ptr<Teuchos::ParameterList> list);
+  /// `solver` is one of them ("GMRES", "BICGSTAB", …); `list` goes to Belos as it is, after our defaults.
+  /// Throws UserError for a name or a parameter that Belos does not know.
+  Krylov(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list);
   ~Krylov();
 
-  /// Solves apply(x) = b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw when it
-  /// stops short, or breaks down, the solution then not a number; see the report. `precondition`: an approximate inverse of apply, from the right,
-  /// so that residuals are those of the system.
-  SolveReport solve(const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance, const Apply& precondition = {}) const;
+  /// Solves the system for the right-hand side b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw
+  /// when it stops short, or breaks down, the solution then not a number; see the report.
+  SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
  private:
   struct Impl;

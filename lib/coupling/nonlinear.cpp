@@ -2,107 +2,83 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <NOX.H>
-#include <NOX_Abstract_Group.H>
-#include <NOX_LAPACK_Vector.H>
 #include <NOX_Solver_Factory.H>
 #include <NOX_StatusTest_Generic.H>
+#include <NOX_Thyra_Group.H>
+#include <NOX_Thyra_Vector.H>
 #include <Teuchos_ParameterList.hpp>
 #include <Teuchos_oblackholestream.hpp>
+#include <Thyra_DefaultIdentityLinearOp.hpp>
+#include <Thyra_DefaultPreconditioner.hpp>
+#include <Thyra_StateFuncModelEvaluatorBase.hpp>
 
 #include "base/errors.hpp"
-#include "coupling/krylov.hpp"
+#include "coupling/thyra_blocks.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
 
-using Vector = NOX::LAPACK::Vector;
+Net net(const Eigen::VectorXd& numbers) { return Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
 
-const Vector& ours(const NOX::Abstract::Vector& vector) { return dynamic_cast<const Vector&>(vector); }
+Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()); }
 
-Net net(const Vector& vector) {
-  Net result(static_cast<Eigen::Index>(vector.length()) / 3, 3);
-  for (Eigen::Index i = 0; i < result.size(); ++i) result.data()[i] = vector(static_cast<int>(i));
-  return result;
-}
-
-Vector vector(const Net& net) { return Vector(static_cast<int>(net.size()), const_cast<double*>(net.data())); }  // copies
-
-/// g, its norm and the linear solver that a Newton step takes.
-struct System {
-  const FixedPoint::Map& g;
-  const FixedPoint::Norm& norm;
-  const Krylov& krylov;
-};
-
-/// F(x) = g(x) - x as NOX sees it.
-class Group : public NOX::Abstract::Group {
+/// F(x) = g(x) - x, with products F' d by differences above the noise of adaptive quadrature.
+class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
  public:
-  Group(const System& system, const Net& x) : system_(system), x_(vector(x)), f_(x_), newton_(x_) {}
+  using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;
+  using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<double>;
 
-  NOX::Abstract::Group& operator=(const NOX::Abstract::Group& source) override {
-    const Group& other = dynamic_cast<const Group&>(source);
-    x_ = other.x_;
-    f_ = other.f_;
-    newton_ = other.newton_;
-    has_f_ = other.has_f_;
-    has_newton_ = other.has_newton_;
-    return *this;
-  }
-  void setX(const NOX::Abstract::Vector& y) override { x_ = y, has_f_ = has_newton_ = false; }
-  void computeX(const NOX::Abstract::Group& from, const NOX::Abstract::Vector& d, double step) override {
-    x_.update(1, from.getX(), step, d);
-    has_f_ = has_newton_ = false;
-  }
-  ReturnType computeF() override {
-    if (has_f_) return Ok;
-    const Net x = net(x_), f = system_.g(x) - x;
-    if (!f.allFinite()) return Failed;
-    f_ = vector(f);
-    has_f_ = true;
-    return Ok;
-  }
-  ReturnType computeJacobian() override { return computeF(); }
+  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, const Net& start)
+      : g_(g), norm_(norm), space_(vector_space({{"places", start.size()}})) {}
 
-  /// F + F' d = 0, products by differences above the noise of adaptive quadrature.
-  ReturnType computeNewton(Teuchos::ParameterList& list) override {
-    if (computeF() != Ok) return Failed;
-    const Net x = net(x_), f = net(f_);
-    const auto apply = [&](const double* in, double* out) {
-      const Net direction = Eigen::Map<const Net>(in, x.rows(), 3);
-      const double size = system_.norm(direction), e = size > 0 ? 1e-4 / size : 1;
-      const Net y = x + e * direction;
-      Eigen::Map<Net>(out, x.rows(), 3) = (system_.g(y) - y - f) / e;
-    };
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(x.size());
-    const SolveReport report = system_.krylov.solve(apply, -Eigen::Map<const Eigen::VectorXd>(f.data(), f.size()), d, list.get("Tolerance", 0.1));
-    if (!d.allFinite()) return Failed;
-    newton_ = vector(Eigen::Map<const Net>(d.data(), x.rows(), 3));
-    has_newton_ = true;
-    return report.converged ? Ok : NotConverged;
+  Teuchos::RCP<const Space> get_x_space() const override { return space_; }
+  Teuchos::RCP<const Space> get_f_space() const override { return space_; }
+  Teuchos::RCP<Thyra::LinearOpBase<double>> create_W_op() const override { return Teuchos::rcp(new FunctionOperator(space_)); }
+  InArgs createInArgs() const override {
+    Thyra::ModelEvaluatorBase::InArgsSetup<double> in;
+    in.setModelEvalDescription("fixed point");
+    in.setSupports(IN_ARG_x);
+    return in;
   }
-  bool isF() const override { return has_f_; }
-  bool isJacobian() const override { return has_f_; }
-  bool isNewton() const override { return has_newton_; }
-  const NOX::Abstract::Vector& getX() const override { return x_; }
-  const NOX::Abstract::Vector& getF() const override { return f_; }
-  double getNormF() const override { return f_.norm(); }
-  const NOX::Abstract::Vector& getGradient() const override { throw std::logic_error("no gradient"); }
-  const NOX::Abstract::Vector& getNewton() const override { return newton_; }
-  Teuchos::RCP<const NOX::Abstract::Vector> getXPtr() const override { return Teuchos::rcpFromRef(x_); }
-  Teuchos::RCP<const NOX::Abstract::Vector> getFPtr() const override { return Teuchos::rcpFromRef(f_); }
-  Teuchos::RCP<const NOX::Abstract::Vector> getGradientPtr() const override { return {}; }
-  Teuchos::RCP<const NOX::Abstract::Vector> getNewtonPtr() const override { return Teuchos::rcpFromRef(newton_); }
-  Teuchos::RCP<NOX::Abstract::Group> clone(NOX::CopyType) const override { return Teuchos::rcp(new Group(*this)); }
 
  private:
-  const System& system_;
-  Vector x_, f_, newton_;
-  bool has_f_ = false, has_newton_ = false;
+  OutArgs createOutArgsImpl() const override {
+    Thyra::ModelEvaluatorBase::OutArgsSetup<double> out;
+    out.setModelEvalDescription("fixed point");
+    out.setSupports(OUT_ARG_f);
+    out.setSupports(OUT_ARG_W_op);
+    return out;
+  }
+
+  void evalModelImpl(const InArgs& in, const OutArgs& out) const override {
+    const Net x = net(numbers_of(*in.get_x()));
+    if (x_.size() == 0 || x != x_) {
+      f_ = g_(x) - x;
+      x_ = x;
+    }
+    if (!f_.allFinite()) return out.setFailed();
+    if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_)));
+    if (out.get_W_op().is_null()) return;
+    dynamic_cast<FunctionOperator&>(*out.get_W_op()).function = [this, x, f = f_](const double* in_numbers, double* out_numbers) {
+      const Net direction = Eigen::Map<const Net>(in_numbers, x.rows(), 3);
+      const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
+      const Net y = x + e * direction;
+      Eigen::Map<Net>(out_numbers, x.rows(), 3) = (g_(y) - y - f) / e;
+    };
+  }
+
+  const FixedPoint::Map& g_;
+  const FixedPoint::Norm& norm_;
+  Teuchos::RCP<const Space> space_;
+  mutable Net x_, f_;  // where it was evaluated last
 };
+
+Net net(const NOX::Abstract::Vector& vector) { return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector())); }
 
 /// Ends at the tolerance, in our norm, or after so many iterations.
 class Test : public NOX::StatusTest::Generic {
@@ -110,8 +86,9 @@ class Test : public NOX::StatusTest::Generic {
   Test(const FixedPoint::Norm& norm, double tolerance, int most) : norm_(norm), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
-    if (group.isF() && norm_(net(ours(group.getF()))) <= tolerance_) return status_ = NOX::StatusTest::Converged;
-    return status_ = !group.isF() || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    const double rest = group.isF() ? norm_(net(group.getF())) : std::numeric_limits<double>::quiet_NaN();
+    if (rest <= tolerance_) return status_ = NOX::StatusTest::Converged;
+    return status_ = !std::isfinite(rest) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
   NOX::StatusTest::StatusType getStatus() const override { return status_; }
   std::ostream& print(std::ostream& stream, int) const override { return stream; }
@@ -171,7 +148,7 @@ Teuchos::ParameterList defaults(const std::string& method) {
 struct FixedPoint::Impl {
   Teuchos::ParameterList given, list;
   Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
-  Krylov krylov{"GMRES", nullptr};
+  Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver = belos_factory("GMRES", nullptr).factory;
 };
 
 FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list) : impl_(std::make_unique<Impl>()) {
@@ -184,17 +161,31 @@ FixedPoint::~FixedPoint() = default;
 std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_->given, *impl_->last) : std::string(); }
 
 NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x) const {
-  const System system{g, norm, impl_->krylov};
-  const auto group = Teuchos::rcp(new Group(system, x));
+  using Teuchos::RCP;
+  using Weights = Thyra::VectorBase<double>;
+  const auto model = Teuchos::rcp(new Model(g, norm, x));
+  const auto start = vector_of(model->get_x_space(), numbers(x));
+  const RCP<Thyra::LinearOpBase<double>> derivative = model->create_W_op();
+  const auto identity = Teuchos::rcp(new Thyra::DefaultPreconditioner<double>);
+  identity->initializeRight(Thyra::identity<double>(model->get_x_space()));
+  const RCP<Thyra::PreconditionerBase<double>> preconditioner = identity;
+  const RCP<Thyra::PreconditionerFactoryBase<double>> no_factory;
+  const RCP<const Weights> unweighted;
+  const bool scaled = false, updated = false;
+  const auto group =
+      Teuchos::rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model, derivative, impl_->linear_solver, preconditioner, no_factory,
+                                         unweighted, unweighted, RCP<Weights>(), scaled, updated));
   const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
   auto& anderson = list->sublist("Anderson Parameters");
   if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   try {
     const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(norm, tolerance, most)), list);
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
-    x = net(ours(solver->getSolutionGroup().getX()));
+    x = net(solver->getSolutionGroup().getX());
     return {solver->getNumIterations(), converged};
   } catch (const char*) {  // NOX's word for a function or a direction that cannot be had
+    return {0, false};
+  } catch (const Thyra::CatastrophicSolveFailure&) {
     return {0, false};
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {
     throw UserError(std::string("Solvers/NOX: NOX does not accept the list: ") + error.what());

@@ -78,7 +78,8 @@ Net Resistance::force_density(const Net& u) {
   const auto operation = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = apply(Eigen::Map<const Net>(in, n, 3)); };
   const Net rhs = viscosity_ * u;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
-  const SolveReport report = krylov_.solve(operation, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), f, tolerance_);
+  const LinearSystem system{{{"traction", 3 * n}}, operation, {}};
+  const SolveReport report = krylov_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), f, tolerance_);
   iterations_ += last_iterations_ = report.iterations;
   require_convergence(report, "the first-kind system of the rigid surface", tolerance_);
   return Eigen::Map<const Net>(f.data(), n, 3);
