@@ -10,7 +10,6 @@
 #include "coupling/capsule.hpp"
 #include "coupling/ranks.hpp"
 #include "membrane/laws.hpp"
-#include "output/summary.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/symmetry.hpp"
@@ -50,11 +49,5 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
 /// What the load is measured on: that of a drop, which has no unstressed state, and the strong one are always per current area.
 stokes::Measure load_measure(const Scene& scene);
-
-/// The line of the plan about a flow without a tube.
-std::string unbounded_flow(const Scene& scene);
-
-/// What the run has chosen: blocks, unknowns, memory, kernel evaluations, and what the scene made superfluous.
-output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);
 
 }  // namespace tanktread

@@ -28,7 +28,7 @@ namespace {
 class Deforming : public Moving {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), series_(run_series(scene)) {
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)) {
     check_apart(members_);
     set_up();
     for (Member& member : members_) {
@@ -99,8 +99,6 @@ class Deforming : public Moving {
     return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
   }
 
-  const std::vector<Series>& series() const override { return series_; }
-
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
     const Net v = material_velocity(state);
     Moment whole;
@@ -110,7 +108,7 @@ class Deforming : public Moving {
     for (std::size_t p = 0; p < members_.size(); ++p) {
       const Moment now = moment(p, state, v, report);
       const Scene& one = members_[p].scene;
-      std::ranges::copy(tanktread::row(tanktread::series(one, one.particle.rigid() ? of_rigid : of_deforming), now),
+      std::ranges::copy(tanktread::row(series(one, one.particle.rigid() ? of_rigid : of_deforming), now),
                         std::back_inserter(of_particles));
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
       whole.velocity += now.velocity / static_cast<double>(members_.size());
@@ -120,7 +118,7 @@ class Deforming : public Moving {
       add_tube(*capsule_, state.x, whole);
     }
     if (all_) whole.nearest = smallest_gap(members_, state.x, ranks_);
-    std::vector<double> row = tanktread::row(tanktread::series(scene_, of_run), whole);
+    std::vector<double> row = tanktread::row(series(scene_, of_run), whole);
     row.insert(row.end(), of_particles.begin(), of_particles.end());
     return row;
   }
@@ -165,8 +163,7 @@ class Deforming : public Moving {
     Moment now = tanktread::moment(member.scene, body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
-    if (body.flow.affine())
-      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body.flow.gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
+    now.intrinsic_viscosity = intrinsic_viscosity(body, scene_.flow.viscosity, now);
     add_treading(member.scene, body, geometry(member), x, member.own(v), now);
     std::optional<double> angle;
     if (!capsule_->particles()[p].slides()) angle = angle_in(body.plane, surface::value(body.nested(), x, member.followed) - now.centre);
@@ -178,22 +175,10 @@ class Deforming : public Moving {
   /// The same for a rigid body.
   Moment rigid_moment(std::size_t p, const motion::State& state) {
     const Member& member = members_[p];
-    const Body& body = *member.body;
     const coupling::RigidParticles& rigid = capsule_->rigid_about(state.x, scene_.time.tolerance);
-    const Net x = member.own(state.x);
-    Moment now;
-    now.n_points = body.space.n_points;
-    now.measures = geometry(member).measures(x);
-    now.shape = deformation(geometry(member), body.plane, x, now.measures, ranks_);
-    now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
-    now.centre = now.measures.centroid;
-    const coupling::RigidMotion motion = rigid.motion(p);
-    now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
-    const Eigen::Quaterniond turn(rigid.turn(p));
-    now.quaternion << turn.w(), turn.vec();
+    Moment now = tanktread::rigid_moment(member.scene, *member.body, geometry(member), member.own(state.x), rigid.motion(p),
+                                         Eigen::Quaterniond(rigid.turn(p)), capsule_->stresslet(state.x, state.history.front(), p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
-    if (body.flow.affine())
-      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body.flow.gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
     return now;
   }
 
@@ -296,7 +281,6 @@ class Deforming : public Moving {
   std::vector<Member> members_;
   std::unique_ptr<Body> all_;  // several particles
   std::unique_ptr<coupling::Capsule> capsule_;
-  std::vector<Series> series_;
   coupling::Work work_;                     // of systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // the same
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had

@@ -67,9 +67,25 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
   return best;
 }
 
-double intrinsic_viscosity(const Mat3& stresslet, const Mat3& gradient, double viscosity, double volume) {
-  const Mat3 strain = (gradient + gradient.transpose()) / 2;
-  return stresslet.cwiseProduct(strain).sum() / (2 * viscosity * volume * strain.squaredNorm());
+double intrinsic_viscosity(const Body& body, double viscosity, const Moment& now) {
+  if (!body.flow.affine()) return 0;
+  const Mat3 gradient = body.flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
+  return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
+}
+
+Moment rigid_moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
+                    const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks) {
+  Moment now;
+  now.n_points = body.space.n_points;
+  now.measures = geometry.measures(x);
+  now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
+  now.axes = surface::principal_axes(now.measures);
+  now.stresslet = stresslet;
+  now.centre = now.measures.centroid;
+  now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
+  now.quaternion << turn.w(), turn.vec();
+  now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
+  return now;
 }
 
 namespace {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <span>
 
+#include <Eigen/Geometry>
+
 #include "app/body.hpp"
 #include "app/series.hpp"
 
@@ -20,8 +22,12 @@ void add_treading(const Scene& scene, const Body& body, const surface::Geometry&
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
-/// S:E/(2 mu V E:E), E the symmetric part of the gradient.
-double intrinsic_viscosity(const Mat3& stresslet, const Mat3& gradient, double viscosity, double volume);
+/// S:E/(2 mu V E:E) of the moment's stresslet S, E the symmetric part of the flow's gradient; 0 of a flow that is not affine.
+double intrinsic_viscosity(const Body& body, double viscosity, const Moment& now);
+
+/// What every rigid body has at x, where it moves and turns by `quaternion`, whose centre is the moment's; its stresslet. Collective.
+Moment rigid_moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
+                    const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
 
 /// Angle of y in the plane, in degrees from its first direction in the sense of tank-treading, in (-180, 180].
 double angle_in(const FlowPlane& plane, const Vec3& y);

@@ -18,8 +18,7 @@ class Free : public Moving {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
-        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()),
-        series_(tanktread::series(scene, of_free)) {
+        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()) {
     const Vec3& centre = scene.particle.shape.center;
     if (tube_)
       free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers,
@@ -48,7 +47,6 @@ class Free : public Moving {
   bool adapt(motion::State&, Standing&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
-  const std::vector<Series>& series() const override { return series_; }
 
   coupling::Work work() const override {
     coupling::Work work = before_;
@@ -62,26 +60,16 @@ class Free : public Moving {
   std::vector<Turning> turning() const override { return {turning_}; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
-    const Net x = free_->surface(state.x);
-    const coupling::RigidMotion motion = free_->motion(state.x);
-    Moment now;
+    const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
+    Moment now = rigid_moment(scene_, body_, geometry_, free_->surface(state.x), free_->motion(state.x), turn, free_->stresslet(state.x), ranks_);
+    now.centre = coupling::centre_of(state.x);
     now.time = state.time;
     now.step = report;
     now.wall_seconds = wall_seconds;
-    now.n_points = body_.space.n_points;
-    now.measures = geometry_.measures(x);
-    now.shape = deformation(geometry_, body_.plane, x, now.measures, ranks_);
-    now.axes = surface::principal_axes(now.measures);
-    now.stresslet = free_->stresslet(state.x);
-    now.centre = coupling::centre_of(state.x);
-    now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
-    now.quaternion << state.x(2, 0), state.x.row(1).transpose();
-    if (body_.flow.affine())
-      now.intrinsic_viscosity = intrinsic_viscosity(now.stresslet, body_.flow.gradient(now.centre), scene_.flow.viscosity, now.measures.volume);
     if (tube_) now.pressure_drop = free_->pressure_drop(state.x), now.gap = tube_->gap();
     add_turning(state.x, report.step, now);
     now.work = work();
-    return tanktread::row(series_, now);
+    return tanktread::row(series(scene_, of_free), now);
   }
 
   Portrait portrait(const motion::State& state) override {
@@ -116,7 +104,6 @@ class Free : public Moving {
   std::unique_ptr<coupling::Tube> tube_;
   coupling::Resistance resistance_;
   std::unique_ptr<coupling::RigidParticle> free_;
-  std::vector<Series> series_;
   Turning turning_;
   coupling::Work before_;  // of earlier parts of a resumed run
 };

@@ -1,5 +1,6 @@
 // tanktread [options] deck.yaml [overlay.yaml ...]: reads the command line and the decks, and runs the scene they describe.
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -8,11 +9,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/default_name.hpp"
+#include "app/plan.hpp"
 #include "app/provenance.hpp"
 #include "app/results.hpp"
 #include "app/scene.hpp"
-#include "app/series_manual.hpp"
+#include "app/series.hpp"
 #include "app/signals.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
@@ -22,6 +23,7 @@
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
+#include "output/checksum.hpp"
 
 namespace {
 
@@ -58,6 +60,32 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
+}
+
+bool portable(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '='; }
+
+std::string stem(const std::string& path) { return std::filesystem::path(path).stem(); }
+
+/// Of the directory of a run's results: `<deck>_<overlay>_<key>=<value>`, of files the name without its ending, of a key its last part, with `_` for
+/// all but letters, digits and `.-=`. A name above 100 characters is cut, and ends with a checksum of what it stands for.
+std::string default_name(const std::vector<std::string>& decks, const std::vector<std::string>& settings) {
+  constexpr std::size_t longest = 100;
+  std::string laid_over;
+  output::Checksum sum;
+  for (const std::string& deck : decks) {
+    sum.add(deck);
+    if (&deck != &decks.front()) laid_over += "_" + stem(deck);
+  }
+  for (const std::string& setting : settings) {
+    sum.add(setting);
+    const std::size_t key = setting.substr(0, setting.find('=')).rfind('/') + 1;
+    laid_over += "_" + setting.substr(key);
+  }
+  std::ranges::replace_if(laid_over, [](char c) { return !portable(c); }, '_');
+  const std::string name = stem(decks.front()) + laid_over;
+  if (laid_over.empty() || name.size() <= longest) return name;
+  const std::string end = "_" + sum.digits();
+  return name.substr(0, longest - end.size()) + end;
 }
 
 /// What may not differ from the deck of the checkpoint, which is read into `scene`.
@@ -140,8 +168,8 @@ int run(const Arguments& arguments, bool speaks) {
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
 
   if (arguments.check) {
-    const std::string plan = plan_text(scene, coupling::Ranks().size());
-    if (speaks) std::cout << deck.effective() << "\n" << plan;
+    const std::string chosen = plan_text(plan(scene, coupling::Ranks().size()));
+    if (speaks) std::cout << deck.effective() << "\n" << chosen;
     return done;
   }
   RunRequest request;

@@ -7,7 +7,7 @@
 
 #include "app/body.hpp"
 #include "app/scene.hpp"
-#include "app/turning.hpp"
+#include "app/standing.hpp"
 #include "app/warnings.hpp"
 #include "membrane/membrane.hpp"
 #include "output/checkpoint.hpp"

@@ -46,7 +46,6 @@ class Moving {
   virtual coupling::Work work() const = 0;
   virtual std::vector<Turning> turning() const = 0;                              ///< of each particle, as of the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual const std::vector<Series>& series() const = 0;
   virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< the extraction of body()
   virtual Portrait portrait(const motion::State& state) = 0;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "app/body.hpp"
+#include "output/summary.hpp"
 
 namespace tanktread {
 

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <optional>
 
-#include "app/numbers.hpp"
+#include "app/plan.hpp"
 #include "app/results.hpp"
 #include "app/signals.hpp"
 #include "app/tube.hpp"
@@ -98,29 +98,6 @@ Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) 
 
 }  // namespace
 
-output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks) {
-  const bool free = scene.particle.motion == "free";
-  output::Entries<std::string> fluid = {{"flow", unbounded_flow(scene)}};
-  if (body.wall) fluid = tube_plan(scene, body, ranks);
-  output::Entries<std::string> lines =
-         {{"surface", std::to_string(body.space.n_points) + " control points: " + body.space.description},
-          {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * body.space.n_points)},
-          {"particle", free && body.wall ? "rigid and free, no membrane: its motion is solved for with the traction, at each place"
-                       : free ? "rigid and free, no membrane: six rigid motions" +
-                                    std::string(body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
-                                    ", solved once, are all that it can meet"
-                            : "rigid, its motion prescribed: no membrane, nothing moves in time"},
-          {"forces", free ? scene.particle.force || scene.particle.torque || scene.particle.density_difference ? "as given" : "none"
-                     : scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves"
-                                                             : "integrals of the traction"},
-          {"time", free ? scene.time.scheme + " for centre and orientation" : "steady"},
-          {"assembled", formatted("%.1f MB on %d rank%s", 72e-6 * body.space.n_points * body.space.n_points, ranks, ranks > 1 ? "s" : "")},
-          {"numbers", numbers_text(numbers(scene, body))},
-          {"symmetry", "none used"}};
-  lines.insert(lines.begin() + 2, fluid.begin(), fluid.end());
-  return lines;
-}
-
 int resist(const Scene& scene, const RunRequest& request) {
   if (request.resume)
     throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with.");
@@ -129,7 +106,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   Phases phases = started();
   std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
   const Body body = tanktread::body(scene);
-  const output::Entries<std::string> chosen = rigid_plan(scene, body, ranks.size());
+  const output::Entries<std::string> chosen = plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());

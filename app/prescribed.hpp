@@ -31,8 +31,4 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
 
 /// Solves for the traction on the body, records one row and one picture. Exit code as of `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);
-
-/// The plan of a rigid particle, prescribed or free.
-output::Entries<std::string> rigid_plan(const Scene& scene, const Body& body, int ranks);
-
 }  // namespace tanktread

@@ -11,7 +11,6 @@
 #include "app/duct_picture.hpp"
 #include "app/numbers.hpp"
 #include "app/provenance.hpp"
-#include "app/together.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/expectation.hpp"
@@ -26,6 +25,25 @@ namespace tanktread {
 namespace {
 
 constexpr std::chrono::seconds second(1);
+
+/// Ranks act; if one fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else. Collective.
+template <class Act>
+void together(const coupling::Ranks& ranks, bool acts, const Act& action) {
+  std::string error;
+  bool mistake = false;
+  if (acts) {
+    try {
+      action();
+    } catch (const std::exception& exception) {
+      error = exception.what();
+      mistake = dynamic_cast<const UserError*>(&exception) != nullptr;
+    }
+  }
+  if (!ranks.any(!error.empty())) return;
+  if (error.empty()) error = "another rank could not do its part";
+  if (ranks.any(mistake)) throw UserError(error);
+  throw RunFailure(error);
+}
 
 /// Of a run, unlike any other's: sixteen hexadecimal digits.
 std::string identifier() {

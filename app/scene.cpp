@@ -75,13 +75,14 @@ struct Kinds {
   std::vector<ParticleKind>& all;
 
   void declare(deck::Section& section) {
-    section.each_alike(
+    section.each(
         "one of several particles: keys of Particle, and lists Membrane, Surface, Interface and Adaptation as they stand in a deck with one. What "
         "it does not say itself it takes from the list that its key `like` names, or from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
           all.emplace_back().name = name;
           all.back().declare(inner);
-        });
+        },
+        true);
     if (section.documenting()) all.clear();
     else if (all.empty()) throw UserError(section.path() + " names no particle.");
   }
@@ -200,9 +201,9 @@ void check_vectors(const Scene& scene) {
                                      most, unknowns, most_vector_bytes / 1e9, vectors));
 }
 
+/// Keys that need each other, or that have no meaning beside another one.
 void check_motion(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
-  const std::string motion = "Particle/motion `" + particle.motion + "`";
   if (particle.motion != "prescribed" && (particle.velocity || particle.angular_velocity))
     throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
                     " belongs to Particle/motion `prescribed`, but Particle/motion is `" + particle.motion + "`.");
@@ -211,51 +212,54 @@ void check_motion(const Scene& scene) {
                     particle.motion + (particle.rigid() ? "`: a body that moves as told takes whatever force that needs."
                                                         : "`: on what deforms a force is spread, by Particle/density difference and Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
-  if (particle.density_difference && particle.motion == "prescribed")
-    throw UserError("Particle/density difference and " + motion +
-                    " contradict each other: a body that moves as told takes whatever force that needs.");
-  if (particle.density_difference && scene.load_is_strong())
-    throw UserError("Particle/density difference and Membrane/load `strong` contradict each other: weight is part of the weak load.");
-  if (!particle.rigid()) return;
-  if (scene.membrane_given) throw UserError("Membrane and " + motion + " contradict each other: a rigid particle has no membrane.");
-  if (scene.volume_given) throw UserError("Volume and " + motion + " contradict each other: a rigid particle keeps its volume.");
-  if (particle.viscosity_ratio != 1)
-    throw UserError("Particle/viscosity ratio and " + motion + " contradict each other: there is no fluid in a rigid particle.");
-  if (scene.adaptation.enabled && scene.name.empty())
-    throw UserError("Adaptation/enabled and " + motion + " contradict each other: the mesh of a rigid particle stays as it is.");
-  if (particle.shape.initial)
-    throw UserError("Particle/initial shape and " + motion + " contradict each other: a rigid particle has the shape that it has.");
-  if (scene.time.steady_tolerance)
-    throw UserError("Time/steady tolerance and " + motion + " contradict each other: it ends runs of a particle that deforms.");
-}
-
-void check_flow(const Scene& scene) {
-  scene.flow.check();
-  if (scene.flow.history && scene.particle.motion == "prescribed" && scene.name.empty())
-    throw UserError("Flow/history and Particle/motion `prescribed` contradict each other: it is a steady problem.");
-  if (scene.flow.type == "parabolic" && scene.particle.drift == "held")
-    throw UserError("Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
-}
-
-void check_tube(const Scene& scene) {
-  const std::string flow = "Flow/type `" + scene.flow.type + "`";
-  if (!scene.tube.present) {
-    if (scene.flow.type == "duct") throw UserError(flow + " needs a list Tube, at least Tube/section.");
-    return;
-  }
-  scene.tube.check();
-  if (scene.flow.type != "duct" && scene.flow.type != "quiescent")
-    throw UserError("Tube and " + flow + " contradict each other: that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`.");
-  if (scene.quadrature.rule == "desingularised")
-    throw UserError("Quadrature/rule `desingularised` and Tube contradict each other: the wall is not closed.");
-}
-
-void check_adaptation(const Scene& scene) {
+  if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section.");
   if (scene.adaptation.film_resolution && scene.name.empty())
     throw UserError("Adaptation/film resolution is for several particles: there are no films between others.");
+  if (std::isnan(scene.time.final_time) && particle.motion != "prescribed")
+    throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
+}
+
+/// Every pair of choices, of whatever lists, that cannot be made together.
+void check_contradictions(const Scene& scene) {
+  const ParticleOptions& particle = scene.particle;
+  const bool rigid = particle.rigid(), told = particle.motion == "prescribed", alone = scene.name.empty(), held = particle.drift == "held";
+  const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
+  const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
+  const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
+  const std::string motion = "Particle/motion `" + particle.motion + "`", flow = "Flow/type `" + scene.flow.type + "`";
+  const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
+  const auto refuse = [](bool both, const std::string& one, const std::string& other, const char* why) {
+    if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
+  };
+  refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
+  refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", "Tube", flow,
+         "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");
+  refuse(tube && desingularised, "Quadrature/rule `desingularised`", "Tube", "the wall is not closed");
+  refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");
+  refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
+  refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
+  refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
+  refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");
+  refuse(rigid && adapts && alone, "Adaptation/enabled", motion, "the mesh of a rigid particle stays as it is");
+  refuse(rigid && particle.shape.initial, "Particle/initial shape", motion, "a rigid particle has the shape that it has");
+  refuse(rigid && scene.time.steady_tolerance, "Time/steady tolerance", motion, "it ends runs of a particle that deforms");
+  refuse(adapts && !scene.lands_on_snapshots(), "Output/between steps `interpolate`", "Adaptation/enabled",
+         "the mesh may change between two steps");
+  refuse(adapts && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`", "a spline space from a file has no mesh to refine");
+  refuse(scene.volume.constraint == "none" && !strong && scene.membrane.load_measure == "reference", "Volume/constraint `none`",
+         "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
+  refuse(!drop && strong && degenerate, "Membrane/load `strong`", "Surface/poles `plain`", "a degenerate element has no load at a pole");
+  refuse(desingularised && degenerate, "Quadrature/rule `desingularised`", "Surface/poles `plain`",
+         "a degenerate element has no normal at its pole");
+  refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
+  refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
+  refuse(held && (tube || rigid), "Particle/drift `held`", tube ? "Tube" : motion,
+         "it is for particles that deform in a flow whose gradient is the same everywhere");
+}
+
+/// Lengths that the mesh must be able to have.
+void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;
-  if (scene.particle.shape.imported)
-    throw UserError("Adaptation/enabled and Particle/shape `file` contradict each other: a spline space from a file has no mesh to refine.");
   // The side of a square that is one element's share of the sphere of equal volume.
   const double area = 4 * std::numbers::pi * scene.radius() * scene.radius();
   scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
@@ -291,39 +295,21 @@ void Scene::check_several() const {
 
 void Scene::check() const {
   if (!particles.empty()) return check_several();
-  check_flow(*this);
-  check_tube(*this);
+  flow.check();
+  check_motion(*this);
+  if (tube.present) tube.check();
   particle.shape.check();
   surface.check();
-  check_motion(*this);
   check_viscosity_ratio(*this);
   if (!particle.rigid()) membrane.check();
-  if (std::isnan(time.final_time) && particle.motion != "prescribed")
-    throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");
-  if (adaptation.enabled && !lands_on_snapshots())
-    throw UserError("Output/between steps `interpolate` and Adaptation/enabled contradict each other: the mesh may change between two steps.");
+  check_contradictions(*this);
   modulus();
   motion::TimeOptions in_its_unit = time;
   in_its_unit.unit = 1 / rate();
   in_its_unit.check();
-  if (volume.constraint == "none" && membrane.load == "weak" && membrane.load_measure == "reference")
-    throw UserError(
-        "Volume/constraint `none` and Membrane/load measure `reference` contradict each other: "
-        "the load per reference area (3.7) needs `flux` or `exact`.");
-  if (membrane.law != "surface tension" && membrane.load == "strong" && surface.polar() && surface.poles == "plain")
-    throw UserError("Membrane/load `strong` and Surface/poles `plain` contradict each other: a degenerate element has no load at a pole.");
-  if (quadrature.rule == "desingularised" && surface.polar() && surface.poles == "plain")
-    throw UserError("Quadrature/rule `desingularised` and Surface/poles `plain` contradict each other: a degenerate element has no normal "
-                    "at its pole.");
-  if (interface_motion() != "material" && membrane.law != "surface tension")
-    throw UserError("Interface/motion `" + interface_motion() + "` and Membrane/law `" + membrane.law +
-                    "` contradict each other: an elastic membrane moves with the fluid, `material`.");
-  if (particle.drift == "held" && (tube.present || particle.rigid()))
-    throw UserError("Particle/drift `held` and " + std::string(tube.present ? "Tube" : "Particle/motion `" + particle.motion + "`") +
-                    " contradict each other: it is for particles that deform in a flow whose gradient is the same everywhere.");
   check_adaptation(*this);
   check_size(*this);
   check_vectors(*this);

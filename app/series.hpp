@@ -85,6 +85,9 @@ double entry(const std::vector<Series>& series, const std::vector<double>& row, 
 /// Those of all particles, `name` and `<particle>/name`, in their order; without the run's own where particles have it.
 std::vector<double> entries_of_particles(const std::vector<Series>& series, const std::vector<double>& row, std::string_view name);
 
+/// Markdown: series and fields of the results, entries of the summary and numbers of a scene, each with its unit.
+std::string series_manual();
+
 /// Whether the unbounded flow has one rate of strain, which is not zero: what `intrinsic_viscosity` takes.
 bool strains(const Scene& scene);
 

@@ -1,5 +1,3 @@
-#include "app/series_manual.hpp"
-
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -8,6 +6,7 @@
 #include "app/duct_picture.hpp"
 #include "app/numbers.hpp"
 #include "app/series.hpp"
+#include "app/standing.hpp"
 
 namespace tanktread {
 
@@ -40,22 +39,8 @@ constexpr Entry entries[] = {
     {"final", "", "all", "last value of every series; of a prescribed body also the vectors `drag` and `torque`"},
     {"expect", "", "all", "of every Expect: name, value found, value expected, error, whether it passed"},
     {"counts", "1", "all", "work of the whole run"},
-    {"counts/steps", "1", "capsule, drop, free body", "steps"},
-    {"counts/refinements", "1", "capsule, drop, free body", "changes of the mesh that cut elements"},
-    {"counts/coarsenings", "1", "capsule, drop, free body", "changes of the mesh that merged elements"},
-    {"counts/evaluations", "1", "capsule, drop, free body", "velocity evaluations (4.2)"},
-    {"counts/assemblies", "1", "capsule, drop, free body", "assemblies of the frozen layer operator (4.3)"},
-    {"counts/tangents", "1", "capsule, drop, free body", "tangents of the membrane"},
-    {"counts/linear_solves", "1", "capsule, drop, free body", "linear solves of the implicit step; of a free body for its motion"},
-    {"counts/solver_iterations", "1", "all", "iterations of these; of a prescribed body of the solve for the traction"},
-    {"counts/solver_iterations_in_all", "1", "prescribed body", "with those of the solves that correct the forces (2.11)"},
-    {"counts/velocity_iterations", "1", "capsule, drop, free body", "iterations of the systems that velocities come from"},
-    {"counts/velocity_solves", "1", "capsule, drop, free body", "solves of these systems"},
-    {"counts/most_velocity_iterations", "1", "capsule, drop, free body", "iterations of one of them, at most"},
-    {"counts/kernel_evaluations_far", "1", "all", "evaluations of the kernels G and T (2.1), of all ranks: by far rules"},
-    {"counts/kernel_evaluations_near", "1", "all", "by near rules"},
-    {"counts/kernel_evaluations_self", "1", "all", "on the element of the target"},
     {"counts/unknowns", "1", "prescribed body", "unknowns of the traction"},
+    {"counts/solver_iterations_in_all", "1", "prescribed body", "with those of the solves that correct the forces (2.11)"},
     {"seconds", "s", "all", "wall time of the first rank by phase, which add up to the run's"},
     {"plan", "", "all", "what the run chose to compute, a line each"},
     {"numbers", "", "all", "derived and dimensionless numbers of the scene, below"},
@@ -104,6 +89,10 @@ std::string series_manual() {
   for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))
     text += line(one.name, one.unit, "", one.description);
   text += "\n## Summary\n\n`summary.yaml`.\n" + table("entry", entries);
+  const Standing none;
+  each_count(none, [&](const char* name, const char* of, const char* description, auto) {
+    text += line("counts/" + std::string(name), "1", of, description);
+  });
   text +=
       "\n## Numbers\n\n`numbers` of the summary and of the plan, where they have a meaning.\n\n| number | unit | what it is "
       "|\n|---|---|---|\n";

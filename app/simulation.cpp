@@ -9,12 +9,12 @@
 #include <numeric>
 #include <new>
 #include <optional>
-#include <sstream>
 
 #include "app/body.hpp"
 #include "app/gaps.hpp"
 #include "app/member.hpp"
 #include "app/moving.hpp"
+#include "app/plan.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
 #include "app/signals.hpp"
@@ -36,35 +36,10 @@ namespace {
 /// Why a run ends before its time, as its status says it.
 const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady";
 
-/// Wall clock of this run, earlier parts of a resumed one included.
-class Watch {
- public:
-  double here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  double seconds() const { return before_ + here(); }
-  void add(double before) { before_ += before; }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-  double before_ = 0;
-};
-
 output::Entries<long> counts(const Standing& standing) {
-  const coupling::Work& work = standing.work;
-  return {{"steps", standing.step},
-          {"refinements", standing.refinements},
-          {"coarsenings", standing.coarsenings},
-          {"evaluations", work.evaluations},
-          {"assemblies", work.assemblies},
-          {"tangents", work.tangents},
-          {"linear_solves", work.solves},
-          {"solver_iterations", work.solver_iterations},
-          {"velocity_iterations", work.velocity_iterations},
-          {"velocity_solves", work.velocity_solves},
-          {"most_velocity_iterations", work.most_velocity_iterations},
-          {"kernel_evaluations_far", static_cast<long>(standing.kernel.far)},
-          {"kernel_evaluations_near", static_cast<long>(standing.kernel.near)},
-          {"kernel_evaluations_self", static_cast<long>(standing.kernel.self)}};
+  output::Entries<long> all;
+  each_count(standing, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
+  return all;
 }
 
 /// Next multiple of the snapshot interval after `time`, or the final time.
@@ -88,7 +63,7 @@ class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->bezier(), particle_->series(), ranks_),
+        results_(scene, request, particle_->body(), particle_->bezier(), series_, ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);
   }
@@ -113,6 +88,9 @@ class Run {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
   void begin() {
     if (auto resumed = results_.resumed()) {
       resume(*resumed);
@@ -140,7 +118,7 @@ class Run {
     state_ = resumed.state;
     if (request_.another_scheme) motion::forget(state_);
     standing_ = resumed.standing;
-    watch_.add(standing_.wall_seconds);
+    earlier_wall_seconds_ = standing_.wall_seconds;
     warnings_.remember(standing_.warnings);
     earlier_seconds_ = standing_.seconds;
     const stokes::Evaluations again = coupling::of_all(particle_->kernel_evaluations(), ranks_), before = standing_.kernel;
@@ -201,8 +179,7 @@ class Run {
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     adapting_ = true;
     if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body(), particle_->bezier());
-    for (const Warning& remark : particle_->remarks())
-      if (warnings_.fresh(remark)) results_.warn(remark.sentence);
+    for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
   }
 
@@ -237,10 +214,12 @@ class Run {
   void warn_of_coarse_wall(double gap) {
     const double widest = particle_->body().wall->widest;
     if (gap > 0.6 * widest) return;
-    const Warning warning{"coarse wall",
-                          formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
-                                    "Tube/azimuthal elements and Tube/axial elements",
-                                    state_.time, gap, widest)};
+    warn({"coarse wall", formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
+                                   "Tube/azimuthal elements and Tube/axial elements",
+                                   state_.time, gap, widest)});
+  }
+
+  void warn(const Warning& warning) {
     if (warnings_.fresh(warning)) results_.warn(warning.sentence);
   }
 
@@ -268,17 +247,16 @@ class Run {
   void record() {
     const auto clock = phases_.time("diagnostics");
     particle_->dynamics().at(state_.time, began_);
-    row_ = particle_->row(state_, report_, watch_.seconds());
+    row_ = particle_->row(state_, report_, earlier_wall_seconds_ + seconds_here());
     coupling::take_first(row_);  // what is decided by it is decided alike
     look();
     const auto output = phases_.time("output");
     results_.record(row_);
   }
 
-  /// The mesh's quality, in every step once an element is in doubt, and now and then before. Throws RunFailure when one is folded.
+  /// The mesh's quality. Throws RunFailure when an element is folded.
   void judge() {
-    const bool doubtful = quality_.jacobian_ratio < 0.25;
-    if (scene_.particle.rigid() || (standing_.step % 4 != 0 && !doubtful)) return;
+    if (scene_.particle.rigid()) return;
     const auto clock = phases_.time("soundness");
     quality_ = soundness(particle_->bezier(), state_.x, ranks_);
   }
@@ -295,7 +273,7 @@ class Run {
     signs.jacobian_ratio = quality_.jacobian_ratio;
     signs.aspect_ratio = quality_.aspect_ratio;
     if (scene_.tube.present) signs.gap = entry("gap");
-    const std::vector<double> areas = entries_of_particles(particle_->series(), row_, "area");
+    const std::vector<double> areas = entries_of_particles(series_, row_, "area");
     const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
     signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
     for (const std::string& sentence : warnings_.look(signs)) results_.warn(sentence);
@@ -303,7 +281,7 @@ class Run {
 
   void save() {
     const auto clock = phases_.time("output");
-    standing_.wall_seconds = watch_.seconds();
+    standing_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     standing_.seconds = with_earlier(phases_, earlier_seconds_);
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     particle_->dynamics().at(pictured.time, began_);
@@ -338,7 +316,7 @@ class Run {
     if (!scene_.particles.empty()) end_at_contact();
     if (coupling::largest(told_to_stop()) > 0) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;
-    if (limit && ranks_.first(watch_.here()) > *limit) return by_clock;
+    if (limit && ranks_.first(seconds_here()) > *limit) return by_clock;
     const auto tolerance = scene_.time.steady_tolerance;
     if (tolerance && largest("shape_velocity") < *tolerance) return steady;
     return {};
@@ -369,19 +347,21 @@ class Run {
   double smallest(std::string_view name) const { return std::ranges::min(entries(name)); }
   double largest(std::string_view name) const { return std::ranges::max(entries(name)); }
   std::vector<double> entries(std::string_view name) const {
-    std::vector<double> all = entries_of_particles(particle_->series(), row_, name);
+    std::vector<double> all = entries_of_particles(series_, row_, name);
     if (all.empty()) all.push_back(0);
     return all;
   }
 
-  double entry(std::string_view name) const { return tanktread::entry(particle_->series(), row_, name); }
+  double entry(std::string_view name) const { return tanktread::entry(series_, row_, name); }
 
   const Scene& scene_;
   const RunRequest& request_;
-  Watch watch_;
+  const Clock::time_point start_ = Clock::now();
+  double earlier_wall_seconds_ = 0;  // of a resumed run
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // of what no other phase counts
   coupling::Ranks ranks_;
+  std::vector<Series> series_ = run_series(scene_);
   std::unique_ptr<Moving> particle_;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
@@ -418,22 +398,6 @@ int simulate(const Scene& scene, const RunRequest& request) {
 
 std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return scene.particle.motion == "free" ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
-}
-
-std::string plan_text(const Scene& scene, int ranks) {
-  std::vector<Member> all = members(scene);
-  check_apart(all);
-  arrange(all);
-  const std::unique_ptr<Body> stacked = together(all);
-  return plan_text(plan(scene, stacked ? *stacked : *all.front().body, ranks));
-}
-
-std::string plan_text(const output::Entries<std::string>& plan) {
-  std::ostringstream text;
-  for (const auto& [what, how] : plan) {
-    text << "  " << what << std::string(12 - std::min<size_t>(11, what.size()), ' ') << how << "\n";
-  }
-  return "plan\n" + text.str();
 }
 
 std::string stored_deck(const std::string& directory) {

@@ -30,10 +30,6 @@ constexpr int stopped = 4;
 /// where the run is told to stop before its first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
-/// The plan of `--check` as text: blocks, unknowns, memory, kernel evaluations. Collective.
-std::string plan_text(const Scene& scene, int ranks = 1);
-std::string plan_text(const output::Entries<std::string>& plan);  ///< of a plan that is made already
-
 /// The effective deck that the newest checkpoint of a directory holds. Throws as newest_checkpoint does. Collective.
 std::string stored_deck(const std::string& directory);
 

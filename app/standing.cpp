@@ -1,5 +1,7 @@
 #include "app/standing.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,32 +14,19 @@ namespace {
 
 constexpr std::string_view phase_prefix = "wall seconds of ";
 
-/// Every count of a standing with its name in the checkpoint.
-template <class Some, class Act>
-void each_count(Some& standing, const Act& act) {
-  act("step number", standing.step);
-  act("refinements", standing.refinements);
-  act("coarsenings", standing.coarsenings);
-  act("evaluations", standing.work.evaluations);
-  act("assemblies", standing.work.assemblies);
-  act("tangents", standing.work.tangents);
-  act("solves", standing.work.solves);
-  act("solver iterations", standing.work.solver_iterations);
-  act("velocity iterations", standing.work.velocity_iterations);
-  act("velocity solves", standing.work.velocity_solves);
-  act("most velocity iterations", standing.work.most_velocity_iterations);
-  act("kernel evaluations far", standing.kernel.far);
-  act("kernel evaluations near", standing.kernel.near);
-  act("kernel evaluations self", standing.kernel.self);
-  act("steps at the limit of stability", standing.warnings.limited);
-}
-
 std::string warning_name(std::size_t k) { return formatted("warning %04zu", k); }
 
 }  // namespace
 
+void Turning::advance(double step, double now, std::optional<double> angle) {
+  const double expected = degrees + (rate + now) / 2 * step * 180 / std::numbers::pi;
+  degrees = angle ? *angle + 360 * std::round((expected - *angle) / 360) : expected;
+  rate = now;
+}
+
 void store(const Standing& standing, output::Checkpoint& checkpoint) {
-  each_count(standing, [&](const char* name, const auto& count) { checkpoint.numbers[name] = static_cast<double>(count); });
+  each_count(standing, [&](const char* name, auto, auto, const auto& count) { checkpoint.numbers[name] = static_cast<double>(count); });
+  checkpoint.numbers["steps at the limit of stability"] = standing.warnings.limited;
   checkpoint.numbers["wall seconds"] = standing.wall_seconds;
   checkpoint.numbers["growth of waves"] = standing.warnings.waves;
   Eigen::MatrixXd turning(standing.turning.size(), 2);
@@ -51,7 +40,8 @@ void store(const Standing& standing, output::Checkpoint& checkpoint) {
 
 Standing stored_standing(const output::Checkpoint& checkpoint) {
   Standing standing;
-  each_count(standing, [&]<class Count>(const char* name, Count& count) { count = static_cast<Count>(checkpoint.numbers.at(name)); });
+  each_count(standing, [&]<class Count>(const char* name, auto, auto, Count& count) { count = static_cast<Count>(checkpoint.numbers.at(name)); });
+  standing.warnings.limited = static_cast<int>(checkpoint.numbers.at("steps at the limit of stability"));
   standing.wall_seconds = checkpoint.numbers.at("wall seconds");
   standing.warnings.waves = checkpoint.numbers.at("growth of waves");
   for (const auto& row : checkpoint.arrays.at("phase and tank-treading frequency").rowwise()) standing.turning.push_back({row[0], row[1]});

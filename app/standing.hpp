@@ -1,7 +1,9 @@
 #pragma once
 // Where a run stands beside its state, and how a checkpoint keeps it.
 
-#include "app/turning.hpp"
+#include <optional>
+#include <vector>
+
 #include "app/warnings.hpp"
 #include "coupling/capsule.hpp"
 #include "output/checkpoint.hpp"
@@ -9,6 +11,15 @@
 #include "stokes/kernels.hpp"
 
 namespace tanktread {
+
+/// The phase of a material point: its angle, counted on past whole turns, and the angular velocity that the surface was left with.
+struct Turning {
+  double degrees = 0, rate = 0;
+
+  /// A step on, in which the mean angular velocity of the surface became `now`: to the `angle` at which the point is, whole turns counted on, or
+  /// where no point is followed by the mean.
+  void advance(double step, double now, std::optional<double> angle);
+};
 
 /// What a run has done since its beginning, earlier parts of a resumed one included.
 struct Standing {
@@ -21,6 +32,26 @@ struct Standing {
   std::vector<Turning> turning;     ///< of each particle
   output::Entries<double> seconds;  ///< of the first rank, by phase
 };
+
+/// Calls act(name, whose, what it is, count) for every count, which checkpoints and the summary hold by these names.
+template <class Some, class Act>
+void each_count(Some& standing, const Act& act) {
+  constexpr const char *moving = "capsule, drop, free body", *all = "all";
+  act("steps", moving, "steps", standing.step);
+  act("refinements", moving, "changes of the mesh that cut elements", standing.refinements);
+  act("coarsenings", moving, "changes of the mesh that merged elements", standing.coarsenings);
+  act("evaluations", moving, "velocity evaluations (4.2)", standing.work.evaluations);
+  act("assemblies", moving, "assemblies of the frozen layer operator (4.3)", standing.work.assemblies);
+  act("tangents", moving, "tangents of the membrane", standing.work.tangents);
+  act("linear_solves", moving, "linear solves of the implicit step; of a free body for its motion", standing.work.solves);
+  act("solver_iterations", all, "iterations of these; of a prescribed body of the solve for the traction", standing.work.solver_iterations);
+  act("velocity_iterations", moving, "iterations of the systems that velocities come from", standing.work.velocity_iterations);
+  act("velocity_solves", moving, "solves of these systems", standing.work.velocity_solves);
+  act("most_velocity_iterations", moving, "iterations of one of them, at most", standing.work.most_velocity_iterations);
+  act("kernel_evaluations_far", all, "evaluations of the kernels G and T (2.1), of all ranks: by far rules", standing.kernel.far);
+  act("kernel_evaluations_near", all, "by near rules", standing.kernel.near);
+  act("kernel_evaluations_self", all, "on the element of the target", standing.kernel.self);
+}
 
 /// Adds all of `standing` to the checkpoint.
 void store(const Standing& standing, output::Checkpoint& checkpoint);

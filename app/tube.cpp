@@ -79,27 +79,6 @@ void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now) {
   now.gap = tube.gap();
 }
 
-output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks) {
-  const surface::TubeWall& wall = *body.wall;
-  const double unknowns = 3.0 * wall.space.n_points;
-  std::string own_flow = "quiescent fluid";
-  if (scene.flow.type == "duct")
-    own_flow =
-        formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
-  const auto needs_system = [](const Scene& one) { return one.particle.rigid() || one.particle.viscosity_ratio != 1; };
-  const bool system = std::ranges::any_of(scene.alone(), needs_system) || scene.solvers.tube != "schur";
-  const std::string solved = scene.particle.rigid()            ? std::string("eliminated from the system of the traction")
-                             : scene.solvers.tube != "schur"   ? "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube
-                             : system                          ? std::string("eliminated from the system of the velocity")
-                                                               : std::string("solved for directly");
-  return {{"flow", own_flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements))},
-          {"tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
-                             wall.space.description.c_str())},
-          {"wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
-                             "and as much of rows on all together",
-                             unknowns, solved.c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : "")}};
-}
-
 void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out

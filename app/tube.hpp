@@ -25,9 +25,6 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
 /// What the series in a tube are taken from: the particles at x. Collective.
 void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now);
 
-/// Lines of the plan.
-output::Entries<std::string> tube_plan(const Scene& scene, const Body& body, int ranks);
-
 /// Throws RunFailure where particles at x have drawn apart by more than the wall is long.
 void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 

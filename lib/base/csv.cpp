@@ -7,14 +7,11 @@
 #include "base/errors.hpp"
 
 namespace tanktread {
-namespace {
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
-
-}  // namespace
 
 std::vector<CsvRow> csv_rows(const std::string& text, const std::string& heading) {
   std::vector<CsvRow> rows;

@@ -6,6 +6,9 @@
 
 namespace tanktread {
 
+/// Without the blanks around it.
+std::string trimmed(const std::string& text);
+
 /// What stands between the commas of one line, without blanks around it.
 struct CsvRow {
   int line;

@@ -30,7 +30,6 @@ struct List {
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mentioned;  ///< names of lists that may stand here, but do not
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< set when the list belongs to another library
-  bool open = false;                                ///< the user chooses the names of its lists
 
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Teuchos_ParameterList.hpp>
 
@@ -19,190 +20,153 @@ namespace {
   throw UserError(path + " must be " + must + in + ", but is " + given + ".");
 }
 
-std::string rule_text(const Rule& rule, const std::string& kind) {
-  return rule.text == any().text ? "a " + kind : "a " + kind + ", " + rule.text;
-}
-
 /// Powers of a larger number, or of a smaller one, leave the range of double precision.
 bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-75 && std::abs(number) < 1e75)); }
 
-/// Unit of a number whose value the message repeats: checks type, size and rule.
-double checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit) {
-  const auto number = as_number(entry);
-  if (!number || !std::isfinite(*number) || !rule.holds(*number)) refuse(path, rule_text(rule, "number"), unit, description(entry));
-  if (!computable(*number)) refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
-  return *number;
+/// `a number, positive`; of several: `three numbers, each positive`.
+std::string with_rule(const std::string& numbers, const Rule& rule, bool several) {
+  return rule.text == any().text ? numbers : numbers + (several ? ", each " : ", ") + rule.text;
 }
 
-/// How many numbers an array has, in words.
+template <class Value>
+constexpr bool is_whole = std::is_same_v<Value, int>;
+
+template <class Value>
+constexpr bool is_single = is_whole<Value> || std::is_same_v<Value, double>;
+
+template <class Value>
+constexpr bool is_row = std::is_same_v<Value, std::vector<double>>;
+
+/// What a value is made of, in words.
+template <class Value>
+std::string kind() {
+  if constexpr (is_single<Value>) return is_whole<Value> ? "a whole number" : "a number";
+  else if constexpr (is_row<Value>) return "one number or more";
+  else return std::string(Value::SizeAtCompileTime == 2 ? "two" : Value::SizeAtCompileTime == 3 ? "three" : "nine") + " numbers";
+}
+
+/// The numbers of an entry as the value, of a matrix row by row.
+template <class Value>
+Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit) {
+  std::vector<double> numbers;
+  if constexpr (is_single<Value>) {
+    if (const auto number = as_number(entry)) numbers = {*number};
+  } else {
+    numbers = as_numbers(entry).value_or(numbers);
+  }
+  bool good = !numbers.empty();
+  if constexpr (!is_single<Value> && !is_row<Value>) good = numbers.size() == Value::SizeAtCompileTime;
+  for (const double x : numbers)
+    good = good && std::isfinite(x) && rule.holds(x) && (!is_whole<Value> || (x == std::floor(x) && std::abs(x) <= std::numeric_limits<int>::max()));
+  if (!good) refuse(path, with_rule(kind<Value>() + (is_single<Value> ? "" : " in brackets"), rule, !is_single<Value>), unit, description(entry));
+  if (!is_whole<Value> && !std::ranges::all_of(numbers, computable)) refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
+  if constexpr (is_single<Value>) return static_cast<Value>(numbers.front());
+  else if constexpr (is_row<Value>) return numbers;
+  else return Eigen::Map<const Eigen::Matrix<double, Value::ColsAtCompileTime, Value::RowsAtCompileTime>>(numbers.data()).transpose();
+}
+
+/// Values in YAML.
+std::string yaml(double value) { return real_text(value); }
+std::string yaml(int value) { return std::to_string(value); }
+std::string yaml(bool value) { return value ? "true" : "false"; }
+std::string yaml(const std::string& text) { return is_plain(text) ? text : in_quotes(text); }
+std::string yaml(const std::vector<double>& numbers) {
+  std::vector<std::string> words;
+  for (const double number : numbers) words.push_back(real_text(number));
+  return "[" + joined(words, ", ") + "]";
+}
 template <int rows, int columns>
-constexpr const char* count = rows * columns == 2 ? "two" : rows * columns == 3 ? "three" : "nine";
-
-/// `one number or more`, with the rule of each.
-std::string values_text(const std::string& wording, const Rule& each) { return wording + (each.text == any().text ? "" : ", each " + each.text); }
-
-/// Of any count other than zero where `size` is 0; `wording`: what they must be.
-std::vector<double> checked_numbers(const std::string& path, const Teuchos::ParameterEntry& entry, std::size_t size, const std::string& wording,
-                                    const Rule& each, std::string_view unit) {
-  const auto numbers = as_numbers(entry);
-  const bool fits = numbers && (size == 0 ? !numbers->empty() : numbers->size() == size);
-  bool good = fits;
-  if (fits)
-    for (const double number : *numbers) good = good && std::isfinite(number) && each.holds(number);
-  if (good && !std::all_of(numbers->begin(), numbers->end(), computable))
-    refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
-  if (!good) refuse(path, values_text(wording + " in brackets", each), unit, description(entry));
-  return *numbers;
+std::string yaml(const Eigen::Matrix<double, rows, columns>& values) {
+  const Eigen::Matrix<double, columns, rows> by_rows = values.transpose();
+  return yaml(std::vector<double>(by_rows.data(), by_rows.data() + by_rows.size()));
 }
 
-template <int rows, int columns>
-Eigen::Matrix<double, rows, columns> checked_array(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& each,
-                                                   std::string_view unit) {
-  const auto numbers = checked_numbers(path, entry, rows * columns, std::string(count<rows, columns>) + " numbers", each, unit);
-  return Eigen::Map<const Eigen::Matrix<double, rows, columns, columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>>(numbers.data());
-}
+/// What a field holds, which may be optional.
+template <class Field>
+struct Held {
+  using Value = Field;
+  static std::string text(const Field& field) { return yaml(field); }
+};
+template <class Field>
+struct Held<std::optional<Field>> {
+  using Value = Field;
+  static std::string text(const std::optional<Field>& field) { return field ? yaml(*field) : std::string(); }
+};
 
-template <int rows, int columns>
-std::string array_text(const Eigen::Matrix<double, rows, columns>& values) {
-  std::string out = "[";
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) out += (i + j > 0 ? ", " : "") + real_text(values(i, j));
-  return out + "]";
-}
-
-/// One statement of any type: `read` turns what was given into a value, `write` a value into YAML.
-template <class Value, class Field, class Read, class Write>
+/// One statement of any type: `read` turns what was given into a value.
+template <class Field, class Read>
 void state(List& list, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
-           const Read& read, const Write& write) {
-  constexpr bool optional = !std::is_same_v<Field, Value>;
-  const auto text = [&]() -> std::string {
-    if constexpr (optional)
-      return field ? write(*field) : std::string();
-    else
-      return write(field);
-  };
-  Entry entry{std::string(name), text(), values, std::string(unit), std::string(meaning), {}};
-  const Teuchos::ParameterEntry* given = list.given ? list.given->getEntryPtr(entry.key) : nullptr;
-  if (given) field = read(list.path_of(name), *given);
-  entry.value = text();
+           const Read& read) {
+  Entry entry{std::string(name), Held<Field>::text(field), values, std::string(unit), std::string(meaning), {}};
+  if (const Teuchos::ParameterEntry* given = list.given ? list.given->getEntryPtr(entry.key) : nullptr) field = read(list.path_of(name), *given);
+  entry.value = Held<Field>::text(field);
   list.entries.push_back(std::move(entry));
-}
-
-template <class Field>
-void state_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked(path, entry, rule, unit); };
-  state<double>(list, name, field, rule.text, unit, meaning, read, real_text);
-}
-
-template <class Field>
-void state_whole_number(List& list, std::string_view name, Field& field, const Rule& rule, std::string_view unit,
-                        std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    const auto number = as_whole_number(entry);
-    if (!number || !rule.holds(*number)) refuse(path, rule_text(rule, "whole number"), unit, description(entry));
-    return *number;
-  };
-  state<int>(list, name, field, "whole, " + rule.text, unit, meaning, read, [](int value) { return std::to_string(value); });
-}
-
-template <int rows, int columns, class Field>
-void state_array(List& list, std::string_view name, Field& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    return checked_array<rows, columns>(path, entry, each, unit);
-  };
-  const std::string values = values_text(std::string(count<rows, columns>) + " numbers", each);
-  state<Eigen::Matrix<double, rows, columns>>(list, name, field, values, unit, meaning, read, array_text<rows, columns>);
-}
-
-template <class Field>
-void state_text(List& list, std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    const auto text = as_text(entry);
-    if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
-    bool known = choice.empty();
-    for (const std::string& word : choice) known = known || (text && word == *text);
-    if (known) return *text;
-    const std::string meant = text ? guess(*text, choice) : std::string();
-    const std::string hint = meant.empty() ? "" : "; was `" + meant + "` meant?";
-    throw UserError(path + " must be " + alternatives(choice) + ", but is " + description(entry) + (hint.empty() ? "." : hint));
-  };
-  const auto write = [](const std::string& text) { return is_plain(text) ? text : in_quotes(text); };
-  std::string values;
-  for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
-  state<std::string>(list, name, field, choice.empty() ? "text" : values, "", meaning, read, write);
 }
 
 }  // namespace
 
+Rule any() {
+  return {"any number", [](double) { return true; }};
+}
+Rule positive() {
+  return {"positive", [](double x) { return x > 0.0; }};
+}
+Rule not_negative() {
+  return {"not negative", [](double x) { return x >= 0.0; }};
+}
+Rule at_least(double low) {
+  return {"at least " + number_text(low), [low](double x) { return x >= low; }};
+}
+Rule between(double low, double high) {
+  return {"between " + number_text(low) + " and " + number_text(high), [low, high](double x) { return x >= low && x <= high; }};
+}
+
 Section::Section(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
-void Section::key(std::string_view name, double& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
-  state_number(*state_->list, name, field, rule, unit, meaning);
+template <class Field>
+void Section::key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
+  using Value = typename Held<Field>::Value;
+  const std::string values = is_single<Value> ? (is_whole<Value> ? "whole, " : "") + rule.text : with_rule(kind<Value>(), rule, true);
+  state(*state_->list, name, field, values, unit, meaning,
+        [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked<Value>(path, entry, rule, unit); });
 }
 
-void Section::key(std::string_view name, std::optional<double>& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
-  state_number(*state_->list, name, field, rule, unit, meaning);
-}
-
-void Section::key(std::string_view name, int& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
-  state_whole_number(*state_->list, name, field, rule, unit, meaning);
-}
-
-void Section::key(std::string_view name, std::optional<int>& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
-  state_whole_number(*state_->list, name, field, rule, unit, meaning);
-}
-
-void Section::key(std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit,
-                  std::string_view meaning) {
-  state_array<2, 1>(*state_->list, name, field, each, unit, meaning);
-}
-
-void Section::key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_array<3, 1>(*state_->list, name, field, each, unit, meaning);
-}
-
-void Section::key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_array<3, 1>(*state_->list, name, field, each, unit, meaning);
-}
-
-void Section::key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_array<3, 3>(*state_->list, name, field, each, unit, meaning);
-}
-
-void Section::key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning) {
-  state_array<3, 3>(*state_->list, name, field, each, unit, meaning);
-}
-
-void Section::key(std::string_view name, std::optional<std::vector<double>>& field, const Rule& each, std::string_view unit,
-                  std::string_view meaning) {
-  const std::string wording = "one number or more";
-  const auto read = [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
-    return checked_numbers(path, entry, 0, wording, each, unit);
-  };
-  const auto write = [](const std::vector<double>& numbers) {
-    std::string text;
-    for (const double number : numbers) text += (text.empty() ? "[" : ", ") + real_text(number);
-    return text + "]";
-  };
-  state<std::vector<double>>(*state_->list, name, field, values_text(wording, each), unit, meaning, read, write);
-}
+template void Section::key(std::string_view, double&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, std::optional<double>&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, int&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, std::optional<int>&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, std::optional<Eigen::Vector2d>&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, Vec3&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, std::optional<Vec3>&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, Mat3&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, std::optional<Mat3>&, const Rule&, std::string_view, std::string_view);
+template void Section::key(std::string_view, std::optional<std::vector<double>>&, const Rule&, std::string_view, std::string_view);
 
 void Section::key(std::string_view name, bool& field, std::string_view meaning) {
-  const auto read = [](const std::string& path, const Teuchos::ParameterEntry& entry) {
+  state(*state_->list, name, field, "true or false", "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
     const auto truth = as_truth(entry);
     if (!truth) refuse(path, "true or false", "", description(entry));
     return *truth;
-  };
-  state<bool>(*state_->list, name, field, "true or false", "", meaning, read, [](bool value) { return value ? "true" : "false"; });
+  });
 }
 
-void Section::key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning) {
-  state_text(*state_->list, name, field, choice, meaning);
+template <class Field>
+void Section::key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
+  std::string values;
+  for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
+  state(*state_->list, name, field, choice.empty() ? "text" : values, "", meaning,
+        [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
+          const auto text = as_text(entry);
+          if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
+          if (text && (choice.empty() || std::ranges::count(choice, *text) > 0)) return *text;
+          const std::string meant = text ? guess(*text, choice) : std::string();
+          throw UserError(path + " must be " + alternatives(choice) + ", but is " + description(entry) +
+                          (meant.empty() ? "." : "; was `" + meant + "` meant?"));
+        });
 }
 
-void Section::key(std::string_view name, std::optional<std::string>& field, const Choice& choice, std::string_view meaning) {
-  state_text(*state_->list, name, field, choice, meaning);
-}
+template void Section::key(std::string_view, std::string&, const Choice&, std::string_view);
+template void Section::key(std::string_view, std::optional<std::string>&, const Choice&, std::string_view);
 
 Section Section::enter(std::string_view name, std::string_view meaning) {
   List& outer = *state_->list;
@@ -228,19 +192,6 @@ void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterL
 }
 
 void Section::mention(std::string_view list) { state_->list->mentioned.emplace_back(list); }
-
-void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use) {
-  List& list = *state_->list;
-  list.open = true;
-  std::vector<std::string> names;
-  if (list.given)
-    for (const auto& item : *list.given) names.push_back(item.first);
-  if (state_->documenting) names = {"<name>"};
-  for (const std::string& name : names) {
-    Section inner = enter(name, meaning);
-    use(name, inner);
-  }
-}
 
 namespace {
 
@@ -268,19 +219,18 @@ std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::
 
 }  // namespace
 
-void Section::each_alike(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use) {
+void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike) {
   List& list = *state_->list;
-  list.open = true;
-  list.mentioned.emplace_back("defaults");
+  if (alike) list.mentioned.emplace_back("defaults");
   std::vector<std::string> names;
   if (list.given)
     for (const auto& item : *list.given)
-      if (item.first != "defaults") names.push_back(item.first);
+      if (!alike || item.first != "defaults") names.push_back(item.first);
   if (state_->documenting) names = {"<name>"};
   for (const std::string& name : names) {
     Section inner = enter(name, meaning);
     List& one = *inner.state_->list;
-    if (one.given) one.merged = with_shared(list, name, {}), one.given = one.merged.get();
+    if (alike && one.given) one.merged = with_shared(list, name, {}), one.given = one.merged.get();
     use(name, inner);
   }
 }

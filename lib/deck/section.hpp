@@ -43,21 +43,15 @@ using Choice = std::vector<std::string>;
 /// unknown keys are reported by the reader after all statements were made, with a guess of what was meant.
 class Section {
  public:
-  void key(std::string_view name, double& field, const Rule& rule, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, std::optional<double>& field, const Rule& rule, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, int& field, const Rule& rule, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, std::optional<int>& field, const Rule& rule, std::string_view unit, std::string_view meaning);
+  /// `Field`: a double, an int, three numbers, nine row by row, or one of these, two numbers, or a std::vector of any length, that is optional.
+  template <class Field>
+  void key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning);
+
+  /// Text, which may be optional.
+  template <class Field>
+  void key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning);
+
   void key(std::string_view name, bool& field, std::string_view meaning);
-  void key(std::string_view name, std::string& field, const Choice& choice, std::string_view meaning);
-  void key(std::string_view name, std::optional<std::string>& field, const Choice& choice, std::string_view meaning);
-  void key(std::string_view name, std::optional<Eigen::Vector2d>& field, const Rule& each, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, Vec3& field, const Rule& each, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, std::optional<Vec3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, Mat3& field, const Rule& each, std::string_view unit,
-           std::string_view meaning);  ///< nine numbers, row by row
-  void key(std::string_view name, std::optional<Mat3>& field, const Rule& each, std::string_view unit, std::string_view meaning);
-  void key(std::string_view name, std::optional<std::vector<double>>& field, const Rule& each, std::string_view unit,
-           std::string_view meaning);  ///< one number or more
 
   /// A list inside this one, stated by `options.declare(Section&)`.
   template <class Options>
@@ -72,12 +66,9 @@ class Section {
   /// Names a list that this one may hold, and does not, in messages on names that it does not hold.
   void mention(std::string_view list);
 
-  /// Lists whose names the user chooses (Expect/<name>): `use` is called with each name and its section.
-  void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
-
-  /// The same, where lists share what they do not say themselves: with the list that their key `like` names, and with the one named `defaults`, which
-  /// is none of them.
-  void each_alike(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use);
+  /// Lists whose names the user chooses (Expect/<name>): `use` is called with each name and its section. Those that are `alike` take what they do not
+  /// say themselves from the list that their key `like` names, or from the one named `defaults`, which is none of them.
+  void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike = false);
 
   /// Whether the user gave this key (for contradictory alternatives), and its path for messages.
   bool given(std::string_view name) const;

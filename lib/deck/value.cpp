@@ -1,8 +1,5 @@
 #include "deck/value.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include <Teuchos_ParameterList.hpp>
 #include <Teuchos_TwoDArray.hpp>
 
@@ -25,12 +22,6 @@ std::vector<double> doubles(const Values& values) {
   return out;
 }
 
-std::string bracketed(const std::vector<std::string>& words) {
-  std::string out = "[";
-  for (std::size_t i = 0; i < words.size(); ++i) out += (i > 0 ? ", " : "") + words[i];
-  return out + "]";
-}
-
 /// Everything that Teuchos reads from YAML or XML and that a deck may hold, as YAML.
 std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   if (const auto* value = held<double>(entry)) return real_text(*value);
@@ -42,13 +33,13 @@ std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   if (const auto* texts = held<Teuchos::Array<std::string>>(entry)) {
     std::vector<std::string> words;
     for (const auto& text : *texts) words.push_back(in_quotes(text));
-    return bracketed(words);
+    return "[" + joined(words, ", ") + "]";
   }
   const bool real = held<Teuchos::Array<double>>(entry) || held<Teuchos::TwoDArray<double>>(entry);
   std::vector<std::string> words;
   for (const double value : as_numbers(entry).value_or(std::vector<double>{}))
     words.push_back(real ? real_text(value) : number_text(value));
-  return bracketed(words);
+  return "[" + joined(words, ", ") + "]";
 }
 
 }  // namespace
@@ -61,21 +52,14 @@ std::optional<double> as_number(const Teuchos::ParameterEntry& entry) {
   return std::nullopt;
 }
 
-std::optional<int> as_whole_number(const Teuchos::ParameterEntry& entry) {
-  const auto number = as_number(entry);
-  if (!number || *number != std::floor(*number) || std::abs(*number) > std::numeric_limits<int>::max()) return std::nullopt;
-  return static_cast<int>(*number);
-}
-
 std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry) {
-  if (const auto* value = held<bool>(entry)) return *value;
-  return std::nullopt;
+  const auto* value = held<bool>(entry);
+  return value ? std::optional(*value) : std::nullopt;
 }
 
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry) {
   const auto* value = held<std::string>(entry);
-  if (!value) return std::nullopt;
-  return *value;
+  return value ? std::optional(*value) : std::nullopt;
 }
 
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry) {

@@ -14,7 +14,6 @@ namespace tanktread::deck {
 
 /// The entry as the type, or nothing if it is of another one. Whole numbers are numbers, too.
 std::optional<double> as_number(const Teuchos::ParameterEntry& entry);
-std::optional<int> as_whole_number(const Teuchos::ParameterEntry& entry);
 std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< a row, or rows of a table one after the other

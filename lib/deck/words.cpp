@@ -35,20 +35,16 @@ std::string in_quotes(const std::string& text) {
   return out + "\"";
 }
 
-bool is_plain(const std::string& text) {
-  if (text.empty() || !std::isalpha(static_cast<unsigned char>(text.front())) || text.back() == ' ') return false;
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == ' ' || c == '-' || c == '_'; };
-  if (!std::all_of(text.begin(), text.end(), allowed)) return false;
-  std::string lower = text;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const char* word : {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf", "infinity"})
-    if (lower == word) return false;
-  return true;
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+bool is_plain(const std::string& text) {
+  if (text.empty() || !std::isalpha(static_cast<unsigned char>(text.front())) || text.back() == ' ') return false;
+  if (!std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) || c == ' ' || c == '-' || c == '_'; })) return false;
+  constexpr const char* others[] = {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf", "infinity"};
+  return std::ranges::count(others, lower_case(text)) == 0;
 }
 
 std::string shortened(const std::string& text, std::size_t most) {
@@ -70,11 +66,6 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
 }
 
 namespace {
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// Optimal string alignment distance.
 int edit_distance(const std::string& a, const std::string& b) {

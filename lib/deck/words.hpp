@@ -18,8 +18,8 @@ std::string in_quotes(const std::string& text);
 /// Whether YAML reads the bare word as this very text (no number, no truth value, no punctuation).
 bool is_plain(const std::string& text);
 
-/// Without the blanks around it.
-std::string trimmed(const std::string& text);
+/// Letters of ASCII.
+std::string lower_case(std::string text);
 
 /// The text itself, or its beginning and `...`, at most `most` bytes together.
 std::string shortened(const std::string& text, std::size_t most);

@@ -1,7 +1,6 @@
 #include "deck/yaml.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <map>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include <yaml-cpp/yaml.h>
 #include <Teuchos_ParameterList.hpp>
 
+#include "base/csv.hpp"
 #include "base/errors.hpp"
 #include "deck/source.hpp"
 #include "deck/synonyms.hpp"
@@ -24,11 +24,6 @@ namespace {
 constexpr int most_levels = 20;              // of lists in lists
 constexpr std::size_t most_nodes = 100'000;  // keys and values, counted again wherever an alias repeats them
 constexpr std::size_t longest_key = 100;     // characters
-
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 template <class Number>
 bool reads(const std::string& text, Number& number) {
@@ -54,24 +49,22 @@ Teuchos::ParameterEntry typed(const YAML::Node& node) {
   return Teuchos::ParameterEntry(text);
 }
 
+template <class Number>
+Teuchos::ParameterEntry row(const std::vector<Teuchos::ParameterEntry>& entries) {
+  Teuchos::Array<Number> values;
+  for (const auto& entry : entries) values.push_back(static_cast<Number>(*as_number(entry)));
+  return Teuchos::ParameterEntry(values);
+}
+
 /// Numbers or words in a row, as the first type that all of them can be read as.
 Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   std::vector<Teuchos::ParameterEntry> entries;
   for (const YAML::Node& node : nodes) entries.push_back(typed(node));
-  const auto all = [&](const auto& holds) { return std::ranges::all_of(entries, holds); };
-  if (all([](const auto& entry) { return entry.template isType<int>(); })) {
-    Teuchos::Array<int> row;
-    for (const auto& entry : entries) row.push_back(Teuchos::getValue<int>(entry));
-    return Teuchos::ParameterEntry(row);
-  }
-  if (all([](const auto& entry) { return as_number(entry).has_value(); })) {
-    Teuchos::Array<double> row;
-    for (const auto& entry : entries) row.push_back(*as_number(entry));
-    return Teuchos::ParameterEntry(row);
-  }
-  Teuchos::Array<std::string> row;
-  for (const YAML::Node& node : nodes) row.push_back(node.Scalar());
-  return Teuchos::ParameterEntry(row);
+  if (std::ranges::all_of(entries, [](const auto& entry) { return entry.template isType<int>(); })) return row<int>(entries);
+  if (std::ranges::all_of(entries, [](const auto& entry) { return as_number(entry).has_value(); })) return row<double>(entries);
+  Teuchos::Array<std::string> words;
+  for (const YAML::Node& node : nodes) words.push_back(node.Scalar());
+  return Teuchos::ParameterEntry(words);
 }
 
 /// From a tree of YAML to lists of entries.

@@ -39,10 +39,7 @@ struct Tumbling {
   Vec3 axis() const { return coupling::rotation_of(state.x) * scene.particle.shape.rotation() * Vec3(1, 0, 0); }
 
   double inclination() {
-    const std::vector<double> row = body->row(state, {}, 0);
-    for (size_t k = 0; k < row.size(); ++k)
-      if (body->series()[k].name == "inclination") return row[k];
-    return NAN;
+    return entry(run_series(scene), body->row(state, {}, 0), "inclination");
   }
 };
 

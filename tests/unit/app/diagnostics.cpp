@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "app/flow_plane.hpp"
-#include "app/turning.hpp"
+#include "app/standing.hpp"
 #include "base/errors.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"

@@ -1,0 +1,182 @@
+#include "app/plan.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/gaps.hpp"
+#include "app/member.hpp"
+#include "app/numbers.hpp"
+#include "base/formatted.hpp"
+#include "coupling/frozen_operator.hpp"
+#include "stokes/layer_surface.hpp"
+
+namespace tanktread {
+
+namespace {
+
+using Lines = output::Entries<std::string>;
+
+std::string on_ranks(int ranks) { return formatted("on %d rank%s", ranks, ranks > 1 ? "s" : ""); }
+
+std::string surface_line(const Body& body) {
+  return formatted("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
+                   body.space.description.c_str());
+}
+
+/// How the unknowns of a tube's wall are found.
+std::string wall_solver(const Scene& scene) {
+  if (scene.particle.rigid()) return "eliminated from the system of the traction";
+  if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
+  const auto has_system = [](const Scene& one) { return one.particle.rigid() || one.particle.viscosity_ratio != 1; };
+  return std::ranges::any_of(scene.alone(), has_system) ? "eliminated from the system of the velocity" : "solved for directly";
+}
+
+void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
+  if (!body.wall) {
+    const std::string history = scene.flow.history ? ", changing in time" : "";
+    lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
+    return;
+  }
+  const surface::TubeWall& wall = *body.wall;
+  const double unknowns = 3.0 * wall.space.n_points;
+  std::string flow = "quiescent fluid";
+  if (scene.flow.type == "duct")
+    flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
+  lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));
+  lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
+                                       wall.space.description.c_str()));
+  lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
+                                       "and as much of rows on all together",
+                                       unknowns, wall_solver(scene).c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : ""));
+}
+
+std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
+  if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
+  return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
+                   scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
+}
+
+std::string membrane_line(const Scene& scene) {
+  const std::string load = scene.membrane.law + ", load " + scene.membrane.load;
+  if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
+  if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
+  if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";
+  return load + " per current area (3.6), mass matrix factored every evaluation";
+}
+
+std::string mesh_line(const Scene& scene) {
+  if (!scene.adaptation.enabled) return "fixed";
+  return std::string("refined as the particle deforms") + (scene.adaptation.indicator == "error" ? ", by estimated errors (1.5)" : " (P-37)");
+}
+
+/// `pairs`: of control points, all that are in the frozen operator.
+std::string time_line(const Scene& scene, double pairs, int ranks) {
+  const bool chosen = scene.time.scheme == "auto";
+  const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
+  if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
+  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node a control point, not assembled";
+  return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
+}
+
+std::string symmetry_line(const Scene& scene, const Body& body) {
+  if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
+  if (body.symmetry.order() == 1) return body.wall ? "none looked for in a tube" : "none found";
+  const int evaluated = static_cast<int>(body.symmetry.fundamental().size());
+  return body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less; whatever would break it is left out "
+                                                 "(Symmetry/use)",
+                                                 evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
+}
+
+/// What is solved for of a rigid particle, prescribed or free.
+std::string rigid_line(const Scene& scene, const Body& body) {
+  if (scene.particle.motion == "prescribed") return "rigid, its motion prescribed: no membrane, nothing moves in time";
+  if (body.wall) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
+  return std::string("rigid and free, no membrane: six rigid motions") +
+         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") + ", solved once, are all that it can meet";
+}
+
+std::string forces_line(const Scene& scene) {
+  const ParticleOptions& particle = scene.particle;
+  if (particle.motion == "free") return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
+  return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
+}
+
+Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
+  const int n = body.space.n_points;
+  Lines lines = {{"surface", std::to_string(n) + " control points: " + body.space.description},
+                 {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * n)}};
+  add_fluid(lines, scene, body, ranks);
+  lines.emplace_back("particle", rigid_line(scene, body));
+  lines.emplace_back("forces", forces_line(scene));
+  lines.emplace_back("time", scene.particle.motion == "free" ? scene.time.scheme + " for centre and orientation" : "steady");
+  lines.emplace_back("assembled", formatted("%.1f MB ", 72e-6 * n * n) + on_ranks(ranks));
+  lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
+  lines.emplace_back("symmetry", "none used");
+  return lines;
+}
+
+/// What one of several particles is; alike ones share a line.
+std::string particle_line(const Scene& one, int n_points, bool tree) {
+  if (!one.particle.rigid()) return membrane_line(one) + "; " + viscosity_line(one, n_points, tree) + "; mesh " + mesh_line(one);
+  return formatted("rigid, %s: no membrane, no mesh that moves; a double layer, in a system of %d unknowns a velocity (2.23)",
+                   one.particle.motion == "free" ? "free" : "moving as told", 3 * n_points);
+}
+
+Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
+  const bool tree = stokes::sums_by_tree(all.space, scene.quadrature);
+  const double n = all.space.n_points;
+  Lines lines = {{"particles", formatted("%zu, in one system", scene.particles.size())},
+                 {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
+  add_fluid(lines, scene, all, ranks);
+  lines.emplace_back("far sum", tree ? "by clusters of nodes and targets" : "every target meets every node");
+  lines.emplace_back("volume", scene.volume.constraint + ", of each");
+  lines.emplace_back("time", time_line(scene, n * n, ranks));
+  lines.emplace_back("symmetry", "none looked for among several particles");
+  std::string last;
+  for (const Scene& one : scene.alone()) {
+    const std::string line = particle_line(one, all.space.n_points, tree);
+    if (lines.back().second == line)
+      last = " … " + one.name;
+    else
+      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name, line);
+  }
+  lines.back().first += last;
+  return lines;
+}
+
+}  // namespace
+
+output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
+  if (!scene.particles.empty()) return plan_of_several(scene, body, ranks);
+  if (scene.particle.rigid()) return plan_of_rigid(scene, body, ranks);
+  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
+  const int n = body.space.n_points;
+  Lines lines = {{"surface", surface_line(body)}, {"unknowns", formatted("%d positions", 3 * n)}};
+  add_fluid(lines, scene, body, ranks);
+  lines.emplace_back("viscosity", viscosity_line(scene, n, tree));
+  lines.emplace_back("membrane", membrane_line(scene));
+  lines.emplace_back("deformation", body.plane.description());
+  lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
+  lines.emplace_back("far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node");
+  lines.emplace_back("volume", scene.volume.constraint);
+  lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
+  lines.emplace_back("mesh", mesh_line(scene));
+  lines.emplace_back("symmetry", symmetry_line(scene, body));
+  return lines;
+}
+
+output::Entries<std::string> plan(const Scene& scene, int ranks) {
+  std::vector<Member> all = members(scene);
+  check_apart(all);
+  arrange(all);
+  const std::unique_ptr<Body> stacked = together(all);
+  return plan(scene, stacked ? *stacked : *all.front().body, ranks);
+}
+
+std::string plan_text(const output::Entries<std::string>& plan) {
+  std::string text = "plan\n";
+  for (const auto& [what, how] : plan) text += formatted("  %-11s ", what.c_str()) + how + "\n";
+  return text;
+}
+
+}  // namespace tanktread
