@@ -11,7 +11,7 @@
 #include "app/drift.hpp"
 #include "app/gaps.hpp"
 #include "app/member.hpp"
-#include "app/moving.hpp"
+#include "app/particle_system.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -25,7 +25,7 @@ namespace tanktread {
 
 namespace {
 
-class Deforming : public Moving {
+class Deforming : public ParticleSystem {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)) {
@@ -48,19 +48,19 @@ class Deforming : public Moving {
     const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), resumed.state.x).order() != body().symmetry.order();
     if (another_mesh || another_symmetry) settle(resumed.state.x);
     if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
-    capsule_->work() = resumed.standing.work;
-    for (std::size_t p = 0; p < members_.size(); ++p) members_[p].turning = resumed.standing.turning.at(p);
+    capsule_->work() = resumed.totals.work;
+    for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle.at(p);
     return another_mesh;
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
 
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
-  bool adapt(motion::State& state, Standing& standing) override {
+  bool adapt(motion::State& state, RunTotals& totals) override {
     before_.clear();
     if (holds_centre_) hold_centre(capsule_->flow(), capsule_->geometry(), scene_.particle.shape.center, state);
     const auto due = [&](const Member& member) {
-      return member.scene.adaptation.enabled && standing.step % member.scene.adaptation.interval == 0;
+      return member.scene.adaptation.enabled && totals.step % member.scene.adaptation.interval == 0;
     };
     if (std::ranges::none_of(members_, due)) return false;
     const auto clock = phases_.time("adaptation");
@@ -68,7 +68,7 @@ class Deforming : public Moving {
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(capsule_->load(state.x)));
     for (std::size_t p = 0; p < members_.size(); ++p)
-      if (due(members_[p])) adapt(p, loads[p], state, standing);
+      if (due(members_[p])) adapt(p, loads[p], state, totals);
     if (before_.empty()) return false;
     settle(state.x);
     capsule_->restore_volume(state.x);
@@ -88,9 +88,9 @@ class Deforming : public Moving {
 
   coupling::Work work() const override { return capsule_->work(); }
 
-  std::vector<Turning> turning() const override {
-    std::vector<Turning> all;
-    for (const Member& member : members_) all.push_back(member.turning);
+  std::vector<PhaseAngle> phase_angle() const override {
+    std::vector<PhaseAngle> all;
+    for (const Member& member : members_) all.push_back(member.phase_angle);
     return all;
   }
 
@@ -123,7 +123,7 @@ class Deforming : public Moving {
     return row;
   }
 
-  Portrait portrait(const motion::State& state) override {
+  SurfacePicture picture(const motion::State& state) override {
     const Net load = capsule_->load(state.x);
     const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
     return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) { return fields(nodes, state.x, load, velocity); }};
@@ -167,8 +167,8 @@ class Deforming : public Moving {
     add_treading(member.scene, body, geometry(member), x, member.own(v), now);
     std::optional<double> angle;
     if (!capsule_->particles()[p].slides()) angle = angle_in(body.plane, surface::value(body.nested(), x, member.followed) - now.centre);
-    member.turning.advance(report.step, now.treading.frequency, angle);
-    now.phase = member.turning.degrees;
+    member.phase_angle.advance(report.step, now.treading.frequency, angle);
+    now.phase = member.phase_angle.degrees;
     return now;
   }
 
@@ -183,7 +183,7 @@ class Deforming : public Moving {
   }
 
   /// Another mesh for particle p, if its present one asks for it.
-  void adapt(std::size_t p, const Net& load, motion::State& state, Standing& standing) {
+  void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
     if (all_) widths = films(members_, p, state.x);
@@ -196,7 +196,7 @@ class Deforming : public Moving {
     member.block.n_points += more;
     if (placed_ && placed_->holds(p)) fit_again(p, state.x);
     for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
-    (change.finer ? standing.refinements : standing.coarsenings) += 1;
+    (change.finer ? totals.refinements : totals.coarsenings) += 1;
   }
 
   /// The shape of a rigid body is known: on another mesh it is fitted again, and goes where it was.
@@ -291,7 +291,7 @@ class Deforming : public Moving {
 
 }  // namespace
 
-std::unique_ptr<Moving> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return std::make_unique<Deforming>(scene, ranks, phases);
 }
 

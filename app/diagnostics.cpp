@@ -45,51 +45,6 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
   return site;
 }
 
-}  // namespace
-
-spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane) {
-  constexpr int intervals = 4;
-  spline::Site best;
-  double most = -2;
-  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
-    const surface::ElementPoints element(space, x, e);
-    const auto of = [&](const spline::Site& site) { return ahead(plane, surface::place(element.patch(), site.s, site.t) - from); };
-    spline::Site start;
-    double nearest = -2;
-    for (int k = 0; k < intervals * intervals; ++k) {
-      const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
-      if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
-    }
-    if (nearest < 0.5) continue;  // no element of a closed surface is seen at so wide an angle
-    for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
-      if (const double here = of(site); here > most + 1e-12) best = site, most = here;
-  }
-  return best;
-}
-
-double intrinsic_viscosity(const Body& body, double viscosity, const Moment& now) {
-  if (!body.flow.affine()) return 0;
-  const Mat3 gradient = body.flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
-  return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
-}
-
-Moment rigid_moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
-                    const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks) {
-  Moment now;
-  now.n_points = body.space.n_points;
-  now.measures = geometry.measures(x);
-  now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
-  now.axes = surface::principal_axes(now.measures);
-  now.stresslet = stresslet;
-  now.centre = now.measures.centroid;
-  now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
-  now.quaternion << turn.w(), turn.vec();
-  now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
-  return now;
-}
-
-namespace {
-
 /// Rate x R_C, or the mean velocity in a tube; of a fluid at rest R_C per unit of time.
 double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
 
@@ -146,6 +101,47 @@ Whole whole(const Scene& scene, const Body& body, const surface::Geometry& geome
 
 }  // namespace
 
+spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane) {
+  constexpr int intervals = 4;
+  spline::Site best;
+  double most = -2;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const surface::ElementPoints element(space, x, e);
+    const auto of = [&](const spline::Site& site) { return ahead(plane, surface::place(element.patch(), site.s, site.t) - from); };
+    spline::Site start;
+    double nearest = -2;
+    for (int k = 0; k < intervals * intervals; ++k) {
+      const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
+      if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
+    }
+    if (nearest < 0.5) continue;  // no element of a closed surface is seen at so wide an angle
+    for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
+      if (const double here = of(site); here > most + 1e-12) best = site, most = here;
+  }
+  return best;
+}
+
+double intrinsic_viscosity(const Body& body, double viscosity, const Moment& now) {
+  if (!body.flow.affine()) return 0;
+  const Mat3 gradient = body.flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
+  return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
+}
+
+Moment rigid_moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
+                    const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks) {
+  Moment now;
+  now.n_points = body.space.n_points;
+  now.measures = geometry.measures(x);
+  now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
+  now.axes = surface::principal_axes(now.measures);
+  now.stresslet = stresslet;
+  now.centre = now.measures.centroid;
+  now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
+  now.quaternion << turn.w(), turn.vec();
+  now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
+  return now;
+}
+
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& of_flow, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks) {
   const FlowPlane plane = of_flow.holds_flow ? of_flow : plane_normal_to(surface::principal_axes(measures).directions.col(1));
@@ -155,17 +151,10 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
     extremes[0] = surface::section_distances(surface::Patches(geometry.bezier(), plane.turned(x), own), plane.components(measures.centroid));
     measures.second_moments = plane.axes * measures.second_moments * plane.axes.transpose();
   }
-  const size_t n = 2 * extremes.size();
-  std::vector<double> ends(n * static_cast<size_t>(ranks.size()), 0.);  // of all ranks, one after another
-  for (size_t k = 0; k < extremes.size(); ++k) {
-    double* const mine = &ends[n * static_cast<size_t>(ranks.rank()) + 2 * k];
-    mine[0] = extremes[k].smallest, mine[1] = extremes[k].largest;
-  }
-  ranks.add(ends);
-  for (size_t k = 0; k < ends.size(); k += 2) {
-    surface::Range& range = extremes[k % n / 2];
-    range = wider(range, {ends[k], ends[k + 1]});
-  }
+  std::array<double, 2 * surface::Geometry::n_extremes> ends;
+  for (size_t k = 0; k < extremes.size(); ++k) ends[2 * k] = extremes[k].smallest, ends[2 * k + 1] = extremes[k].largest;
+  for (const auto& of_rank : gathered(ranks, ends))
+    for (size_t k = 0; k < extremes.size(); ++k) extremes[k] = wider(extremes[k], {of_rank[2 * k], of_rank[2 * k + 1]});
   return surface::Geometry::deformation(measures, extremes);
 }
 

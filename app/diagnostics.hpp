@@ -1,8 +1,11 @@
 #pragma once
 // What the rows of the series are made of.
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -10,6 +13,17 @@
 #include "app/series.hpp"
 
 namespace tanktread {
+
+/// What every rank has, in their order. Collective.
+template <std::size_t n>
+std::vector<std::array<double, n>> gathered(const coupling::Ranks& ranks, const std::array<double, n>& mine) {
+  std::vector<double> all(n * static_cast<std::size_t>(ranks.size()), 0.);
+  std::ranges::copy(mine, all.begin() + static_cast<std::ptrdiff_t>(n) * ranks.rank());
+  ranks.add(all);
+  std::vector<std::array<double, n>> values(all.size() / n);
+  for (std::size_t k = 0; k < all.size(); ++k) values[k / n][k % n] = all[k];
+  return values;
+}
 
 /// What every capsule and drop has that its own shape x and slope tell. Collective.
 Moment moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,

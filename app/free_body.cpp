@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "app/member.hpp"
-#include "app/moving.hpp"
+#include "app/particle_system.hpp"
 #include "app/tube.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
@@ -14,7 +14,7 @@ namespace tanktread {
 
 namespace {
 
-class Free : public Moving {
+class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
@@ -33,18 +33,18 @@ class Free : public Moving {
   /// Counts go on as if the set-up had been done once.
   bool resume(Resumed& resumed) override {
     const coupling::Work again = work();
-    before_ = resumed.standing.work;
+    before_ = resumed.totals.work;
     before_.assemblies -= again.assemblies;
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
-    turning_ = resumed.standing.turning.at(0);
+    phase_angle_ = resumed.totals.phase_angle.at(0);
     return false;
   }
   void store(output::Checkpoint& checkpoint) const override {
     checkpoint.arrays["unstressed"] = body_.unstressed;
     checkpoint.arrays["initial"] = body_.rest;
   }
-  bool adapt(motion::State&, Standing&) override { return false; }
+  bool adapt(motion::State&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
 
@@ -57,7 +57,7 @@ class Free : public Moving {
     return work;
   }
 
-  std::vector<Turning> turning() const override { return {turning_}; }
+  std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
@@ -72,7 +72,7 @@ class Free : public Moving {
     return tanktread::row(series(scene_, of_free), now);
   }
 
-  Portrait portrait(const motion::State& state) override {
+  SurfacePicture picture(const motion::State& state) override {
     const Net x = free_->surface(state.x), f = free_->force_density(state.x),
               v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
     return {x, [f, v](const output::Nodes& nodes) {
@@ -88,8 +88,8 @@ class Free : public Moving {
     const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);
     now.treading.velocity = surface::tank_treading(geometry_.bezier(), plane.turned(x), plane.turned(v), nullptr, centre, moves).velocity;
     now.treading.frequency = plane.components(now.angular_velocity)[1];
-    turning_.advance(step, now.treading.frequency, angle_in(plane, coupling::rotation_of(place) * plane.axes.row(0).transpose()));
-    now.phase = turning_.degrees;
+    phase_angle_.advance(step, now.treading.frequency, angle_in(plane, coupling::rotation_of(place) * plane.axes.row(0).transpose()));
+    now.phase = phase_angle_.degrees;
   }
 
   long iterations() const {
@@ -104,13 +104,13 @@ class Free : public Moving {
   std::unique_ptr<coupling::Tube> tube_;
   coupling::Resistance resistance_;
   std::unique_ptr<coupling::RigidParticle> free_;
-  Turning turning_;
+  PhaseAngle phase_angle_;
   coupling::Work before_;  // of earlier parts of a resumed run
 };
 
 }  // namespace
 
-std::unique_ptr<Moving> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return std::make_unique<Free>(scene, ranks, phases);
 }
 

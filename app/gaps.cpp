@@ -25,31 +25,29 @@ struct Placed {
   Placed(const surface::BezierMap& map, const Net& x) : patches(map, x), boxes(patches) {}
 };
 
-struct Two {
-  double bound;
-  int first, second;
+struct Pair {
+  double bound;  ///< the gap is at least this
+  std::size_t first, second;
 };
 
 /// The nearest of all pairs of which `mine` is true, those first that can be nearest.
 template <class Mine>
 Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const Mine& mine) {
   std::vector<std::unique_ptr<Placed>> placed;
-  for (std::size_t p = 0; p < members.size(); ++p) placed.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
-  std::vector<Two> pairs;
+  std::vector<Pair> pairs;
   double radius = 0;
-  for (int p = 0; p < static_cast<int>(members.size()); ++p) {
-    radius = std::max(radius, members[static_cast<std::size_t>(p)].body->radius);
-    for (int q = p + 1; q < static_cast<int>(members.size()); ++q)
-      pairs.push_back({distance(placed[static_cast<std::size_t>(p)]->boxes.boxes()[0], placed[static_cast<std::size_t>(q)]->boxes.boxes()[0]), p, q});
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    placed.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
+    radius = std::max(radius, members[p].body->radius);
+    for (std::size_t q = 0; q < p; ++q) pairs.push_back({distance(placed[q]->boxes.boxes()[0], placed[p]->boxes.boxes()[0]), q, p});
   }
-  std::ranges::sort(pairs, {}, &Two::bound);
+  std::ranges::stable_sort(pairs, {}, &Pair::bound);
   Nearest found;
   for (std::size_t k = 0; k < pairs.size() && pairs[k].bound < found.gap; ++k) {
     if (!mine(k)) continue;
     const auto& [bound, p, q] = pairs[k];
-    const surface::ClosestPoints closest = surface::closest_points(placed[static_cast<std::size_t>(p)]->boxes,
-                                                                   placed[static_cast<std::size_t>(q)]->boxes, accuracy * radius, found.gap);
-    if (closest.gap < found.gap) found = {closest.gap, p + 1, q + 1, (closest.first + closest.second) / 2};
+    const surface::ClosestPoints closest = surface::closest_points(placed[p]->boxes, placed[q]->boxes, accuracy * radius, found.gap);
+    if (closest.gap < found.gap) found = {closest.gap, static_cast<int>(p) + 1, static_cast<int>(q) + 1, (closest.first + closest.second) / 2};
   }
   return found;
 }
@@ -99,14 +97,11 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
   for (const Member& member : members) own.push_back(member.own(x));
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
   const Nearest of_rank = nearest(members, own, mine);
-  std::vector<double> all(6 * static_cast<std::size_t>(ranks.size()), 0.);
-  double* const here = &all[6 * static_cast<std::size_t>(ranks.rank())];
-  here[0] = std::min(of_rank.gap, std::numeric_limits<double>::max()), here[1] = of_rank.first, here[2] = of_rank.second;
-  std::copy_n(of_rank.place.data(), 3, here + 3);
-  ranks.add(all);
+  const std::array<double, 6> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
+                                   of_rank.place[0], of_rank.place[1], of_rank.place[2]};
   Nearest found;
-  for (std::size_t k = 0; k < all.size(); k += 6)
-    if (all[k] < found.gap) found = {all[k], static_cast<int>(all[k + 1]), static_cast<int>(all[k + 2]), {all[k + 3], all[k + 4], all[k + 5]}};
+  for (const auto& [gap, first, second, x1, x2, x3] : gathered(ranks, here))
+    if (gap < found.gap) found = {gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}};
   return found;
 }
 

@@ -233,7 +233,7 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  heed_signals();
+  catch_signals();
   const coupling::Session session(&argc, &argv);
   std::string message;
   const int code = guarded(argc, argv, session.rank() == 0, message);

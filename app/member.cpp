@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "app/exact_body.hpp"
 #include "app/results.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
@@ -15,12 +16,18 @@ membrane::Material material(const Scene& scene, const Body& body) {
   return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed"}};
 }
 
+Eigen::MatrixXd numbers_of(const auto& values) {
+  Eigen::MatrixXd numbers(values.size(), 1);
+  for (std::size_t k = 0; k < values.size(); ++k) numbers(static_cast<Eigen::Index>(k)) = values[k];
+  return numbers;
+}
+
 }  // namespace
 
 coupling::Rigid rigid(const Scene& scene, const Body& body) {
   const ParticleOptions& particle = scene.particle;
   const auto given = [](const std::optional<Vec3>& vector) { return vector.value_or(Vec3::Zero()); };
-  return {particle.motion == "prescribed", {given(particle.velocity), given(particle.angular_velocity)},
+  return {particle.motion == Motion::prescribed, prescribed_motion(scene),
           given(particle.force) + body.volume * scene.body_force(), given(particle.torque)};
 }
 
@@ -105,16 +112,6 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   parameters.symmetry = all.symmetry;
   return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
 }
-
-namespace {
-
-Eigen::MatrixXd numbers_of(const auto& values) {
-  Eigen::MatrixXd numbers(values.size(), 1);
-  for (std::size_t k = 0; k < values.size(); ++k) numbers(static_cast<Eigen::Index>(k)) = values[k];
-  return numbers;
-}
-
-}  // namespace
 
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
   for (const Member& member : members) {

@@ -7,7 +7,7 @@
 
 #include "app/body.hpp"
 #include "app/scene.hpp"
-#include "app/standing.hpp"
+#include "app/run_totals.hpp"
 #include "app/warnings.hpp"
 #include "membrane/membrane.hpp"
 #include "output/checkpoint.hpp"
@@ -27,7 +27,7 @@ struct Member {
   std::unique_ptr<membrane::Membrane> membrane;
   spline::Place place;    ///< of the material point whose phase is told, in the nested space
   spline::Site followed;  ///< the same on the present mesh
-  Turning turning;
+  PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }   ///< in checkpoints and sentences

@@ -89,7 +89,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
 
 /// What is solved for of a rigid particle, prescribed or free.
 std::string rigid_line(const Scene& scene, const Body& body) {
-  if (scene.particle.motion == "prescribed") return "rigid, its motion prescribed: no membrane, nothing moves in time";
+  if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
   if (body.wall) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
   return std::string("rigid and free, no membrane: six rigid motions") +
          (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") + ", solved once, are all that it can meet";
@@ -97,7 +97,7 @@ std::string rigid_line(const Scene& scene, const Body& body) {
 
 std::string forces_line(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
-  if (particle.motion == "free") return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
+  if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
   return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
 }
 
@@ -108,7 +108,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   add_fluid(lines, scene, body, ranks);
   lines.emplace_back("particle", rigid_line(scene, body));
   lines.emplace_back("forces", forces_line(scene));
-  lines.emplace_back("time", scene.particle.motion == "free" ? scene.time.scheme + " for centre and orientation" : "steady");
+  lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("assembled", formatted("%.1f MB ", 72e-6 * n * n) + on_ranks(ranks));
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   lines.emplace_back("symmetry", "none used");
@@ -119,7 +119,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
 std::string particle_line(const Scene& one, int n_points, bool tree) {
   if (!one.particle.rigid()) return membrane_line(one) + "; " + viscosity_line(one, n_points, tree) + "; mesh " + mesh_line(one);
   return formatted("rigid, %s: no membrane, no mesh that moves; a double layer, in a system of %d unknowns a velocity (2.23)",
-                   one.particle.motion == "free" ? "free" : "moving as told", 3 * n_points);
+                   one.particle.motion == Motion::free ? "free" : "moving as told", 3 * n_points);
 }
 
 Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {

@@ -31,6 +31,37 @@ Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::fun
 
 double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
 
+Moment moment(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
+              const stokes::Evaluations& kernel, double seconds) {
+  Moment now;
+  now.wall_seconds = seconds;
+  now.n_points = body.space.n_points;
+  now.work.solver_iterations = s.iterations;
+  now.kernel_evaluations = static_cast<double>(kernel.total());
+  now.measures = surface::measures(body.space, body.rest);
+  now.stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
+  now.drag = s.force, now.torque = s.torque;
+  now.drag_error = s.error, now.drag_error_of_traction = s.integral_error, now.torque_error = s.torque_error;
+  now.pressure_error = s.surface.pressure, now.normal_error = s.surface.normal;
+  now.pressure_drop = s.pressure_drop, now.gap = s.gap;
+  return now;
+}
+
+SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution& s) {
+  const auto exact = exact_body(scene);
+  return {body.rest, [&body, &s, exact](const auto& nodes) {
+            const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
+            const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
+            std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
+            if (exact) {
+              Eigen::VectorXd error(pressure.size());
+              for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = pressure[i] - exact->pressure(x.row(i).transpose());
+              fields.push_back({"pressure error", error});
+            }
+            return fields;
+          }};
+}
+
 }  // namespace
 
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
@@ -63,41 +94,6 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
   return s;
 }
 
-namespace {
-
-Moment moment(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
-              const stokes::Evaluations& kernel, double seconds) {
-  Moment now;
-  now.wall_seconds = seconds;
-  now.n_points = body.space.n_points;
-  now.work.solver_iterations = s.iterations;
-  now.kernel_evaluations = static_cast<double>(kernel.total());
-  now.measures = surface::measures(body.space, body.rest);
-  now.stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
-  now.drag = s.force, now.torque = s.torque;
-  now.drag_error = s.error, now.drag_error_of_traction = s.integral_error, now.torque_error = s.torque_error;
-  now.pressure_error = s.surface.pressure, now.normal_error = s.surface.normal;
-  now.pressure_drop = s.pressure_drop, now.gap = s.gap;
-  return now;
-}
-
-Portrait portrait(const Scene& scene, const Body& body, const RigidSolution& s) {
-  const auto exact = exact_body(scene);
-  return {body.rest, [&body, &s, exact](const auto& nodes) {
-            const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
-            const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
-            std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
-            if (exact) {
-              Eigen::VectorXd error(pressure.size());
-              for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = pressure[i] - exact->pressure(x.row(i).transpose());
-              fields.push_back({"pressure error", error});
-            }
-            return fields;
-          }};
-}
-
-}  // namespace
-
 int resist(const Scene& scene, const RunRequest& request) {
   if (request.resume)
     throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with.");
@@ -120,11 +116,11 @@ int resist(const Scene& scene, const RunRequest& request) {
   const std::vector<double> only = row(all, moment(scene, body, resistance, solution, kernel, seconds));
 
   clock.emplace(phases, "output");
-  Results results(scene, request, body, surface::BezierMap(body.space), all, ranks);
+  Results results(scene, request, body, surface::BezierMap(body.space), ranks);
   results.record(only);
   motion::State state;
   state.x = body.rest;
-  results.save({}, state, {}, portrait(scene, body, solution), state.time);
+  results.save({}, state, {}, picture(scene, body, solution), state.time);
   clock.reset();
   Account account;
   account.plan = chosen;

@@ -59,7 +59,7 @@ UserError another_version(const std::filesystem::path& directory) {
 }
 
 Resumed stored_run(const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
-  return {output::stored_state(checkpoint), stored_standing(checkpoint), checkpoint};
+  return {output::stored_state(checkpoint), stored_totals(checkpoint), checkpoint};
 } catch (const std::out_of_range&) {
   throw another_version(directory);
 }
@@ -122,8 +122,8 @@ std::map<std::string, std::string> Results::origin() const {
 }
 
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map,
-                 const std::vector<Series>& series, const coupling::Ranks& ranks)
-    : scene_(scene), request_(request), body_(&body), series_of_run_(series), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+                 const coupling::Ranks& ranks)
+    : scene_(scene), request_(request), body_(&body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
   write([&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
@@ -152,7 +152,7 @@ void Results::keep(const std::filesystem::path& file, const std::filesystem::pat
 }
 
 void Results::declare_series() {
-  for (const Series& one : series_of_run_) record_->declare(one.name, one.unit, one.description);
+  for (const Series& one : run_series(scene_)) record_->declare(one.name, one.unit, one.description);
 }
 
 void Results::remesh(const Body& body, const surface::BezierMap& map) {
@@ -165,10 +165,10 @@ std::optional<Resumed> Results::resumed() {
   const output::Saved saved = newest_checkpoint(directory_, ranks_);
   const std::string chosen = saved.file.path.filename();
   Resumed resumed = stored_run(saved.checkpoint, directory_);
-  last_saved_ = resumed.standing.step;
+  last_saved_ = resumed.totals.step;
   if (saved.file.step != last_saved_)
     throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name", last_saved_));
-  for (const Warning& warning : resumed.standing.warnings.said) warnings_.push_back(warning.sentence);
+  for (const Warning& warning : resumed.totals.warnings.said) warnings_.push_back(warning.sentence);
   write([&] {
     load_record(saved.checkpoint, chosen);
     set_aside(saved.damaged, chosen);
@@ -226,27 +226,27 @@ void Results::write_surface(const Net& surface) {
   write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
 }
 
-void Results::save(output::Checkpoint checkpoint, const motion::State& state, const Standing& standing, const Portrait& portrait,
+void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const SurfacePicture& picture,
                    double picture_time) {
   write([&] {
     write_record();
-    complete(checkpoint, state, standing, picture_time);
-    std::vector<output::Field> fields = output::picture(*nodes_, portrait.surface);
-    std::ranges::move(portrait.fields(*nodes_), std::back_inserter(fields));
-    output::write_snapshot(directory_ / output::snapshot_name(standing.step), checkpoint, nodes_->mesh(), fields, durable());
+    complete(checkpoint, state, totals, picture_time);
+    std::vector<output::Field> fields = output::picture(*nodes_, picture.surface);
+    std::ranges::move(picture.fields(*nodes_), std::back_inserter(fields));
+    output::write_snapshot(directory_ / output::snapshot_name(totals.step), checkpoint, nodes_->mesh(), fields, durable());
     if (durable() == output::Durable::yes) output::sync(directory_);
-    series_->add(standing.step, picture_time);
+    series_->add(totals.step, picture_time);
   });
-  last_saved_ = standing.step;
+  last_saved_ = totals.step;
 }
 
-void Results::complete(output::Checkpoint& checkpoint, const motion::State& state, const Standing& standing, double picture_time) const {
+void Results::complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const {
   output::store(state, checkpoint);
-  store(standing, checkpoint);
+  store(totals, checkpoint);
   checkpoint.numbers["picture time"] = picture_time;
   checkpoint.texts["deck"] = request_.deck_text;
   checkpoint.texts["run"] = run_;
-  checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(standing.step) + 1);
+  checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(totals.step) + 1);
 }
 
 int Results::close(const Account& account, const Phases& phases) {

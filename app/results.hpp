@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/body.hpp"
-#include "app/moving.hpp"
+#include "app/particle_system.hpp"
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
 #include "motion/integrator.hpp"
@@ -54,8 +54,7 @@ void check_vacant(const RunRequest& request);
 /// that a run has written is when it ends.
 class Results {
  public:
-  Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const std::vector<Series>& series,
-          const coupling::Ranks& ranks);
+  Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
 
   /// The newest checkpoint of the directory when the run is resumed; the record is cut back to it. Throws UserError when there is none.
   std::optional<Resumed> resumed();
@@ -71,7 +70,7 @@ class Results {
   void warn(const std::string& sentence);
 
   /// Checkpoint of the present step and a picture, of the same moment or of one within the step. `checkpoint` holds what else the run goes on from.
-  void save(output::Checkpoint checkpoint, const motion::State& state, const Standing& standing, const Portrait& portrait, double picture_time);
+  void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const SurfacePicture& picture, double picture_time);
 
   /// The surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
@@ -90,7 +89,7 @@ class Results {
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_series();
-  void complete(output::Checkpoint& checkpoint, const motion::State& state, const Standing& standing, double picture_time) const;
+  void complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
   void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
   void write_record();
@@ -101,7 +100,6 @@ class Results {
   const Scene& scene_;
   const RunRequest& request_;
   const Body* body_;
-  std::vector<Series> series_of_run_;
   const coupling::Ranks& ranks_;
   bool writes_;
   std::string run_;  // its identifier

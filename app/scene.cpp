@@ -14,12 +14,21 @@
 
 namespace tanktread {
 
+namespace {
+
+const deck::Choice motion_words{"deforming", "prescribed", "free"};
+
+/// As the deck has it.
+std::string text(Motion motion) { return "`" + motion_words[static_cast<std::size_t>(motion)] + "`"; }
+
+}  // namespace
+
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
   section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
               "lambda: viscosity inside over viscosity outside; at most 1e14 x Solvers/tolerance, and from 1e5 on the particle hardly deforms: "
               "one that does not at all is rigid, Particle/motion `free`");
-  section.key("motion", motion, deck::Choice{"deforming", "prescribed", "free"},
+  section.key("motion", motion, motion_words,
               "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, of one "
               "particle a steady problem; `free`: rigid, with `force` and `torque`, by themselves zero");
   section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
@@ -87,44 +96,6 @@ struct Kinds {
     else if (all.empty()) throw UserError(section.path() + " names no particle.");
   }
 };
-
-}  // namespace
-
-void Scene::declare(deck::Section& root) {
-  root.section("Flow", flow, "the ambient flow and the outer fluid");
-  const bool several = root.given("Particles");
-  if (several) {
-    for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
-      if (root.given(list))
-        throw UserError(std::string(list) + " and Particles contradict each other: each particle has its own, in Particles/<name>, and what "
-                                            "they share is said once in Particles/defaults.");
-  } else {
-    root.section("Particle", particle, "the particle at rest");
-    declare_lists(root);
-  }
-  if (Kinds kinds{particles}; several || root.documenting())
-    root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
-  else
-    root.mention("Particles");
-  if (several || root.documenting())
-    root.section("Contact", contact, "what happens where several particles come close");
-  volume_given = root.given("Volume");
-  const bool deforming = !particle.rigid();
-  tube.present = root.given("Tube");
-  if (tube.present || root.documenting())
-    root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
-  else
-    root.mention("Tube");
-  if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
-  root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
-  root.section("Time", time, "integration in time");
-  root.section("Symmetry", symmetry, "what of the scene is solved for");
-  root.section("Solvers", solvers, "solvers of linear systems");
-  root.section("Output", output, "results");
-  root.section("Expect", expect, "expected results");
-}
-
-namespace {
 
 constexpr double most_bytes = 64e9;  // of the assembled operators of one surface, on all ranks together
 constexpr double doubles = 72;       // bytes of three rows and columns of one
@@ -204,29 +175,30 @@ void check_vectors(const Scene& scene) {
 /// Keys that need each other, or that have no meaning beside another one.
 void check_motion(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
-  if (particle.motion != "prescribed" && (particle.velocity || particle.angular_velocity))
+  if (particle.motion != Motion::prescribed && (particle.velocity || particle.angular_velocity))
     throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
-                    " belongs to Particle/motion `prescribed`, but Particle/motion is `" + particle.motion + "`.");
-  if (particle.motion != "free" && (particle.force || particle.torque))
-    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") + " is for Particle/motion `free`, but Particle/motion is `" +
-                    particle.motion + (particle.rigid() ? "`: a body that moves as told takes whatever force that needs."
-                                                        : "`: on what deforms a force is spread, by Particle/density difference and Flow/gravity."));
+                    " belongs to Particle/motion `prescribed`, but Particle/motion is " + text(particle.motion) + ".");
+  if (particle.motion != Motion::free && (particle.force || particle.torque))
+    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") + " is for Particle/motion `free`, but Particle/motion is " +
+                    text(particle.motion) + (particle.rigid() ? ": a body that moves as told takes whatever force that needs."
+                                                              : ": on what deforms a force is spread, by Particle/density difference and "
+                                                                "Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
   if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section.");
   if (scene.adaptation.film_resolution && scene.name.empty())
     throw UserError("Adaptation/film resolution is for several particles: there are no films between others.");
-  if (std::isnan(scene.time.final_time) && particle.motion != "prescribed")
+  if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed)
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
 }
 
 /// Every pair of choices, of whatever lists, that cannot be made together.
 void check_contradictions(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
-  const bool rigid = particle.rigid(), told = particle.motion == "prescribed", alone = scene.name.empty(), held = particle.drift == "held";
+  const bool rigid = particle.rigid(), told = particle.motion == Motion::prescribed, alone = scene.name.empty(), held = particle.drift == "held";
   const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
   const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
-  const std::string motion = "Particle/motion `" + particle.motion + "`", flow = "Flow/type `" + scene.flow.type + "`";
+  const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
   const auto refuse = [](bool both, const std::string& one, const std::string& other, const char* why) {
     if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
@@ -266,6 +238,40 @@ void check_adaptation(const Scene& scene) {
 }
 
 }  // namespace
+
+void Scene::declare(deck::Section& root) {
+  root.section("Flow", flow, "the ambient flow and the outer fluid");
+  const bool several = root.given("Particles");
+  if (several) {
+    for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
+      if (root.given(list))
+        throw UserError(std::string(list) + " and Particles contradict each other: each particle has its own, in Particles/<name>, and what "
+                                            "they share is said once in Particles/defaults.");
+  } else {
+    root.section("Particle", particle, "the particle at rest");
+    declare_lists(root);
+  }
+  if (Kinds kinds{particles}; several || root.documenting())
+    root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
+  else
+    root.mention("Particles");
+  if (several || root.documenting())
+    root.section("Contact", contact, "what happens where several particles come close");
+  volume_given = root.given("Volume");
+  const bool deforming = !particle.rigid();
+  tube.present = root.given("Tube");
+  if (tube.present || root.documenting())
+    root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
+  else
+    root.mention("Tube");
+  if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
+  root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
+  root.section("Time", time, "integration in time");
+  root.section("Symmetry", symmetry, "what of the scene is solved for");
+  root.section("Solvers", solvers, "solvers of linear systems");
+  root.section("Output", output, "results");
+  root.section("Expect", expect, "expected results");
+}
 
 std::vector<Scene> Scene::alone() const {
   if (particles.empty()) return {*this};

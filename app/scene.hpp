@@ -21,11 +21,14 @@
 
 namespace tanktread {
 
+/// `Particle/motion`.
+enum class Motion { deforming, prescribed, free };
+
 /// `Particle/*`: the resting shape and what fills it.
 struct ParticleOptions {
   surface::ParticleShape shape;
   double viscosity_ratio = 1;  ///< lambda
-  std::string motion = "deforming";
+  Motion motion = Motion::deforming;
   std::optional<Vec3> velocity;          ///< of the centre, of a `prescribed` motion; zero if not given
   std::optional<Vec3> angular_velocity;  ///< about the centre; zero if not given
   std::optional<Vec3> force, torque;     ///< on a `free` body; zero if not given
@@ -33,7 +36,7 @@ struct ParticleOptions {
   std::optional<std::string> drift;      ///< `free`, `held`; see holds_centre
   std::optional<std::string> forces;     ///< on a `prescribed` body: `reciprocal`, `integral`
 
-  bool rigid() const { return motion != "deforming"; }
+  bool rigid() const { return motion != Motion::deforming; }
   void declare(deck::Section& section);
 };
 

@@ -191,8 +191,8 @@ std::vector<Series> series(const Scene& scene, Owner owner) {
 }
 
 std::vector<Series> run_series(const Scene& scene) {
-  if (scene.particle.motion == "free") return series(scene, of_free);
-  if (scene.particle.motion == "prescribed") return series(scene, of_prescribed);
+  if (scene.particle.motion == Motion::free) return series(scene, of_free);
+  if (scene.particle.motion == Motion::prescribed) return series(scene, of_prescribed);
   std::vector<Series> all = series(scene, of_run);
   for (const Scene& one : scene.alone())
     for (Series& own : series(one, one.particle.rigid() ? of_rigid : of_deforming)) {

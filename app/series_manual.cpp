@@ -6,7 +6,7 @@
 #include "app/duct_picture.hpp"
 #include "app/numbers.hpp"
 #include "app/series.hpp"
-#include "app/standing.hpp"
+#include "app/run_totals.hpp"
 
 namespace tanktread {
 
@@ -89,7 +89,7 @@ std::string series_manual() {
   for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))
     text += line(one.name, one.unit, "", one.description);
   text += "\n## Summary\n\n`summary.yaml`.\n" + table("entry", entries);
-  const Standing none;
+  const RunTotals none;
   each_count(none, [&](const char* name, const char* of, const char* description, auto) {
     text += line("counts/" + std::string(name), "1", of, description);
   });

@@ -9,29 +9,29 @@ namespace tanktread {
 
 namespace {
 
-volatile std::sig_atomic_t told = 0;
+volatile std::sig_atomic_t signalled = 0;
 
-void note(int signal) {
-  told = 1;
+void remember(int signal) {
+  signalled = 1;
   std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
-void heed_signals() {
+void catch_signals() {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler == SIG_IGN) continue;
     struct sigaction action {};
-    action.sa_handler = note;  // without SA_RESTART: a read that waits for ever ends
+    action.sa_handler = remember;  // without SA_RESTART: a read that waits for ever ends
     sigaction(signal, &action, nullptr);
   }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-bool told_to_stop() { return told != 0; }
+bool told_to_stop() { return signalled != 0; }
 
 void stop_where_told() {
   if (coupling::largest(told_to_stop()) > 0) throw motion::Stopped();

@@ -13,7 +13,7 @@
 #include "app/body.hpp"
 #include "app/gaps.hpp"
 #include "app/member.hpp"
-#include "app/moving.hpp"
+#include "app/particle_system.hpp"
 #include "app/plan.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
@@ -36,9 +36,9 @@ namespace {
 /// Why a run ends before its time, as its status says it.
 const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady";
 
-output::Entries<long> counts(const Standing& standing) {
+output::Entries<long> counts(const RunTotals& totals) {
   output::Entries<long> all;
-  each_count(standing, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
+  each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
   return all;
 }
 
@@ -62,8 +62,8 @@ motion::TimeOptions time_options(const Scene& scene) {
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), particle_(moving(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->bezier(), series_, ranks_),
+      : scene_(scene), request_(request), particle_(particle_system(scene, ranks_, phases_)),
+        results_(scene, request, particle_->body(), particle_->bezier(), ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);
   }
@@ -78,11 +78,11 @@ class Run {
     while (reason.empty() && state_.time < scene_.time.final_time) {
       reason = step();
       if (interrupted_) break;
-      progress.show({state_.time, standing_.step, report_.iterations, scene_.particle.rigid() ? 0 : largest("taylor_inertia")});
+      progress.show({state_.time, totals_.step, report_.iterations, scene_.particle.rigid() ? 0 : largest("taylor_inertia")});
       if (!reason.empty() || snapshot_due_) save_or_fail();
     }
     progress.close();
-    if (results_.last_saved() != standing_.step) save_or_fail();
+    if (results_.last_saved() != totals_.step) save_or_fail();
     clock_.reset();
     return end(reason);
   }
@@ -110,18 +110,18 @@ class Run {
   /// Particles that start side by side need a mesh for the film between them.
   void prepare() {
     if (scene_.particles.empty()) return;
-    for (int k = 0; k < 8 && particle_->adapt(state_, standing_); ++k) results_.remesh(particle_->body(), particle_->bezier());
+    for (int k = 0; k < 8 && particle_->adapt(state_, totals_); ++k) results_.remesh(particle_->body(), particle_->bezier());
   }
 
   void resume(Resumed& resumed) {
     if (particle_->resume(resumed)) results_.remesh(particle_->body(), particle_->bezier());
     state_ = resumed.state;
     if (request_.another_scheme) motion::forget(state_);
-    standing_ = resumed.standing;
-    earlier_wall_seconds_ = standing_.wall_seconds;
-    warnings_.remember(standing_.warnings);
-    earlier_seconds_ = standing_.seconds;
-    const stokes::Evaluations again = coupling::of_all(particle_->kernel_evaluations(), ranks_), before = standing_.kernel;
+    totals_ = resumed.totals;
+    earlier_wall_seconds_ = totals_.wall_seconds;
+    warnings_.remember(totals_.warnings);
+    earlier_seconds_ = totals_.seconds;
+    const stokes::Evaluations again = coupling::of_all(particle_->kernel_evaluations(), ranks_), before = totals_.kernel;
     earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
   }
 
@@ -129,7 +129,7 @@ class Run {
   /// before its time, if it is.
   std::string step() {
     const motion::State before = state_;
-    const Standing standing = standing_;
+    const RunTotals totals = totals_;
     adapting_ = false;
     const std::string error = error_of([this] { advance(); });
     if (error.empty() && !interrupted_) {
@@ -137,7 +137,7 @@ class Run {
       return reason_to_stop();
     }
     state_ = before;
-    standing_ = standing;
+    totals_ = totals;
     interrupted_ = true;
     pictured_.reset();
     const std::string undone = error_of([&] {
@@ -174,11 +174,11 @@ class Run {
     pictured_.reset();
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
-    ++standing_.step;
+    ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     adapting_ = true;
-    if (particle_->adapt(state_, standing_)) results_.remesh(particle_->body(), particle_->bezier());
+    if (particle_->adapt(state_, totals_)) results_.remesh(particle_->body(), particle_->bezier());
     for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
   }
@@ -200,11 +200,11 @@ class Run {
 
   /// What a step that is done leaves for a checkpoint.
   void settle() {
-    standing_.work = particle_->work();
-    standing_.turning = particle_->turning();
+    totals_.work = particle_->work();
+    totals_.phase_angle = particle_->phase_angle();
     const stokes::Evaluations now = coupling::of_all(particle_->kernel_evaluations(), ranks_);
-    standing_.kernel = {earlier_kernel_.far + now.far, earlier_kernel_.near + now.near, earlier_kernel_.self + now.self};
-    standing_.warnings = warnings_.memory();
+    totals_.kernel = {earlier_kernel_.far + now.far, earlier_kernel_.near + now.near, earlier_kernel_.self + now.self};
+    totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
     if (!output::equal_on_all_ranks(state_)) fail("the ranks hold states that are not the same to the bit");
 #endif
@@ -224,9 +224,9 @@ class Run {
   }
 
   [[noreturn]] void fail(const std::string& reason) {
-    const std::string at = reason + formatted(" at time %.6g, step %d", state_.time, standing_.step), where = results_.directory().string();
+    const std::string at = reason + formatted(" at time %.6g, step %d", state_.time, totals_.step), where = results_.directory().string();
     std::string unsaved;
-    if (results_.last_saved() != standing_.step) unsaved = error_of([this] { save(); });
+    if (results_.last_saved() != totals_.step) unsaved = error_of([this] { save(); });
     error_of([&] { results_.close(account("failed: " + at), phases_); });
     if (unsaved.empty()) throw RunFailure(at + "; the checkpoint of the last good step is in " + where);
     throw RunFailure(at + formatted("; the newest checkpoint, of step %d, is in ", results_.last_saved()) + where +
@@ -249,7 +249,7 @@ class Run {
     particle_->dynamics().at(state_.time, began_);
     row_ = particle_->row(state_, report_, earlier_wall_seconds_ + seconds_here());
     coupling::take_first(row_);  // what is decided by it is decided alike
-    look();
+    warn_of_limits();
     const auto output = phases_.time("output");
     results_.record(row_);
   }
@@ -262,9 +262,9 @@ class Run {
   }
 
   /// What the step has come near to.
-  void look() {
+  void warn_of_limits() {
     if (scene_.particle.rigid()) return;
-    Signs signs;
+    StepFindings signs;
     signs.time = state_.time;
     signs.step = report_.step;
     signs.smallest_tension = smallest("smallest_tension");
@@ -276,18 +276,18 @@ class Run {
     const std::vector<double> areas = entries_of_particles(series_, row_, "area");
     const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
     signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
-    for (const std::string& sentence : warnings_.look(signs)) results_.warn(sentence);
+    for (const std::string& sentence : warnings_.sentences(signs)) results_.warn(sentence);
   }
 
   void save() {
     const auto clock = phases_.time("output");
-    standing_.wall_seconds = earlier_wall_seconds_ + seconds_here();
-    standing_.seconds = with_earlier(phases_, earlier_seconds_);
+    totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
+    totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     particle_->dynamics().at(pictured.time, began_);
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
-    results_.save(std::move(checkpoint), state_, standing_, particle_->portrait(pictured), pictured.time);
+    results_.save(std::move(checkpoint), state_, totals_, particle_->picture(pictured), pictured.time);
   }
 
   void save_or_fail() {
@@ -323,12 +323,12 @@ class Run {
   }
 
   Account account(const std::string& status) const {
-    return {plan(scene_, particle_->body(), ranks_.size()), counts(standing_), status, {}, false, earlier_seconds_, {}};
+    return {plan(scene_, particle_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}};
   }
 
   /// `reason`: to have ended before its time, if it did.
   int end(const std::string& reason) {
-    if (scene_.output.surface_text) results_.write_surface(particle_->portrait(state_).surface);
+    if (scene_.output.surface_text) results_.write_surface(particle_->picture(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady;
     if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
@@ -362,13 +362,13 @@ class Run {
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // of what no other phase counts
   coupling::Ranks ranks_;
   std::vector<Series> series_ = run_series(scene_);
-  std::unique_ptr<Moving> particle_;
+  std::unique_ptr<ParticleSystem> particle_;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
   motion::State state_;
   motion::StepReport report_;
   double began_ = 0;  // the last step
-  Standing standing_;
+  RunTotals totals_;
   std::vector<double> row_;
   bool snapshot_due_ = false;
   bool adapting_ = false;     // within a step, or done with it
@@ -387,17 +387,17 @@ std::vector<std::string> check_expectations(const Scene& scene) {
   std::vector<std::string> names;
   for (const Series& one : run_series(scene)) names.push_back(one.name);
   deck::check_series(scene.expect.all, names);
-  return deck::too_late(scene.expect.all, scene.particle.motion == "prescribed" ? 0 : scene.time.final_time);
+  return deck::too_late(scene.expect.all, scene.particle.motion == Motion::prescribed ? 0 : scene.time.final_time);
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
-  if (scene.particle.motion == "prescribed") return resist(scene, request);
+  if (scene.particle.motion == Motion::prescribed) return resist(scene, request);
   return Run(scene, request).go();
 }
 
-std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.particle.motion == "free" ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
+std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return scene.particle.motion == Motion::free ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
 }
 
 std::string stored_deck(const std::string& directory) {

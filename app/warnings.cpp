@@ -30,6 +30,16 @@ std::string finer_mesh(const Scene& scene) {
   return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
 }
 
+/// Over all ranks.
+surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
+  const std::array<double, 7> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
+                                  mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element)};
+  surface::Quality result;
+  for (const auto& [jacobian, folded, x1, x2, x3, aspect, stretched] : gathered(ranks, own))
+    result = surface::worse(result, {jacobian, static_cast<int>(folded), {x1, x2, x3}, aspect, static_cast<int>(stretched)});
+  return result;
+}
+
 }  // namespace
 
 double stiffness(const Scene& scene, double h) {
@@ -44,7 +54,7 @@ bool Warnings::fresh(const Warning& warning) {
   return true;
 }
 
-std::vector<std::string> Warnings::look(const Signs& signs) {
+std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
   std::vector<std::string> sentences;
   const auto add = [&](const char* kind, const std::string& sentence) {
     const Warning warning{kind, formatted("at time %.4g ", signs.time) + sentence};
@@ -71,7 +81,7 @@ std::string Warnings::choice() const {
 
 /// A flat membrane under the tension -T with bending modulus B: waves of number k grow at (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B).
 /// Six tenths of that are what a capsule shows, and the flow carries waves out of the compressed part at its own rate.
-std::string Warnings::compression(const Signs& signs) {
+std::string Warnings::compression(const StepFindings& signs) {
   if (!elastic(scene_)) return {};
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
   const double bending = scene_.bending_modulus();
@@ -87,7 +97,7 @@ std::string Warnings::compression(const Signs& signs) {
       100 * signs.compressed_area, signs.smallest_tension, resistance, bending > 0 ? " higher" : "");
 }
 
-std::string Warnings::stiffness(const Signs& signs) {
+std::string Warnings::stiffness(const StepFindings& signs) {
   const bool fixed = scene_.time.fixed_step.has_value(), explicit_scheme = scene_.time.scheme == "bs3";
   const bool iterated = scene_.time.scheme == "crank-nicolson" && scene_.time.nonlinear_solver == "plain";
   if (!elastic(scene_) || !(explicit_scheme || iterated)) return {};
@@ -99,7 +109,7 @@ std::string Warnings::stiffness(const Signs& signs) {
                    reached, limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
 }
 
-std::string Warnings::fold(const Signs& signs) const {
+std::string Warnings::fold(const StepFindings& signs) const {
   if (signs.jacobian_ratio > folding) return {};
   const std::string cure = scene_.membrane.load == "strong" && elastic(scene_)           ? "set Membrane/load to weak"
                            : scene_.interface_motion() == "material" && !elastic(scene_) ? "set Interface/motion to relaxed"
@@ -109,41 +119,23 @@ std::string Warnings::fold(const Signs& signs) const {
          (drawn ? "; or there is no steady shape: above a critical capillary number the flow draws the drop out until it breaks" : "");
 }
 
-std::string Warnings::stretch(const Signs& signs) const {
+std::string Warnings::stretch(const StepFindings& signs) const {
   if (signs.aspect_ratio < slenderness) return {};
   return formatted("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
          (elastic(scene_) || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
 }
 
-std::string Warnings::gap(const Signs& signs) const {
+std::string Warnings::gap(const StepFindings& signs) const {
   if (!signs.gap || *signs.gap > signs.element / 2) return {};
   return formatted(
       "the gap to the wall (%.2g) is less than half an element (%.2g): set finer meshes of particle and tube, or Adaptation/enabled",
       *signs.gap, signs.element);
 }
 
-std::string Warnings::volume(const Signs& signs) const {
+std::string Warnings::volume(const StepFindings& signs) const {
   if (scene_.particle.rigid() || std::abs(signs.volume_error) < lost_volume) return {};
   return formatted("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
 }
-
-namespace {
-
-/// Over all ranks.
-surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
-  constexpr size_t n = 7;
-  std::vector<double> all(n * static_cast<size_t>(ranks.size()), 0);
-  double* const own = &all[n * static_cast<size_t>(ranks.rank())];
-  own[0] = mine.jacobian_ratio, own[1] = mine.folded_element, own[2] = mine.aspect_ratio, own[3] = mine.stretched_element;
-  Eigen::Map<Vec3>(own + 4) = mine.folded_place;
-  ranks.add(all);
-  surface::Quality result;
-  for (size_t k = 0; k < all.size(); k += n)
-    result = surface::worse(result, {all[k], static_cast<int>(all[k + 1]), Vec3(&all[k + 4]), all[k + 2], static_cast<int>(all[k + 3])});
-  return result;
-}
-
-}  // namespace
 
 surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks) {
   const surface::Quality quality = worst(surface::quality(map, x, ranks.share(map.n_elements())), ranks);

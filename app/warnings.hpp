@@ -15,7 +15,7 @@
 namespace tanktread {
 
 /// What a finished step is judged by. Lengths and times in the deck's units.
-struct Signs {
+struct StepFindings {
   double time = 0, step = 0;
   double smallest_tension = 0, compressed_area = 0;  ///< as in the series
   double volume_error = 0;
@@ -44,19 +44,19 @@ class Warnings {
   bool fresh(const Warning& warning);
 
   /// Sentences that this step adds.
-  std::vector<std::string> look(const Signs& signs);
+  std::vector<std::string> sentences(const StepFindings& signs);
 
   const Memory& memory() const { return memory_; }
   void remember(Memory memory) { memory_ = std::move(memory); }
 
  private:
   std::string choice() const;
-  std::string compression(const Signs& signs);
-  std::string stiffness(const Signs& signs);
-  std::string fold(const Signs& signs) const;
-  std::string stretch(const Signs& signs) const;
-  std::string gap(const Signs& signs) const;
-  std::string volume(const Signs& signs) const;
+  std::string compression(const StepFindings& signs);
+  std::string stiffness(const StepFindings& signs);
+  std::string fold(const StepFindings& signs) const;
+  std::string stretch(const StepFindings& signs) const;
+  std::string gap(const StepFindings& signs) const;
+  std::string volume(const StepFindings& signs) const;
 
   const Scene& scene_;
   Memory memory_;

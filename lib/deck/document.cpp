@@ -21,39 +21,6 @@ void add_values(const List& list, std::map<std::string, std::string>& out) {
   for (const auto& inner : list.lists) add_values(*inner, out);
 }
 
-}  // namespace
-
-struct Document::Held {
-  std::shared_ptr<Teuchos::ParameterList> given;
-  bool documenting;
-  List root;
-};
-
-Document::Document(std::shared_ptr<Teuchos::ParameterList> given, bool documenting)
-    : held_(std::make_unique<Held>(Held{std::move(given), documenting, {}})) {
-  held_->root.name = root_name;
-  held_->root.given = held_->given.get();
-}
-
-Document::~Document() = default;
-Document::Document(Document&&) noexcept = default;
-
-Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting})); }
-
-void Document::finish() const { refuse_unknown_keys(held_->root, held_->root); }
-
-std::string Document::effective() const { return std::string(root_name) + ":\n" + yaml_text(held_->root, 1); }
-
-std::map<std::string, std::string> Document::values() const {
-  std::map<std::string, std::string> out;
-  add_values(held_->root, out);
-  return out;
-}
-
-std::string Document::reference() const { return markdown_text(held_->root); }
-
-namespace {
-
 const Teuchos::ParameterList* sublist(const Teuchos::ParameterList* list, const std::string& name) {
   return list && list->isSublist(name) ? &list->sublist(name) : nullptr;
 }
@@ -114,6 +81,35 @@ struct Layers {
 };
 
 }  // namespace
+
+struct Document::Held {
+  std::shared_ptr<Teuchos::ParameterList> given;
+  bool documenting;
+  List root;
+};
+
+Document::Document(std::shared_ptr<Teuchos::ParameterList> given, bool documenting)
+    : held_(std::make_unique<Held>(Held{std::move(given), documenting, {}})) {
+  held_->root.name = root_name;
+  held_->root.given = held_->given.get();
+}
+
+Document::~Document() = default;
+Document::Document(Document&&) noexcept = default;
+
+Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting})); }
+
+void Document::finish() const { refuse_unknown_keys(held_->root, held_->root); }
+
+std::string Document::effective() const { return std::string(root_name) + ":\n" + yaml_text(held_->root, 1); }
+
+std::map<std::string, std::string> Document::values() const {
+  std::map<std::string, std::string> out;
+  add_values(held_->root, out);
+  return out;
+}
+
+std::string Document::reference() const { return markdown_text(held_->root); }
 
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored,
               const std::string& excuse) {

@@ -41,6 +41,32 @@ namespace {
 /// Times that differ by less are the same.
 double slack(double time) { return 1e-9 * std::max(1.0, std::abs(time)); }
 
+Verdict verdict(const Expectation& e, const SeriesTable& series) {
+  Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
+              e.not_binding};
+  const auto values = series.find(e.series), times = series.find("time");
+  if (values == series.end() || values->second.empty()) {
+    out.reason = "the results hold no series " + e.series;
+    return out;
+  }
+  if (e.at) {
+    const bool usable = times != series.end() && times->second.size() == values->second.size();
+    if (!usable || *e.at < times->second.front() - slack(*e.at) || *e.at > times->second.back() + slack(*e.at)) {
+      out.reason = "the results do not reach the time " + number_text(*e.at);
+      return out;
+    }
+    out.value = interpolated(times->second, values->second, std::clamp(*e.at, times->second.front(), times->second.back()));
+  } else {
+    out.value = values->second.back();
+  }
+  out.error = std::abs(out.value - e.value) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
+  out.passed = out.error <= e.tolerance;  // false for not-a-number
+  if (!out.passed)
+    out.reason = e.series + " is " + number_text(out.value) + ", expected " + number_text(e.value) + " within " + number_text(e.tolerance) +
+                 (e.kind == "relative" ? " (relative)" : "");
+  return out;
+}
+
 }  // namespace
 
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names) {
@@ -75,36 +101,6 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
   }
   return sum;
 }
-
-namespace {
-
-Verdict verdict(const Expectation& e, const SeriesTable& series) {
-  Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
-              e.not_binding};
-  const auto values = series.find(e.series), times = series.find("time");
-  if (values == series.end() || values->second.empty()) {
-    out.reason = "the results hold no series " + e.series;
-    return out;
-  }
-  if (e.at) {
-    const bool usable = times != series.end() && times->second.size() == values->second.size();
-    if (!usable || *e.at < times->second.front() - slack(*e.at) || *e.at > times->second.back() + slack(*e.at)) {
-      out.reason = "the results do not reach the time " + number_text(*e.at);
-      return out;
-    }
-    out.value = interpolated(times->second, values->second, std::clamp(*e.at, times->second.front(), times->second.back()));
-  } else {
-    out.value = values->second.back();
-  }
-  out.error = std::abs(out.value - e.value) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
-  out.passed = out.error <= e.tolerance;  // false for not-a-number
-  if (!out.passed)
-    out.reason = e.series + " is " + number_text(out.value) + ", expected " + number_text(e.value) + " within " + number_text(e.tolerance) +
-                 (e.kind == "relative" ? " (relative)" : "");
-  return out;
-}
-
-}  // namespace
 
 std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series) {
   std::vector<Verdict> out;

@@ -103,6 +103,28 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
   list.entries.push_back(std::move(entry));
 }
 
+/// The list of this name with all that it shares; `above`: those that lead to it.
+std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
+  const std::string path = all.path_of(name);
+  const auto* entry = all.given->getEntryPtr(name);
+  if (!entry->isList()) throw UserError(path + " must be a list of keys, but is " + description(*entry) + ".");
+  const auto& own = Teuchos::getValue<Teuchos::ParameterList>(*entry);
+  auto merged = std::make_shared<Teuchos::ParameterList>();
+  if (const auto* like = own.getEntryPtr("like")) {
+    const auto other = as_text(*like);
+    above.push_back(name);
+    if (!other || !all.given->isSublist(*other) || std::ranges::count(above, *other))
+      throw UserError(path + "/like must be the name of another list of " + all.path + " that is not made like this one, but is " +
+                      description(*like) + ".");
+    merged = with_shared(all, *other, above);
+  } else if (all.given->isSublist("defaults")) {
+    overlay(*merged, all.given->sublist("defaults"));
+  }
+  overlay(*merged, own);
+  merged->remove("like", false);
+  return merged;
+}
+
 }  // namespace
 
 Rule any() {
@@ -192,32 +214,6 @@ void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterL
 }
 
 void Section::mention(std::string_view list) { state_->list->mentioned.emplace_back(list); }
-
-namespace {
-
-/// The list of this name with all that it shares; `above`: those that lead to it.
-std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
-  const std::string path = all.path_of(name);
-  const auto* entry = all.given->getEntryPtr(name);
-  if (!entry->isList()) throw UserError(path + " must be a list of keys, but is " + description(*entry) + ".");
-  const auto& own = Teuchos::getValue<Teuchos::ParameterList>(*entry);
-  auto merged = std::make_shared<Teuchos::ParameterList>();
-  if (const auto* like = own.getEntryPtr("like")) {
-    const auto other = as_text(*like);
-    above.push_back(name);
-    if (!other || !all.given->isSublist(*other) || std::ranges::count(above, *other))
-      throw UserError(path + "/like must be the name of another list of " + all.path + " that is not made like this one, but is " +
-                      description(*like) + ".");
-    merged = with_shared(all, *other, above);
-  } else if (all.given->isSublist("defaults")) {
-    overlay(*merged, all.given->sublist("defaults"));
-  }
-  overlay(*merged, own);
-  merged->remove("like", false);
-  return merged;
-}
-
-}  // namespace
 
 void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike) {
   List& list = *state_->list;

@@ -2,12 +2,14 @@
 // The one statement of each parameter: key, default, rule, unit, meaning, beside the struct that uses it.
 // From it come reading, checking, the effective deck and the manual (`--reference`).
 
+#include <algorithm>
 #include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/types.hpp"
@@ -50,6 +52,15 @@ class Section {
   /// Text, which may be optional.
   template <class Field>
   void key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning);
+
+  /// One of the words, for which the enumerators stand in their order.
+  template <class Field>
+    requires std::is_enum_v<Field>
+  void key(std::string_view name, Field& field, const Choice& words, std::string_view meaning) {
+    std::string word = words[static_cast<std::size_t>(field)];
+    key(name, word, words, meaning);
+    field = static_cast<Field>(std::find(words.begin(), words.end(), word) - words.begin());
+  }
 
   void key(std::string_view name, bool& field, std::string_view meaning);
 

@@ -10,11 +10,18 @@
 namespace tanktread::output {
 namespace {
 
-std::string slope_name(std::size_t k) { return "slope_" + std::to_string(k); }
+std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }
 
-std::string place_name(std::size_t k) { return "place_" + std::to_string(k); }
+/// Nets of a kind, by their numbers.
+void store(const std::vector<Net>& nets, const char* name, Checkpoint& checkpoint) {
+  for (std::size_t k = 0; k < nets.size(); ++k) checkpoint.arrays[numbered(name, k)] = nets[k];
+}
 
-std::string secant_name(std::size_t k) { return "secant_" + std::to_string(k); }
+std::vector<Net> stored(const char* name, const Checkpoint& checkpoint) {
+  std::vector<Net> nets;
+  for (std::size_t k = 0; checkpoint.arrays.contains(numbered(name, k)); ++k) nets.emplace_back(checkpoint.arrays.at(numbered(name, k)));
+  return nets;
+}
 
 }  // namespace
 
@@ -24,16 +31,15 @@ void store(const motion::State& state, Checkpoint& checkpoint) {
   checkpoint.arrays["x"] = state.x;
   checkpoint.arrays["frozen"] = state.frozen;
   checkpoint.arrays["memory"] = Eigen::Map<const Eigen::VectorXd>(state.memory.data(), static_cast<Eigen::Index>(state.memory.size()));
-  for (std::size_t k = 0; k < state.history.size(); ++k) checkpoint.arrays[slope_name(k)] = state.history[k];
+  store(state.history, "slope_", checkpoint);
+  store(state.secants.pairs(), "secant_", checkpoint);
   Eigen::VectorXd times(state.places.size());
   for (std::size_t k = 0; k < state.places.size(); ++k) {
-    checkpoint.arrays[place_name(k)] = state.places[k].x;
+    checkpoint.arrays[numbered("place_", k)] = state.places[k].x;
     times[static_cast<Eigen::Index>(k)] = state.places[k].time;
   }
   checkpoint.arrays["place times"] = times;
   checkpoint.arrays["direction"] = state.direction;
-  const std::vector<Net>& pairs = state.secants.pairs();
-  for (std::size_t k = 0; k < pairs.size(); ++k) checkpoint.arrays[secant_name(k)] = pairs[k];
 }
 
 motion::State stored_state(const Checkpoint& checkpoint) {
@@ -44,14 +50,12 @@ motion::State stored_state(const Checkpoint& checkpoint) {
   state.frozen = checkpoint.arrays.at("frozen");
   const Eigen::MatrixXd& memory = checkpoint.arrays.at("memory");
   state.memory.assign(memory.data(), memory.data() + memory.size());
-  for (std::size_t k = 0; checkpoint.arrays.contains(slope_name(k)); ++k) state.history.emplace_back(checkpoint.arrays.at(slope_name(k)));
+  state.history = stored("slope_", checkpoint);
   const Eigen::MatrixXd& times = checkpoint.arrays.at("place times");
   for (Eigen::Index k = 0; k < times.size(); ++k)
-    state.places.push_back({times(k), checkpoint.arrays.at(place_name(static_cast<std::size_t>(k)))});
+    state.places.push_back({times(k), checkpoint.arrays.at(numbered("place_", static_cast<std::size_t>(k)))});
   state.direction = checkpoint.arrays.at("direction");
-  std::vector<Net> pairs;
-  for (std::size_t k = 0; checkpoint.arrays.contains(secant_name(k)); ++k) pairs.emplace_back(checkpoint.arrays.at(secant_name(k)));
-  state.secants = coupling::Secants(std::move(pairs));
+  state.secants = coupling::Secants(stored("secant_", checkpoint));
   return state;
 }
 

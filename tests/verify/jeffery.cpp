@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/moving.hpp"
+#include "app/particle_system.hpp"
 #include "coupling/rigid_body.hpp"
 #include "deck/document.hpp"
 
@@ -20,7 +20,7 @@ struct Tumbling {
   Scene scene;
   coupling::Ranks ranks;
   Phases phases;
-  std::unique_ptr<Moving> body;
+  std::unique_ptr<ParticleSystem> body;
   std::unique_ptr<motion::Integrator> scheme;
   motion::State state;
 
@@ -28,7 +28,7 @@ struct Tumbling {
     deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/jeffery.yaml"}, settings);
     deck.declare(scene);
     scene.check();
-    body = moving(scene, ranks, phases);
+    body = particle_system(scene, ranks, phases);
     scheme = motion::integrator(scene.time);
     state.x = body->start();
     state.history = {body->dynamics().velocity(state.x)};

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "app/flow_plane.hpp"
-#include "app/standing.hpp"
+#include "app/run_totals.hpp"
 #include "base/errors.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
@@ -90,7 +90,7 @@ TEST(SiteAhead, IsFoundAtAPoleToo) {
 }
 
 TEST(Turnings, CountPastWholeTurns) {
-  Turning turning;
+  PhaseAngle turning;
   double angle = 0;
   for (int k = 1; k <= 40; ++k) {
     angle += 100;  // a step of more than a quarter turn

@@ -16,16 +16,16 @@ struct Told {
     deck.declare(scene);
     scene.check();
   }
-  std::string first(const Signs& signs) {
-    const auto sentences = warnings.look(signs);
+  std::string first(const StepFindings& signs) {
+    const auto sentences = warnings.sentences(signs);
     return sentences.empty() ? std::string() : sentences.front();
   }
 };
 
 bool names(const std::string& sentence, const char* what) { return sentence.find(what) != std::string::npos; }
 
-Signs at(double step, double tension, double element = 0.13) {
-  Signs signs;
+StepFindings at(double step, double tension, double element = 0.13) {
+  StepFindings signs;
   signs.time = 1;
   signs.step = step;
   signs.smallest_tension = tension;
@@ -74,21 +74,21 @@ TEST(Warnings, TellOfStepsThatStabilityKeepsShort) {
 }
 
 TEST(Warnings, TellOfAnElementThatFoldsWithTheCureOfTheScene) {
-  Signs signs = at(0.1, 0);
+  StepFindings signs = at(0.1, 0);
   signs.jacobian_ratio = 0.01;
   EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(signs), "Adaptation/enabled"));
   EXPECT_TRUE(names(Told({"Membrane/law=surface tension", "Interface/motion=material"}).first(signs), "Interface/motion"));
 }
 
 TEST(Warnings, TellOfADropThatTheFlowMayDrawOutWithoutEnd) {
-  Signs signs = at(0.1, 0);
+  StepFindings signs = at(0.1, 0);
   signs.jacobian_ratio = 0.01;
   EXPECT_TRUE(names(Told({"Flow/type=uniaxial extension", "Membrane/law=surface tension"}).first(signs), "no steady shape"));
   EXPECT_FALSE(names(Told({"Flow/type=uniaxial extension"}).first(signs), "no steady shape"));
 }
 
 TEST(Warnings, TellOfVolumeGapsAndSlimElements) {
-  Signs lost = at(0.1, 0), slim = lost, narrow = lost;
+  StepFindings lost = at(0.1, 0), slim = lost, narrow = lost;
   lost.volume_error = -0.01;
   slim.aspect_ratio = 12;
   narrow.gap = 0.02;

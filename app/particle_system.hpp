@@ -8,7 +8,7 @@
 
 #include "app/body.hpp"
 #include "app/diagnostics.hpp"
-#include "app/standing.hpp"
+#include "app/run_totals.hpp"
 #include "app/warnings.hpp"
 #include "coupling/dynamics.hpp"
 #include "motion/integrator.hpp"
@@ -21,41 +21,41 @@ namespace tanktread {
 /// A run to go on with.
 struct Resumed {
   motion::State state;
-  Standing standing;
+  RunTotals totals;
   output::Checkpoint checkpoint;  ///< that holds it, and what `store` has put there
 };
 
 /// The particle at one moment, as a picture shows it.
-struct Portrait {
+struct SurfacePicture {
   Net surface;  ///< control net
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
 /// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled.
-class Moving {
+class ParticleSystem {
  public:
-  virtual ~Moving() = default;
+  virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now
-  virtual void store(output::Checkpoint& checkpoint) const = 0;                  ///< adds what `resume` takes beside state and standing
-  virtual bool adapt(motion::State& state, Standing& standing) = 0;              ///< after a step; whether body() has another mesh now
+  virtual void store(output::Checkpoint& checkpoint) const = 0;                  ///< adds what `resume` takes beside state and totals
+  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;              ///< after a step; whether body() has another mesh now
   virtual void undo_adapt(const Net&) {}                                         ///< goes back to the mesh before, in this shape, for a last picture
   virtual std::vector<Warning> remarks() { return {}; }                          ///< for the user, who is to hear of each kind once
   virtual coupling::Work work() const = 0;
-  virtual std::vector<Turning> turning() const = 0;                              ///< of each particle, as of the latest row
+  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< of each particle, as of the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< the extraction of body()
-  virtual Portrait portrait(const motion::State& state) = 0;
+  virtual SurfacePicture picture(const motion::State& state) = 0;
 };
 
 /// What `Particle/motion` asks for.
-std::unique_ptr<Moving> moving(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 /// The two kinds.
-std::unique_ptr<Moving> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
-std::unique_ptr<Moving> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

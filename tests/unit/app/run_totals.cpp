@@ -1,6 +1,6 @@
 // What a run has done, in a checkpoint and out of it.
 
-#include "app/standing.hpp"
+#include "app/run_totals.hpp"
 
 #include <stdexcept>
 
@@ -12,46 +12,46 @@
 namespace tanktread {
 namespace {
 
-TEST(Standing, ComesBackFromACheckpoint) {
-  Standing standing;
-  standing.step = 7;
-  standing.wall_seconds = 1. / 3;
-  standing.work = {1, 2, 3, 4, 5, 6, 7, 8};
-  standing.refinements = 9;
-  standing.coarsenings = 10;
-  standing.kernel = {1LL << 40, 12, 13};
-  standing.warnings = {0.1, 14, {{"gap", "at time 1 the gap: narrow"}, {"fold", "at time 2 it folds"}}};
-  standing.turning = {{370, 0.5}, {-10, 0.25}};
-  standing.seconds = {{"far field", 0.5}, {"output", 0.25}};
+TEST(RunTotals, ComesBackFromACheckpoint) {
+  RunTotals totals;
+  totals.step = 7;
+  totals.wall_seconds = 1. / 3;
+  totals.work = {1, 2, 3, 4, 5, 6, 7, 8};
+  totals.refinements = 9;
+  totals.coarsenings = 10;
+  totals.kernel = {1LL << 40, 12, 13};
+  totals.warnings = {0.1, 14, {{"gap", "at time 1 the gap: narrow"}, {"fold", "at time 2 it folds"}}};
+  totals.phase_angle = {{370, 0.5}, {-10, 0.25}};
+  totals.seconds = {{"far field", 0.5}, {"output", 0.25}};
   output::Checkpoint checkpoint;
-  store(standing, checkpoint);
+  store(totals, checkpoint);
   output::Checkpoint again;
-  store(stored_standing(checkpoint), again);
+  store(stored_totals(checkpoint), again);
   EXPECT_EQ(again.numbers, checkpoint.numbers);
   EXPECT_EQ(again.texts, checkpoint.texts);
   EXPECT_EQ(again.arrays.at("phase and tank-treading frequency"), checkpoint.arrays.at("phase and tank-treading frequency"));
   EXPECT_EQ(checkpoint.numbers.size(), 15u + 2 + 2);
-  EXPECT_EQ(stored_standing(checkpoint).kernel.far, 1LL << 40);
-  EXPECT_EQ(stored_standing(checkpoint).warnings.said.at(1).sentence, "at time 2 it folds");
+  EXPECT_EQ(stored_totals(checkpoint).kernel.far, 1LL << 40);
+  EXPECT_EQ(stored_totals(checkpoint).warnings.said.at(1).sentence, "at time 2 it folds");
 }
 
-TEST(Standing, OfAnotherVersionIsLacking) {
+TEST(RunTotals, OfAnotherVersionIsLacking) {
   output::Checkpoint checkpoint;
-  store(Standing(), checkpoint);
+  store(RunTotals(), checkpoint);
   checkpoint.numbers.erase("tangents");
-  EXPECT_THROW(stored_standing(checkpoint), std::out_of_range);
+  EXPECT_THROW(stored_totals(checkpoint), std::out_of_range);
 }
 
 /// Compression that lets waves grow, a step at a time.
 std::vector<std::string> look(Warnings& warnings) {
-  Signs signs;
+  StepFindings signs;
   signs.step = 0.1;
   signs.smallest_tension = -0.2;
   signs.element = 0.1;
-  return warnings.look(signs);
+  return warnings.sentences(signs);
 }
 
-TEST(Standing, WarningsGoOnWhereTheyWere) {
+TEST(RunTotals, WarningsGoOnWhereTheyWere) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Membrane/capillary number=0.1"});
   deck.declare(scene);
