@@ -7,6 +7,7 @@
 #include "app/member.hpp"
 #include "app/numbers.hpp"
 #include "base/formatted.hpp"
+#include "base/instruction_set.hpp"
 #include "coupling/frozen_operator.hpp"
 #include "stokes/layer_surface.hpp"
 
@@ -110,6 +111,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("forces", forces_line(scene));
   lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("assembled", formatted("%.1f MB ", 72e-6 * n * n) + on_ranks(ranks));
+  lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   lines.emplace_back("symmetry", "none used");
   return lines;
@@ -129,6 +131,7 @@ Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
                  {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
   add_fluid(lines, scene, all, ranks);
   lines.emplace_back("far sum", tree ? "by clusters of nodes and targets" : "every target meets every node");
+  lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint + ", of each");
   lines.emplace_back("time", time_line(scene, n * n, ranks));
   lines.emplace_back("symmetry", "none looked for among several particles");
@@ -158,6 +161,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("deformation", body.plane.description());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   lines.emplace_back("far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node");
+  lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint);
   lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
   lines.emplace_back("mesh", mesh_line(scene));

@@ -1,9 +1,10 @@
 #include <bit>
 
+#include "base/kernel.hpp"
 #include "coupling/frozen_operator.hpp"
 
 namespace tanktread::coupling {
-
+namespace INSTRUCTIONS {
 namespace {
 
 float widened(std::uint16_t half) { return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 16); }
@@ -21,5 +22,10 @@ void symmetric_block_row(int n, const std::uint16_t* entries, const float* f1, c
   }
   u[0] += u1, u[1] += u2, u[2] += u3;
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, symmetric_block_row, (int n, const std::uint16_t* entries, const float* f1, const float* f2, const float* f3, float* u),
+       (n, entries, f1, f2, f3, u))
 
 }  // namespace tanktread::coupling

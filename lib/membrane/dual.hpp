@@ -3,11 +3,11 @@
 
 #include <array>
 
-#include "base/pack.hpp"
+#include "base/register.hpp"
 
 namespace tanktread::membrane {
 
-/// A value and its slope; `Number` is double or a Pack.
+/// A value and its slope; `Number` is double or a Register.
 template <class Number>
 struct Dual {
   Number value, slope;
@@ -46,7 +46,7 @@ template <class N>
 Dual<N> operator-(const Dual<N>& a, double b) {
   return {a.value - b, a.slope};
 }
-inline Dual<Pack> operator-(const Dual<Pack>& a, const Pack& b) { return {a.value - b, a.slope}; }
+inline Dual<Register> operator-(const Dual<Register>& a, const Register& b) { return {a.value - b, a.slope}; }
 template <class N>
 Dual<N> operator*(double a, const Dual<N>& b) {
   return {a * b.value, a * b.slope};

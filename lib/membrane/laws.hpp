@@ -8,11 +8,11 @@
 #include <array>
 #include <variant>
 
-#include "base/pack.hpp"
+#include "base/register.hpp"
 
 namespace tanktread::membrane {
 
-/// Psi and its derivatives by I1 and I2. `Number` is double, a pack of doubles (base/pack.hpp) or a dual number.
+/// Psi and its derivatives by I1 and I2. `Number` is double, a register (base/register.hpp) or a dual number.
 template <class Number>
 struct Response {
   Number psi1, psi2;           ///< dPsi/dI1, dPsi/dI2

@@ -56,22 +56,27 @@ std::vector<int> slots_of(const std::vector<int>& points, const Eigen::SparseMat
 std::vector<Pack> values_at_gauss_points(const Group& g) {
   std::size_t n = 0;
   for (const Batch& batch : g.batches) n += static_cast<std::size_t>(batch.functions * g.n_gauss());
-  std::vector<Pack> values;
-  values.reserve(n);
-  const int p = g.degree + 1;
-  for (const Batch& batch : g.batches)
+  std::vector<Pack> values(n);
+  const int p = g.degree + 1, n_b = g.n_bernstein();
+  const int lanes = pack_lanes();
+  std::size_t first = 0;
+  for (const Batch& batch : g.batches) {
+    const double* const extraction = numbers(&g.extraction[batch.extraction]);
     for (int a = 0; a < batch.functions; ++a)
       for (int q = 0; q < g.n_gauss(); ++q) {
         const double *bs = &g.value[q % g.order * p], *bt = &g.value[q / g.order * p];
-        Pack sum{};
-        for (int b = 0; b < g.n_bernstein(); ++b) sum += g.extraction[batch.extraction + a * g.n_bernstein() + b] * (bs[b % p] * bt[b / p]);
-        values.push_back(sum);
+        double* const sum = numbers(&values[first]) + lanes * (a * g.n_gauss() + q);
+        for (int b = 0; b < n_b; ++b)
+          for (int l = 0; l < lanes; ++l) sum[l] += extraction[lanes * (a * n_b + b) + l] * (bs[b % p] * bt[b / p]);
       }
+    first += static_cast<std::size_t>(batch.functions * g.n_gauss());
+  }
   return values;
 }
 
 // Functions that an element lacks share slot 0 and add zero to it.
 std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& matrix, const spline::Space& space) {
+  const int lanes = pack_lanes();
   std::size_t size = 0;
   for (const Batch& batch : g.batches) size += static_cast<std::size_t>(2 * pairs(batch) * lanes);
   std::vector<int> slots(size), row(static_cast<std::size_t>(matrix.rows()));
@@ -104,6 +109,7 @@ MassMatrix::MassMatrix(const spline::Space& space, int order) : groups_(pack(spa
 const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
   Pack a[6 * max_order * max_order], area[max_order * max_order], entries[max_functions * (max_functions + 1) / 2];
   double* const out = matrix_.valuePtr();
+  const int lanes = pack_lanes();
   std::fill_n(out, matrix_.nonZeros(), 0.);
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     const Group& g = groups_[k];
@@ -117,8 +123,8 @@ const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
       for (int i = 0; i < batch.functions; ++i)
         for (int j = 0; j <= i; ++j, ++pair)
           for (int l = 0; l < batch.used; ++l) {
-            out[slots[2 * pair * lanes + l]] += entries[pair][l];
-            if (i != j) out[slots[(2 * pair + 1) * lanes + l]] += entries[pair][l];
+            out[slots[2 * pair * lanes + l]] += numbers(entries)[lanes * pair + l];
+            if (i != j) out[slots[(2 * pair + 1) * lanes + l]] += numbers(entries)[lanes * pair + l];
           }
       values += batch.functions * g.n_gauss();
       slots += 2 * pairs(batch) * lanes;

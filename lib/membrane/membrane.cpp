@@ -67,9 +67,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
       const Batch& batch = group.batches[k];
       ReferencePoint* first = &points[k * n];
       tangents(group, batch, unstressed, a);
-      reference_points(n, a, group.weight.data(), first);
-      for (int q = 0; q < n; ++q)
-        for (int l = batch.used; l < lanes; ++l) first[q].area[l] = 0;
+      reference_points(n, batch.used, a, group.weight.data(), first);
       if (curvature.empty() || !bending.curved_when_relaxed) continue;
       jets(group, batch, unstressed, a);
       curvatures(n, a, &curvature[k * n]);
@@ -104,14 +102,14 @@ double Membrane::energy(const Net& x, std::span<const int> elements) const {
 std::vector<double> Membrane::element_energies(const Net& x, std::span<const int> elements) const {
   std::vector<double> sum(space_->elements.size(), 0.);
   part(elements)->each_batch([&](const Part::Points& at) {
-    Pack a[15 * max_gauss];
+    Pack a[15 * max_gauss], stretching, bending{};
     tangents(at.group, at.batch, x, a);
-    Pack energies = membrane::energy(at.material.law, at.n, at.reference, a);
+    membrane::energy(at.material.law, at.n, at.reference, a, &stretching);
     if (at.c0) {
       jets(at.group, at.batch, x, a);
-      energies += bending_energy(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, a);
+      bending_energy(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, a, &bending);
     }
-    for (int l = 0; l < at.batch.used; ++l) sum[at.batch.elements[l]] += energies[l];
+    for (int l = 0; l < at.batch.used; ++l) sum[at.batch.elements[l]] += stretching.room[l] + bending.room[l];
   });
   return sum;
 }
@@ -148,23 +146,20 @@ TensionSummary Membrane::tension_summary(const Net& x) const {
 ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements) const {
   const std::vector<double> none(space_->elements.size(), 0.);
   ElementTensions result{std::numeric_limits<double>::infinity(), none, none};
-  Pack smallest = Pack{} + result.smallest;
+  const int lanes = pack_lanes();
   part(elements)->each_batch([&](const Part::Points& at) {
-    Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss], area{}, compressed{};
+    Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss];
     const double unit = modulus(at.material.law);
     tangents(at.group, at.batch, x, a);
     smaller_tensions(at.material.law, at.n, at.reference, a, tension, share);
-    for (int q = 0; q < at.n; ++q) {
-      smallest = tension[q] / unit < smallest ? tension[q] / unit : smallest;
-      area += share[q];
-      compressed += tension[q] < compressed_below * unit ? share[q] : Pack{};
-    }
-    for (int l = 0; l < at.batch.used; ++l) {
-      result.area[at.batch.elements[l]] = area[l];
-      result.compressed[at.batch.elements[l]] = compressed[l];
-    }
+    for (int q = 0; q < at.n; ++q)
+      for (int l = 0; l < at.batch.used; ++l) {
+        const double here = numbers(tension)[lanes * q + l] / unit, area = numbers(share)[lanes * q + l];
+        result.smallest = std::min(result.smallest, here);
+        result.area[at.batch.elements[l]] += area;
+        if (here < compressed_below) result.compressed[at.batch.elements[l]] += area;
+      }
   });
-  for (int l = 0; l < lanes; ++l) result.smallest = std::min(result.smallest, smallest[l]);
   return result;
 }
 

@@ -29,6 +29,7 @@ Group group_with_rule(int degree, int order) {
 
 void append(Group& g, const spline::Space& space, std::span<const int> elements) {
   Batch batch;
+  const int lanes = pack_lanes();
   batch.used = static_cast<int>(elements.size());
   for (int l = 0; l < lanes; ++l) batch.elements[l] = elements[std::min(l, batch.used - 1)];
   for (int e : elements) batch.functions = std::max(batch.functions, static_cast<int>(space.elements[e].points.size()));
@@ -37,11 +38,12 @@ void append(Group& g, const spline::Space& space, std::span<const int> elements)
   batch.extraction = g.extraction.size();
   g.points.resize(batch.points + batch.functions * lanes, 0);
   g.extraction.resize(batch.extraction + batch.functions * g.n_bernstein(), Pack{});
+  double* const extraction = numbers(&g.extraction[batch.extraction]);
   for (int l = 0; l < lanes; ++l) {
     const spline::Element& element = space.elements[batch.elements[l]];
     for (int a = 0; a < static_cast<int>(element.points.size()); ++a) {
       g.points[batch.points + a * lanes + l] = element.points[a];
-      for (int b = 0; b < g.n_bernstein(); ++b) g.extraction[batch.extraction + a * g.n_bernstein() + b][l] = element.extraction(a, b);
+      for (int b = 0; b < g.n_bernstein(); ++b) extraction[lanes * (a * g.n_bernstein() + b) + l] = element.extraction(a, b);
     }
   }
   g.batches.push_back(batch);
@@ -53,12 +55,13 @@ std::vector<Group> pack(const spline::Space& space, std::span<const int> element
   std::map<std::pair<int, int>, std::vector<int>> alike;
   for (int e : elements) alike[{material.empty() ? 0 : material[e], space.elements[e].degree}].push_back(e);
   std::vector<Group> groups;
+  const std::size_t lanes = pack_lanes();
   for (auto& [kind, list] : alike) {
     std::sort(list.begin(), list.end());
     Group& g = groups.emplace_back(group_with_rule(kind.second, order + std::max(0, kind.second - 3)));
     g.material = kind.first;
     for (std::size_t first = 0; first < list.size(); first += lanes)
-      append(g, space, std::span(list).subspan(first, std::min<std::size_t>(lanes, list.size() - first)));
+      append(g, space, std::span(list).subspan(first, std::min(lanes, list.size() - first)));
   }
   return groups;
 }

@@ -15,12 +15,12 @@ constexpr int max_degree = 8;      ///< of a Bezier element
 constexpr int max_order = 12;      ///< Gauss points per direction
 constexpr int max_functions = 64;  ///< functions that live on one element
 
-/// Up to `lanes` elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
+/// Up to pack_lanes() elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
 struct Batch {
   int used = 0;                       ///< lanes that hold an element of their own
   int functions = 0;                  ///< m, the largest of its elements; missing functions have zero extraction
-  std::array<int, lanes> elements{};  ///< ids in the space
-  std::size_t points = 0;             ///< where its control-point ids start in Group::points, [A * lanes + lane]
+  std::array<int, most_lanes> elements{};  ///< ids in the space
+  std::size_t points = 0;             ///< where its control-point ids start in Group::points, [A * pack_lanes() + lane]
   std::size_t extraction = 0;         ///< where its extraction starts in Group::extraction, [A * (p + 1)^2 + b]
 };
 

@@ -2,20 +2,22 @@
 
 #include <cstring>
 
+#include "base/kernel.hpp"
 #include "membrane/packed.hpp"
 
 namespace tanktread::membrane {
+namespace INSTRUCTIONS {
 namespace {
 
 constexpr int max_bernstein = (max_degree + 1) * (max_degree + 1);
 
 // out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = first .. first + Width - 1
 template <int Width>
-void extract(const Pack* e, int across_r, int across_k, const Pack* x, int n_r, int first, Pack* out) {
-  Pack sum[Width][3] = {};
+void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int first, Register* out) {
+  Register sum[Width][3] = {};
   for (int r = 0; r < n_r; ++r)
     for (int k = 0; k < Width; ++k) {
-      const Pack& factor = e[r * across_r + (first + k) * across_k];
+      const Register& factor = e[r * across_r + (first + k) * across_k];
       for (int c = 0; c < 3; ++c) sum[k][c] += factor * x[3 * r + c];
     }
   for (int k = 0; k < Width; ++k)
@@ -23,13 +25,13 @@ void extract(const Pack* e, int across_r, int across_k, const Pack* x, int n_r, 
 }
 
 // For all n_k, several at a time.
-void extract(const Pack* e, int across_r, int across_k, const Pack* x, int n_r, int n_k, Pack* out) {
+void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int n_k, Register* out) {
   int k = 0;
   for (; k + 4 <= n_k; k += 4) extract<4>(e, across_r, across_k, x, n_r, k, out);
   for (; k < n_k; ++k) extract<1>(e, across_r, across_k, x, n_r, k, out);
 }
 
-void gather(const Group& g, const Batch& batch, const Net& net, Pack* x) {
+void gather(const Group& g, const Batch& batch, const Net& net, Register* x) {
   const int* points = &g.points[batch.points];
   const double* rows = net.data();
   for (int a = 0; a < batch.functions; ++a)
@@ -39,7 +41,7 @@ void gather(const Group& g, const Batch& batch, const Net& net, Pack* x) {
     }
 }
 
-void scatter(const Group& g, const Batch& batch, const Pack* f, Net& sum) {
+void scatter(const Group& g, const Batch& batch, const Register* f, Net& sum) {
   const int* points = &g.points[batch.points];
   double* rows = sum.data();
   for (int l = 0; l < batch.used; ++l)
@@ -63,12 +65,12 @@ struct Rule {
 
   // The first n derivatives at all nodes, a[3 (n node + derivative) + c], from Bezier points: sums over s first, then over t.
   template <int n>
-  void evaluate(const Pack* bezier, Pack* a) const {
+  void evaluate(const Register* bezier, Register* a) const {
     constexpr int m = n == 2 ? 2 : 3;
-    Pack along[max_p + 1][max_q][m][3];  // value and derivatives by s, on each row j
+    Register along[max_p + 1][max_q][m][3];  // value and derivatives by s, on each row j
     for (int j = 0; j <= p; ++j)
       for (int k = 0; k < q; ++k) {
-        Pack sum[m][3] = {};
+        Register sum[m][3] = {};
         for (int i = 0; i <= p; ++i)
           for (int d = 0; d < m; ++d)
             for (int c = 0; c < 3; ++c) sum[d][c] += bernstein[d][k * (p + 1) + i] * bezier[3 * ((p + 1) * j + i) + c];
@@ -76,7 +78,7 @@ struct Rule {
       }
     for (int l = 0; l < q; ++l)
       for (int k = 0; k < q; ++k) {
-        Pack sum[n][3] = {};
+        Register sum[n][3] = {};
         for (int j = 0; j <= p; ++j)
           for (int d = 0; d < n; ++d)
             for (int c = 0; c < 3; ++c) sum[d][c] += bernstein[times_t[d]][l * (p + 1) + j] * along[j][k][times_s[d]][c];
@@ -85,12 +87,12 @@ struct Rule {
   }
 
   template <int n>
-  void transpose(const Pack* a, Pack* bezier) const {
+  void transpose(const Register* a, Register* bezier) const {
     constexpr int m = n == 2 ? 2 : 3;
-    Pack along[max_p + 1][max_q][m][3];
+    Register along[max_p + 1][max_q][m][3];
     for (int j = 0; j <= p; ++j)
       for (int k = 0; k < q; ++k) {
-        Pack sum[m][3] = {};
+        Register sum[m][3] = {};
         for (int l = 0; l < q; ++l)
           for (int d = 0; d < n; ++d)
             for (int c = 0; c < 3; ++c) sum[times_s[d]][c] += bernstein[times_t[d]][l * (p + 1) + j] * a[3 * (n * (l * q + k) + d) + c];
@@ -98,7 +100,7 @@ struct Rule {
       }
     for (int j = 0; j <= p; ++j)
       for (int i = 0; i <= p; ++i) {
-        Pack sum[3] = {};
+        Register sum[3] = {};
         for (int k = 0; k < q; ++k)
           for (int d = 0; d < m; ++d)
             for (int c = 0; c < 3; ++c) sum[c] += bernstein[d][k * (p + 1) + i] * along[j][k][d][c];
@@ -118,17 +120,17 @@ void with_rule(const Group& g, const Use& use) {
 
 template <int n>
 void evaluate(const Group& group, const Batch& batch, const Net& net, Pack* a) {
-  Pack x[3 * max_functions], bezier[3 * max_bernstein];
+  Register x[3 * max_functions], bezier[3 * max_bernstein];
   gather(group, batch, net, x);
-  extract(&group.extraction[batch.extraction], group.n_bernstein(), 1, x, batch.functions, group.n_bernstein(), bezier);
-  with_rule(group, [&](const auto& rule) { rule.template evaluate<n>(bezier, a); });
+  extract(registers(&group.extraction[batch.extraction]), group.n_bernstein(), 1, x, batch.functions, group.n_bernstein(), bezier);
+  with_rule(group, [&](const auto& rule) { rule.template evaluate<n>(bezier, registers(a)); });
 }
 
 template <int n>
 void transpose(const Group& group, const Batch& batch, const Pack* a, Net& sum) {
-  Pack f[3 * max_functions], bezier[3 * max_bernstein];
-  with_rule(group, [&](const auto& rule) { rule.template transpose<n>(a, bezier); });
-  extract(&group.extraction[batch.extraction], 1, group.n_bernstein(), bezier, group.n_bernstein(), batch.functions, f);
+  Register f[3 * max_functions], bezier[3 * max_bernstein];
+  with_rule(group, [&](const auto& rule) { rule.template transpose<n>(registers(a), bezier); });
+  extract(registers(&group.extraction[batch.extraction]), 1, group.n_bernstein(), bezier, group.n_bernstein(), batch.functions, f);
   scatter(group, batch, f, sum);
 }
 
@@ -138,5 +140,12 @@ void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a) {
 void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) { transpose<2>(group, batch, p, sum); }
 void jets(const Group& group, const Batch& batch, const Net& net, Pack* j) { evaluate<5>(group, batch, net, j); }
 void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) { transpose<5>(group, batch, p, sum); }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, tangents, (const Group& group, const Batch& batch, const Net& net, Pack* a), (group, batch, net, a))
+KERNEL(void, add_transpose, (const Group& group, const Batch& batch, const Pack* p, Net& sum), (group, batch, p, sum))
+KERNEL(void, jets, (const Group& group, const Batch& batch, const Net& net, Pack* j), (group, batch, net, j))
+KERNEL(void, add_jet_transpose, (const Group& group, const Batch& batch, const Pack* p, Net& sum), (group, batch, p, sum))
 
 }  // namespace tanktread::membrane

@@ -9,24 +9,28 @@
 namespace tanktread::membrane {
 
 /// The unstressed surface at a Gauss point.
-struct ReferencePoint {
-  Pack g11, g12, g22;  ///< contravariant metric G^ab
-  Pack inverse_det;    ///< 1/|G|
-  Pack area;           ///< Gauss weight times sqrt|G|; zero on idle lanes
+template <class Number>
+struct ReferencePointOf {
+  Number g11, g12, g22;  ///< contravariant metric G^ab
+  Number inverse_det;    ///< 1/|G|
+  Number area;           ///< Gauss weight times sqrt|G|; zero on idle lanes
 };
+using ReferencePoint = ReferencePointOf<Pack>;
 
 /// The tangent at a Gauss point. With e = (a1.u1, a1.u2 + a2.u1, a2.u2) the change of the stress is dS = C e.
-struct TangentPoint {
-  Pack a1[3], a2[3];                  ///< tangents of the linearisation
-  Pack s11, s12, s22;                 ///< stress S^ab, weights included: p_a = S^ab a_b
-  Pack c11, c12, c13, c22, c23, c33;  ///< moduli C, weights included
+template <class Number>
+struct TangentPointOf {
+  Number a1[3], a2[3];                  ///< tangents of the linearisation
+  Number s11, s12, s22;                 ///< stress S^ab, weights included: p_a = S^ab a_b
+  Number c11, c12, c13, c22, c23, c33;  ///< moduli C, weights included
 };
+using TangentPoint = TangentPointOf<Pack>;
 
-/// The reference from its tangents.
-void reference_points(int n, const Pack* a, const double* weight, ReferencePoint* reference);
+/// The reference from its tangents; `used` of the lanes hold elements.
+void reference_points(int n, int used, const Pack* a, const double* weight, ReferencePoint* reference);
 
 /// int Psi over the elements of a batch, lane by lane.
-Pack energy(const Law& law, int n, const ReferencePoint* reference, const Pack* a);
+void energy(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* energy);
 
 /// p = dE/da at every Gauss point, in the layout of a:  p_a = S^ab a_b,
 ///
@@ -45,7 +49,7 @@ void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p);
 void curvatures(int n, const Pack* jets, Pack* curvature);
 
 /// Eb/2 int (2 chi - c0)^2 dGamma over the elements of a batch, lane by lane, c0 at every point.
-Pack bending_energy(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets);
+void bending_energy(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* energy);
 
 /// p = its gradient by the jets.
 void bending_stresses(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* p);

@@ -1,8 +1,9 @@
 #include "stokes/assembly_kernel.hpp"
 
-#include "base/pack.hpp"
+#include "base/kernel.hpp"
 
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 namespace {
 
 // g[block (6 k + c) + l]
@@ -23,7 +24,7 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
                  rz = static_cast<Real>(z - target[2 * n + l]);
       inverses[l] = rx * rx + ry * ry + rz * rz;
     }
-    for (int l = 0; l < n; l += Register<Real>::lanes) store(inverse_root(load(inverses + l)), inverses + l);
+    for (int l = 0; l < n; l += RegisterOf<Real>::lanes) store(inverse_root(load(inverses + l)), inverses + l);
     for (int l = 0; l < n; ++l) {
       const Real rx = static_cast<Real>(x - target[l]), ry = static_cast<Real>(y - target[n + l]),
                  rz = static_cast<Real>(z - target[2 * n + l]);
@@ -44,12 +45,12 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
 // Four functions and six kernel entries at a time: 24 packs of sums in registers, where there are as many.
 template <class Real>
 void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
-  using Pack = typename Register<Real>::Pack;
+  using Several = typename RegisterOf<Real>::Type;
   for (int a = 0; a < panel.functions; a += assembly_tile) {
     const Real* basis = panel.basis + static_cast<std::ptrdiff_t>(panel.n_nodes) * a;
-    Pack total[assembly_tile][6] = {};
+    Several total[assembly_tile][6] = {};
     for (int k = 0; k < panel.n_nodes; ++k) {
-      Pack row[6];
+      Several row[6];
 #pragma GCC unroll 6
       for (int c = 0; c < 6; ++c) row[c] = load(g + assembly_block * (6 * k + c) + first);
 #pragma GCC unroll 4
@@ -68,18 +69,30 @@ void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real*
   }
 }
 
-}  // namespace
-
 template <class Real>
-void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums) {
+void moments_and_products(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums) {
   if (panel.weight)
     kernel_values<Real, false>(panel, target, skip, scratch);
   else
     kernel_values<Real, true>(panel, target, skip, scratch);
-  for (int first = 0; first < assembly_block; first += Register<Real>::lanes) add_products(panel, scratch, first, sums);
+  for (int first = 0; first < assembly_block; first += RegisterOf<Real>::lanes) add_products(panel, scratch, first, sums);
 }
 
-template void add_far_moments<float>(const PanelNodes<float>&, const double*, std::uint32_t, float*, float*);
-template void add_far_moments<double>(const PanelNodes<double>&, const double*, std::uint32_t, double*, double*);
+}  // namespace
+
+void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums) {
+  moments_and_products(panel, target, skip, scratch, sums);
+}
+
+void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums) {
+  moments_and_products(panel, target, skip, scratch, sums);
+}
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, far_moments, (const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums),
+       (panel, target, skip, scratch, sums))
+KERNEL(void, far_moments, (const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums),
+       (panel, target, skip, scratch, sums))
 
 }  // namespace tanktread::stokes

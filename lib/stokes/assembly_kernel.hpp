@@ -23,7 +23,11 @@ struct PanelNodes {
 /// sums[block (6 rows[A] + c) + l] += sum_k G_c(x_k, x0_l) N_A(x_k) w_k for the targets l whose bit in `skip` is not set;
 /// c = 11, 12, 13, 22, 23, 33 (2.1), or the same of T_ijk n_k where normals are given. Target l has the coordinates target[l],
 /// target[block + l], target[2 block + l], block = 16. Differences are taken in double precision. `scratch`: 6 n_nodes blocks.
+void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums);
+void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums);
 template <class Real>
-void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums);
+void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums) {
+  far_moments(panel, target, skip, scratch, sums);
+}
 
 }  // namespace tanktread::stokes

@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include "base/kernel.hpp"
+
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 
 CapSums cap_sums(int n, const double* y, const double* z, const double* normal_y, const double* normal_z, double h, double y0, double z0) {
   double flux = 0, sum_y = 0, sum_z = 0;
@@ -14,5 +17,11 @@ CapSums cap_sums(int n, const double* y, const double* z, const double* normal_y
   }
   return {flux, sum_y, sum_z};
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(CapSums, cap_sums,
+       (int n, const double* y, const double* z, const double* normal_y, const double* normal_z, double h, double y0, double z0),
+       (n, y, z, normal_y, normal_z, h, y0, z0))
 
 }  // namespace tanktread::stokes

@@ -3,25 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/pack.hpp"
+#include "base/kernel.hpp"
 
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 namespace {
 
 struct Complex {
-  Pack re, im;
+  Register re, im;
 };
 
 Complex operator*(const Complex& a, const Complex& b) { return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re}; }
 
 Complex operator/(const Complex& a, const Complex& b) {
-  const Pack inverse = 1 / (b.re * b.re + b.im * b.im);
+  const Register inverse = 1 / (b.re * b.re + b.im * b.im);
   return {(a.re * b.re + a.im * b.im) * inverse, (a.im * b.re - a.re * b.im) * inverse};
 }
 
 /// 1/(zeta_j - z); not a number or infinite where z is the node.
 inline Complex inverse(const CauchyNodes& nodes, int j, const Complex& z) {
-  const Pack x = nodes.x[j] - z.re, y = nodes.y[j] - z.im, square = 1 / (x * x + y * y);
+  const Register x = nodes.x[j] - z.re, y = nodes.y[j] - z.im, square = 1 / (x * x + y * y);
   return {x * square, -y * square};
 }
 
@@ -33,7 +34,7 @@ Value value(const CauchyNodes& nodes, const Complex& z, bool with_slope) {
   Complex one{}, sum{};
   for (int j = 0; j < nodes.n; ++j) {
     const Complex r = inverse(nodes, j, z);
-    const Pack c_re = nodes.dx[j] * r.re - nodes.dy[j] * r.im, c_im = nodes.dx[j] * r.im + nodes.dy[j] * r.re;
+    const Register c_re = nodes.dx[j] * r.re - nodes.dy[j] * r.im, c_im = nodes.dx[j] * r.im + nodes.dy[j] * r.re;
     one.re += c_re, one.im += c_im;
     sum.re += nodes.f[j] * c_re - nodes.g[j] * c_im;
     sum.im += nodes.f[j] * c_im + nodes.g[j] * c_re;
@@ -71,5 +72,11 @@ void cauchy_sums(const CauchyNodes& nodes, double scale, int n, const double* x,
     }
   }
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, cauchy_sums,
+       (const CauchyNodes& nodes, double scale, int n, const double* x, const double* y, double* f, double* fx, double* fy),
+       (nodes, scale, n, x, y, f, fx, fy))
 
 }  // namespace tanktread::stokes

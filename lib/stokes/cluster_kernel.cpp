@@ -5,7 +5,10 @@
 #include <cstring>
 #include <numbers>
 
+#include "base/kernel.hpp"
+
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 namespace {
 
 /// Nodes of one direction, and 1 / prod_{b != a} (x_a - x_b).
@@ -33,14 +36,14 @@ const Nodes& nodes(int n) {
 }
 
 /// Lagrange polynomials at x, without a division.
-void lagrange(int n, const Pack& x, Pack* value) {
+void lagrange(int n, const Register& x, Register* value) {
   const Nodes& at = nodes(n);
-  Pack product = Pack{} + 1;
+  Register product = Register{} + 1;
   for (int a = 0; a < n; ++a) {
     value[a] = product * at.scale[a];
     product *= x - at.x[a];
   }
-  product = Pack{} + 1;
+  product = Register{} + 1;
   for (int a = n - 1; a >= 0; --a) {
     value[a] *= product;
     product *= x - at.x[a];
@@ -49,10 +52,10 @@ void lagrange(int n, const Pack& x, Pack* value) {
 
 /// Lagrange polynomials of the three directions at a register of points.
 struct Basis {
-  Pack along[3][most_chebyshev];
+  Register along[3][most_chebyshev];
 
-  void place(const ChebyshevBox& box, const Pack& x, const Pack& y, const Pack& z) {
-    const Pack rx = x - box.centre[0], ry = y - box.centre[1], rz = z - box.centre[2];
+  void place(const ChebyshevBox& box, const Register& x, const Register& y, const Register& z) {
+    const Register rx = x - box.centre[0], ry = y - box.centre[1], rz = z - box.centre[2];
     for (int d = 0; d < 3; ++d) {
       const double scale = box.half[d] > 0 ? 1 / box.half[d] : 0;
       lagrange(box.order[d], (rx * box.axes[d][0] + ry * box.axes[d][1] + rz * box.axes[d][2]) * scale, along[d]);
@@ -60,27 +63,27 @@ struct Basis {
   }
 };
 
-Pack load_some(const double* a, int n) {
-  Pack p{};
+Register load_some(const double* a, int n) {
+  Register p{};
   std::memcpy(&p, a, sizeof(double) * std::min(n, lanes));
   return p;
 }
 
 template <int N>
-void spread_components(const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q) {
+void spread_components(const ChebyshevBox& box, const Charges& points, Register* scratch, const std::array<double*, 6>& node_q) {
   const auto [n0, n1, n2] = box.order;
-  std::fill_n(scratch, N * box.n_nodes(), Pack{});
+  std::fill_n(scratch, N * box.n_nodes(), Register{});
   Basis basis;
   for (int k = 0; k < points.n; k += lanes) {
     const int n = points.n - k;  // lanes beyond the last point carry nothing
     basis.place(box, load_some(points.x + k, n), load_some(points.y + k, n), load_some(points.z + k, n));
-    Pack q[N];
+    Register q[N];
     for (int d = 0; d < N; ++d) q[d] = load_some(points.q[d] + k, n);
-    Pack* sum = scratch;
+    Register* sum = scratch;
     for (int c = 0; c < n2; ++c)
       for (int b = 0; b < n1; ++b) {
-        const Pack both = basis.along[1][b] * basis.along[2][c];
-        Pack part[N];
+        const Register both = basis.along[1][b] * basis.along[2][c];
+        Register part[N];
         for (int d = 0; d < N; ++d) part[d] = both * q[d];
         for (int a = 0; a < n0; ++a, sum += N)
           for (int d = 0; d < N; ++d) sum[d] += basis.along[0][a] * part[d];
@@ -97,20 +100,20 @@ void interpolate_components(const ChebyshevBox& box, const double* node_u, int b
   for (int k = 0; k < blocks; ++k, target += 3 * far_block, u += N * far_block)
     for (int l = 0; l < far_block; l += lanes) {
       basis.place(box, load(target + l), load(target + far_block + l), load(target + 2 * far_block + l));
-      Pack sum[N]{};
+      Register sum[N]{};
       int i = 0;
       for (int c = 0; c < n2; ++c)
         for (int b = 0; b < n1; ++b) {
-          Pack row[N]{};
+          Register row[N]{};
           for (int a = 0; a < n0; ++a, ++i) {
             const double* node = node_u + N * far_block * (i / far_block) + i % far_block;
             for (int d = 0; d < N; ++d) row[d] += basis.along[0][a] * node[far_block * d];
           }
-          const Pack both = basis.along[1][b] * basis.along[2][c];
+          const Register both = basis.along[1][b] * basis.along[2][c];
           for (int d = 0; d < N; ++d) sum[d] += both * row[d];
         }
       for (int d = 0; d < N; ++d) {
-        const Pack value = load(u + far_block * d + l) + sum[d];
+        const Register value = load(u + far_block * d + l) + sum[d];
         store(value, u + far_block * d + l);
       }
     }
@@ -131,11 +134,20 @@ void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z) {
 }
 
 void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q) {
-  n == 3 ? spread_components<3>(box, points, scratch, node_q) : spread_components<6>(box, points, scratch, node_q);
+  Register* const sums = registers(scratch);
+  n == 3 ? spread_components<3>(box, points, sums, node_q) : spread_components<6>(box, points, sums, node_q);
 }
 
 void interpolate(int n, const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u) {
   n == 3 ? interpolate_components<3>(box, node_u, blocks, target, u) : interpolate_components<6>(box, node_u, blocks, target, u);
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, chebyshev_nodes, (const ChebyshevBox& box, double* x, double* y, double* z), (box, x, y, z))
+KERNEL(void, spread, (int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q),
+       (n, box, points, scratch, node_q))
+KERNEL(void, interpolate, (int n, const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u),
+       (n, box, node_u, blocks, target, u))
 
 }  // namespace tanktread::stokes

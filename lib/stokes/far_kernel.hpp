@@ -31,7 +31,8 @@ struct Stresslets {
 constexpr int far_block = 16;
 
 /// u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
-/// target[2 far_block + l]; u alike. Each target's sum runs over the nodes in their order. A node at the target counts as nothing.
+/// target[2 far_block + l]; u alike. Each target's sum runs over the nodes in their order. A node at the target,
+/// to rounding (2^-40 of the target's distance from the origin), counts as nothing.
 void far_sum(const PointForces& forces, const double* target, double* u);
 
 /// u[3 k + c] of it for any number of targets.
@@ -60,17 +61,20 @@ struct Charges {
 
 /// Kernels that TreeSum interpolates: numbers a point carries, numbers a target gets, and the sum for far_block targets, which are given as
 /// to far_sum(); value[far_block c + l].
+void stokeslet_sum(const Charges& points, const double* target, double* value);
+void stresslet_sum(const Charges& points, const double* target, double* value);
+void normal_stress_sum(const Charges& points, const double* target, double* value);
 struct StokesletKernel {  ///< forces -> G f
   static constexpr int in = 3, out = 3;
-  static void sum(const Charges& points, const double* target, double* value);
+  static constexpr auto* sum = stokeslet_sum;
 };
 struct StressletKernel {  ///< S_jk + S_kj over 2 in the order 11, 22, 33, 12, 13, 23 -> T_ijk S_jk
   static constexpr int in = 6, out = 3;
-  static void sum(const Charges& points, const double* target, double* value);
+  static constexpr auto* sum = stresslet_sum;
 };
 struct NormalStressKernel {  ///< n_k -> T_ijk n_k, ij in the order 11, 22, 33, 12, 13, 23
   static constexpr int in = 3, out = 6;
-  static void sum(const Charges& points, const double* target, double* value);
+  static constexpr auto* sum = normal_stress_sum;
 };
 
 }  // namespace tanktread::stokes

@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include "base/kernel.hpp"
+
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 
 IdentitySums identity_sums(int n, const double* x, const double* y, const double* z, const double* nx, const double* ny, const double* nz,
                            const double* x0, const double* n0) {
@@ -29,5 +32,12 @@ IdentitySums identity_sums(int n, const double* x, const double* y, const double
   for (int k = 0; k < 9; ++k) sums.shear[k] = (k % 4 ? 0 : isotropic) + dyadic[entry[k]] + mixed[k];
   return sums;
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(IdentitySums, identity_sums,
+       (int n, const double* x, const double* y, const double* z, const double* nx, const double* ny, const double* nz, const double* x0,
+        const double* n0),
+       (n, x, y, z, nx, ny, nz, x0, n0))
 
 }  // namespace tanktread::stokes

@@ -2,33 +2,36 @@
 
 #include <cmath>
 
+#include "base/kernel.hpp"
+
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 namespace {
 
 // One pack of points of a table. The degree is a template argument where it is usual, 0 where it is known at run time only.
 template <int Degree>
 struct Points {
   const int n;
-  const Pack *bs, *bt, *ds, *dt;
+  const Register *bs, *bt, *ds, *dt;
   Points(const PointTable& table, int k) : n(Degree ? Degree + 1 : table.degree + 1) {
-    bs = table.bernstein.data() + static_cast<std::ptrdiff_t>(4) * n * k;
+    bs = registers(table.bernstein.data()) + static_cast<std::ptrdiff_t>(4) * n * k;
     bt = bs + n, ds = bt + n, dt = ds + n;
   }
 
-  Pack value(const double* q) const {
-    Pack total{};
+  Register value(const double* q) const {
+    Register total{};
     for (int j = 0; j < n; ++j) {
-      Pack row{};
+      Register row{};
       for (int i = 0; i < n; ++i) row += bs[i] * q[n * j + i];
       total += bt[j] * row;
     }
     return total;
   }
 
-  void gradient(const double* q, Pack& along_s, Pack& along_t) const {
-    along_s = along_t = Pack{};
+  void gradient(const double* q, Register& along_s, Register& along_t) const {
+    along_s = along_t = Register{};
     for (int j = 0; j < n; ++j) {
-      Pack row{}, slope{};
+      Register row{}, slope{};
       for (int i = 0; i < n; ++i) row += bs[i] * q[n * j + i], slope += ds[i] * q[n * j + i];
       along_s += bt[j] * slope;
       along_t += dt[j] * row;
@@ -36,8 +39,8 @@ struct Points {
   }
 
   // r = x - x0, n = x_,s x x_,t, and r.n
-  Pack height(const double* x, int n_b, const double* x0, Pack (&r)[3], Pack (&normal)[3]) const {
-    Pack a[3], b[3];
+  Register height(const double* x, int n_b, const double* x0, Register (&r)[3], Register (&normal)[3]) const {
+    Register a[3], b[3];
     for (int c = 0; c < 3; ++c) {
       r[c] = value(x + n_b * c) - x0[c];
       gradient(x + n_b * c, a[c], b[c]);
@@ -49,26 +52,26 @@ struct Points {
 
 template <int Degree>
 struct Sums {
-  static void area_weights(const PointTable& table, const double* bezier, Pack* weight) {
+  static void area_weights(const PointTable& table, const double* bezier, Register* weight) {
     const int n_b = (table.degree + 1) * (table.degree + 1);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      Pack a[3], b[3];
+      Register a[3], b[3];
       for (int c = 0; c < 3; ++c) points.gradient(bezier + n_b * c, a[c], b[c]);
-      const Pack nx = a[1] * b[2] - a[2] * b[1], ny = a[2] * b[0] - a[0] * b[2], nz = a[0] * b[1] - a[1] * b[0];
-      weight[k] = table.weights[k] * sqrt(nx * nx + ny * ny + nz * nz);
+      const Register nx = a[1] * b[2] - a[2] * b[1], ny = a[2] * b[0] - a[0] * b[2], nz = a[0] * b[1] - a[1] * b[0];
+      weight[k] = registers(table.weights.data())[k] * sqrt(nx * nx + ny * ny + nz * nz);
     }
   }
 
-  static void single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
+  static void single_sum(const PointTable& table, const double* x, const double* f, const Register* weight, const double* x0, double* u) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
-    Pack ux{}, uy{}, uz{};
+    Register ux{}, uy{}, uz{};
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      const Pack rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
-      const Pack fx = points.value(f), fy = points.value(f + n_b), fz = points.value(f + 2 * n_b);
-      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), weighted = inverse * weight[k];
-      const Pack along = (rx * fx + ry * fy + rz * fz) * (inverse * inverse);
+      const Register rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
+      const Register fx = points.value(f), fy = points.value(f + n_b), fz = points.value(f + 2 * n_b);
+      const Register inverse = inverse_root(rx * rx + ry * ry + rz * rz), weighted = inverse * weight[k];
+      const Register along = (rx * fx + ry * fy + rz * fz) * (inverse * inverse);
       ux += weighted * (fx + rx * along);
       uy += weighted * (fy + ry * along);
       uz += weighted * (fz + rz * along);
@@ -76,13 +79,13 @@ struct Sums {
     u[0] = sum(ux), u[1] = sum(uy), u[2] = sum(uz);
   }
 
-  static void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* g, double* moment) {
+  static void single_moments(const PointTable& table, const double* x, const Register* weight, const double* x0, Register* g, double* moment) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      const Pack rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
-      const Pack inverse = inverse_root(rx * rx + ry * ry + rz * rz), weighted = inverse * weight[k];
-      const Pack cube = weighted * inverse * inverse;
+      const Register rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
+      const Register inverse = inverse_root(rx * rx + ry * ry + rz * rz), weighted = inverse * weight[k];
+      const Register cube = weighted * inverse * inverse;
       g[6 * k] = weighted + cube * rx * rx, g[6 * k + 1] = cube * rx * ry, g[6 * k + 2] = cube * rx * rz;
       g[6 * k + 3] = weighted + cube * ry * ry, g[6 * k + 4] = cube * ry * rz, g[6 * k + 5] = weighted + cube * rz * rz;
     }
@@ -91,11 +94,11 @@ struct Sums {
 
   static void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
-    Pack total[3] = {};
+    Register total[3] = {};
     for (int k = 0; k < table.packs(); ++k) {
-      Pack r[3], n[3];
-      const Pack normal = Points<Degree>(table, k).height(x, n_b, x0, r, n);
-      const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), weighted = inverse * table.weights[k];
+      Register r[3], n[3];
+      const Register normal = Points<Degree>(table, k).height(x, n_b, x0, r, n);
+      const Register inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), weighted = inverse * registers(table.weights.data())[k];
       for (int c = 0; c < 3; ++c) total[c] += weighted * (n[c] + r[c] * (normal * inverse * inverse));
     }
     for (int c = 0; c < 3; ++c) u[c] = sum(total[c]);
@@ -103,15 +106,15 @@ struct Sums {
 
   static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
-    Pack ux{}, uy{}, uz{};
+    Register ux{}, uy{}, uz{};
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      Pack r[3], n[3];
-      const Pack normal = points.height(x, n_b, x0, r, n) * table.weights[k];
-      const Pack velocity =
+      Register r[3], n[3];
+      const Register normal = points.height(x, n_b, x0, r, n) * registers(table.weights.data())[k];
+      const Register velocity =
           r[0] * (points.value(v) - v0[0]) + r[1] * (points.value(v + n_b) - v0[1]) + r[2] * (points.value(v + 2 * n_b) - v0[2]);
-      const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
-      const Pack strength = -6 * velocity * normal * (square * square * inverse);
+      const Register inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
+      const Register strength = -6 * velocity * normal * (square * square * inverse);
       ux += strength * r[0];
       uy += strength * r[1];
       uz += strength * r[2];
@@ -119,14 +122,14 @@ struct Sums {
     u[0] = sum(ux), u[1] = sum(uy), u[2] = sum(uz);
   }
 
-  static void double_moments(const PointTable& table, const double* x, const double* x0, Pack* g, double* moment) {
+  static void double_moments(const PointTable& table, const double* x, const double* x0, Register* g, double* moment) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
-      Pack r[3], n[3];
-      const Pack normal = points.height(x, n_b, x0, r, n) * table.weights[k];
-      const Pack inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
-      const Pack strength = -6 * normal * (square * square * inverse);
+      Register r[3], n[3];
+      const Register normal = points.height(x, n_b, x0, r, n) * registers(table.weights.data())[k];
+      const Register inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), square = inverse * inverse;
+      const Register strength = -6 * normal * (square * square * inverse);
       int c = 6 * k;
       for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j) g[c++] = strength * r[i] * r[j];
@@ -135,14 +138,14 @@ struct Sums {
   }
 
   // moment[6 b + c] = sum over the points of g[6 k + c] B_b
-  static void project(const PointTable& table, const Pack* g, double* moment) {
+  static void project(const PointTable& table, const Register* g, double* moment) {
     const int n = Degree ? Degree + 1 : table.degree + 1;
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
-        Pack total[6] = {};
+        Register total[6] = {};
         for (int k = 0; k < table.packs(); ++k) {
           const Points<Degree> points(table, k);
-          const Pack b = points.bs[i] * points.bt[j];
+          const Register b = points.bs[i] * points.bt[j];
           for (int c = 0; c < 6; ++c) total[c] += g[6 * k + c] * b;
         }
         for (int c = 0; c < 6; ++c) moment[6 * (n * j + i) + c] = sum(total[c]);
@@ -160,15 +163,15 @@ void with_degree(int degree, const Use& use) {
 }  // namespace
 
 void area_weights(const PointTable& table, const double* bezier, Pack* weight) {
-  with_degree(table.degree, [&](auto sums) { sums.area_weights(table, bezier, weight); });
+  with_degree(table.degree, [&](auto sums) { sums.area_weights(table, bezier, registers(weight)); });
 }
 
 void single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
-  with_degree(table.degree, [&](auto sums) { sums.single_sum(table, x, f, weight, x0, u); });
+  with_degree(table.degree, [&](auto sums) { sums.single_sum(table, x, f, registers(weight), x0, u); });
 }
 
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment) {
-  with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, weight, x0, scratch, moment); });
+  with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, registers(weight), x0, registers(scratch), moment); });
 }
 
 void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
@@ -180,7 +183,20 @@ void double_sum(const PointTable& table, const double* x, const double* v, const
 }
 
 void double_moments(const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment) {
-  with_degree(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, scratch, moment); });
+  with_degree(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, registers(scratch), moment); });
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, area_weights, (const PointTable& table, const double* bezier, Pack* weight), (table, bezier, weight))
+KERNEL(void, single_sum, (const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u),
+       (table, x, f, weight, x0, u))
+KERNEL(void, single_moments, (const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment),
+       (table, x, weight, x0, scratch, moment))
+KERNEL(void, pressure_sum, (const PointTable& table, const double* x, const double* x0, double* u), (table, x, x0, u))
+KERNEL(void, double_sum, (const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u),
+       (table, x, v, x0, v0, u))
+KERNEL(void, double_moments, (const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment),
+       (table, x, x0, scratch, moment))
 
 }  // namespace tanktread::stokes

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "base/kernel.hpp"
+
 namespace tanktread::stokes {
+namespace INSTRUCTIONS {
 namespace {
 
 // n_b is a template argument where it is usual, 0 where it is known at run time only.
@@ -63,5 +66,15 @@ void mark_within(int n, const double* x, const double* y, const double* z, const
     within[k] = rx * rx + ry * ry + rz * rz < reach[k];
   }
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, extract, (int n_b, int functions, const int* points, const double* extraction, const double* net, double* bezier),
+       (n_b, functions, points, extraction, net, bezier))
+KERNEL(void, combine, (int n_b, int n, const double* table, const double* coefficient, double* value), (n_b, n, table, coefficient, value))
+KERNEL(void, weigh_normals, (int n, const double* tangents, const double* gauss, double* nx, double* ny, double* nz),
+       (n, tangents, gauss, nx, ny, nz))
+KERNEL(void, mark_within, (int n, const double* x, const double* y, const double* z, const double* reach, const double* target, char* within),
+       (n, x, y, z, reach, target, within))
 
 }  // namespace tanktread::stokes

@@ -16,6 +16,20 @@ std::string bytes(const Eigen::MatrixXd& matrix) {
   return key;
 }
 
+/// Room for n numbers, without an allocation where they are as few as usual.
+struct Room {
+  explicit Room(int n) {
+    if (n <= most) return;
+    larger.resize(n);
+    numbers = larger.data();
+  }
+
+  static constexpr int most = 3 * 64;
+  double usual[most];
+  std::vector<double> larger;
+  double* numbers = usual;
+};
+
 }  // namespace
 
 Blocks blocks_by_degree(const spline::Space& space) {
@@ -57,7 +71,10 @@ BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), bl
 void BezierMap::points(int element, const Net& net, double* out) const {
   const Operator& c = operators_[elements_[element].operation];
   const int* ids = points_.data() + elements_[element].first;
-  three_sums(c.n_b, c.m, c.by_function.data(), [&](int a, int k) { return net.data()[3 * ids[a] + k]; }, out);
+  Room control(3 * c.m);
+  for (int a = 0; a < c.m; ++a)
+    for (int k = 0; k < 3; ++k) control.numbers[k * c.m + a] = net.data()[3 * ids[a] + k];
+  three_sums(c.n_b, c.m, c.by_function.data(), control.numbers, out);
 }
 
 void BezierMap::points(const Block& block, const Net& net, Eigen::MatrixXd& out) const {
@@ -74,17 +91,10 @@ void BezierMap::points(const Block& block, const Net& net, Eigen::MatrixXd& out)
 void BezierMap::add_transposed(int element, const double* in, Net& net) const {
   const Operator& operation = operators_[elements_[element].operation];
   const int* ids = points_.data() + elements_[element].first;
-  constexpr int most = 64;
-  double values[3 * most];
-  std::vector<double> larger;
-  double* out = values;
-  if (operation.m > most) {
-    larger.resize(3 * operation.m);
-    out = larger.data();
-  }
-  three_sums(operation.m, operation.n_b, operation.by_bezier.data(), [&](int b, int c) { return in[c * operation.n_b + b]; }, out);
+  Room sums(3 * operation.m);
+  three_sums(operation.m, operation.n_b, operation.by_bezier.data(), in, sums.numbers);
   for (int a = 0; a < operation.m; ++a)
-    for (int c = 0; c < 3; ++c) net(ids[a], c) += out[c * operation.m + a];
+    for (int c = 0; c < 3; ++c) net(ids[a], c) += sums.numbers[c * operation.m + a];
 }
 
 }  // namespace tanktread::surface

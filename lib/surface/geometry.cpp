@@ -18,6 +18,7 @@ void each_group(const BezierMap& map, const Net& net, std::span<const int> eleme
   kernel::Lanes packed;
   std::vector<double> one(3 * kernel::most_bezier);
   std::vector<int> group;
+  const int lanes = pack_lanes();
   for (const Block& block : map.blocks().blocks) {
     const int n = 3 * (block.degree + 1) * (block.degree + 1);
     const auto flush = [&] {
@@ -31,7 +32,7 @@ void each_group(const BezierMap& map, const Net& net, std::span<const int> eleme
       map.points(e, net, one.data());
       for (int k = 0; k < n; ++k) packed.value[k * lanes + static_cast<int>(group.size())] = one[k];
       group.push_back(e);
-      if (group.size() == lanes) flush();
+      if (static_cast<int>(group.size()) == lanes) flush();
     }
     if (!group.empty()) flush();
   }
@@ -74,7 +75,7 @@ double Geometry::volume(const Net& net) const {
   for (const int b : all_blocks_) {
     double of_block = 0;
     each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
-      double part[lanes];
+      double part[most_lanes];
       kernel::volume(degree, points, part);
       for (std::size_t l = 0; l < group.size(); ++l) of_block += part[l];
     });
@@ -89,7 +90,7 @@ void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Ne
   double one[3 * kernel::most_bezier];
   each_group(map_, net, elements, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
     kernel::volume_gradient(degree, points, gradient);
-    const int n = 3 * (degree + 1) * (degree + 1);
+    const int n = 3 * (degree + 1) * (degree + 1), lanes = pack_lanes();
     for (int l = 0; l < static_cast<int>(group.size()); ++l) {
       for (int k = 0; k < n; ++k) one[k] = gradient.value[k * lanes + l];
       map_.add_transposed(group[l], one, b);
@@ -102,7 +103,7 @@ void Geometry::add_moment_gradient(const Net& net, const Vec3& g, const Vec3& or
   double one[3 * kernel::most_bezier];
   each_group(map_, net.rowwise() - origin.transpose(), elements, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
     kernel::moment_gradient(degree, points, g.data(), gradient);
-    const int n = 3 * (degree + 1) * (degree + 1);
+    const int n = 3 * (degree + 1) * (degree + 1), lanes = pack_lanes();
     for (int l = 0; l < static_cast<int>(group.size()); ++l) {
       for (int k = 0; k < n; ++k) one[k] = gradient.value[k * lanes + l];
       map_.add_transposed(group[l], one, b);

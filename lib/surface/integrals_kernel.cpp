@@ -4,13 +4,13 @@
 #include <string>
 #include <utility>
 
+#include "base/kernel.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 
 namespace tanktread::surface::kernel {
+namespace INSTRUCTIONS {
 namespace {
-
-using Lane [[gnu::vector_size(sizeof(double) * lanes), gnu::may_alias]] = double;
 
 /// Bernstein values and derivatives at the Gauss points of one direction.
 template <int p, int n>
@@ -28,13 +28,13 @@ struct Table {
 /// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, x and the tangents as three lanes each: sums over s first, then over t.
 template <int p, int n, bool with_place, class Use>
 inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Use use) {
-  const auto* points = reinterpret_cast<const Lane*>(points_of_lanes.value);
+  const auto* points = reinterpret_cast<const Register*>(points_of_lanes.value);
   for (int qs = 0; qs < n; ++qs) {
-    Lane value[3][p + 1], slope[3][p + 1];
+    Register value[3][p + 1], slope[3][p + 1];
     for (int c = 0; c < 3; ++c) {
       for (int j = 0; j <= p; ++j) {
-        const Lane* row = points + (c * (p + 1) + j) * (p + 1);
-        Lane v{}, d{};
+        const Register* row = points + (c * (p + 1) + j) * (p + 1);
+        Register v{}, d{};
         for (int i = 0; i <= p; ++i) {
           v += table.value[qs][i] * row[i];
           d += table.slope[qs][i] * row[i];
@@ -44,7 +44,7 @@ inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Us
       }
     }
     for (int qt = 0; qt < n; ++qt) {
-      Lane x[3]{}, a1[3]{}, a2[3]{};
+      Register x[3]{}, a1[3]{}, a2[3]{};
       for (int c = 0; c < 3; ++c) {
         for (int j = 0; j <= p; ++j) {
           if constexpr (with_place) x[c] += table.value[qt][j] * value[c][j];
@@ -57,13 +57,13 @@ inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Us
   }
 }
 
-inline void cross(const Lane (&a)[3], const Lane (&b)[3], Lane (&c)[3]) {
+inline void cross(const Register (&a)[3], const Register (&b)[3], Register (&c)[3]) {
   c[0] = a[1] * b[2] - a[2] * b[1];
   c[1] = a[2] * b[0] - a[0] * b[2];
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-inline void store(const Lane& from, double (&to)[lanes]) {
+inline void store(const Register& from, double (&to)[most_lanes]) {
   for (int l = 0; l < lanes; ++l) to[l] = from[l];
 }
 
@@ -73,11 +73,11 @@ struct Of {
   static constexpr int n_moments = quadrature::gauss_points_for_degree(5 * p - 1);
   static constexpr int n_transport = quadrature::gauss_points_for_degree(4 * p - 1);
 
-  static void volume(const Lanes& points, double (&result)[lanes]) {
+  static void volume(const Lanes& points, double (&result)[most_lanes]) {
     static const Table<p, n> table;
-    Lane sum{};
-    each_node<p, n, true>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
-      Lane normal[3];
+    Register sum{};
+    each_node<p, n, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
+      Register normal[3];
       cross(a1, a2, normal);
       sum += (table.weight[qs] * table.weight[qt] / 3) * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
     });
@@ -91,20 +91,20 @@ struct Of {
   template <int n, bool with_place>
   static void normal_integrals(const Lanes& points, const double* g, Lanes& gradient) {
     static const Table<p, n> table;
-    auto* result = reinterpret_cast<Lane*>(gradient.value);
-    for (int k = 0; k < 3 * (p + 1) * (p + 1); ++k) result[k] = Lane{};
-    Lane over_t[3][p + 1];
-    each_node<p, n, with_place>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
-      Lane normal[3];
+    auto* result = reinterpret_cast<Register*>(gradient.value);
+    for (int k = 0; k < 3 * (p + 1) * (p + 1); ++k) result[k] = Register{};
+    Register over_t[3][p + 1];
+    each_node<p, n, with_place>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
+      Register normal[3];
       cross(a1, a2, normal);
       const double weight = table.weight[qs] * table.weight[qt];
       if constexpr (with_place) {
-        const Lane height = g[0] * x[0] + g[1] * x[1] + g[2] * x[2];
-        for (Lane& component : normal) component *= height;
+        const Register height = g[0] * x[0] + g[1] * x[1] + g[2] * x[2];
+        for (Register& component : normal) component *= height;
       }
       for (int c = 0; c < 3; ++c)
         for (int j = 0; j <= p; ++j) {
-          const Lane term = (weight * table.value[qt][j]) * normal[c];
+          const Register term = (weight * table.value[qt][j]) * normal[c];
           over_t[c][j] = qt == 0 ? term : over_t[c][j] + term;
         }
       if (qt + 1 < n) return;
@@ -116,14 +116,14 @@ struct Of {
 
   static void moments(const Lanes& points, Moments& result) {
     static const Table<p, n_moments> table;
-    Lane area{}, volume_sum{}, first[3]{}, second[6]{};
-    each_node<p, n_moments, true>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
-      Lane normal[3];
+    Register area{}, volume_sum{}, first[3]{}, second[6]{};
+    each_node<p, n_moments, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
+      Register normal[3];
       cross(a1, a2, normal);
       const double weight = table.weight[qs] * table.weight[qt];
-      const Lane square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+      const Register square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
       area += weight * sqrt(square);
-      const Lane flux = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
+      const Register flux = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
       volume_sum += flux;
       for (int c = 0; c < 3; ++c) {
         first[c] += flux * x[c];
@@ -141,17 +141,17 @@ struct Of {
 
   static void transport(const Lanes& points, const Lanes& velocities, Transport& result) {
     static const Table<p, n_transport> table;
-    Lane v[n_transport][n_transport][3], volume_sum{}, flux_sum{}, first[3]{}, carried[3]{};
-    each_node<p, n_transport, true>(table, velocities, [&](int qs, int qt, const Lane(&at)[3], const Lane(&)[3], const Lane(&)[3]) {
+    Register v[n_transport][n_transport][3], volume_sum{}, flux_sum{}, first[3]{}, carried[3]{};
+    each_node<p, n_transport, true>(table, velocities, [&](int qs, int qt, const Register(&at)[3], const Register(&)[3], const Register(&)[3]) {
       for (int c = 0; c < 3; ++c) v[qs][qt][c] = at[c];
     });
-    each_node<p, n_transport, true>(table, points, [&](int qs, int qt, const Lane(&x)[3], const Lane(&a1)[3], const Lane(&a2)[3]) {
-      Lane normal[3];
+    each_node<p, n_transport, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
+      Register normal[3];
       cross(a1, a2, normal);
       const double weight = table.weight[qs] * table.weight[qt];
-      const Lane outward = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
+      const Register outward = weight * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
       volume_sum += outward;
-      const Lane flux = weight * (v[qs][qt][0] * normal[0] + v[qs][qt][1] * normal[1] + v[qs][qt][2] * normal[2]);
+      const Register flux = weight * (v[qs][qt][0] * normal[0] + v[qs][qt][1] * normal[1] + v[qs][qt][2] * normal[2]);
       flux_sum += flux;
       for (int c = 0; c < 3; ++c) {
         first[c] += outward * x[c];
@@ -187,7 +187,7 @@ void with_degree(int degree, Use use) {
 
 }  // namespace
 
-void volume(int degree, const Lanes& x, double (&volume)[lanes]) {
+void volume(int degree, const Lanes& x, double (&volume)[most_lanes]) {
   with_degree(degree, [&](auto p) { Of<p>::volume(x, volume); });
 }
 
@@ -206,5 +206,13 @@ void moments(int degree, const Lanes& x, Moments& result) {
 void transport(int degree, const Lanes& x, const Lanes& v, Transport& result) {
   with_degree(degree, [&](auto p) { Of<p>::transport(x, v, result); });
 }
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, volume, (int degree, const Lanes& x, double (&volume)[most_lanes]), (degree, x, volume))
+KERNEL(void, volume_gradient, (int degree, const Lanes& x, Lanes& gradient), (degree, x, gradient))
+KERNEL(void, moment_gradient, (int degree, const Lanes& x, const double* g, Lanes& gradient), (degree, x, g, gradient))
+KERNEL(void, moments, (int degree, const Lanes& x, Moments& result), (degree, x, result))
+KERNEL(void, transport, (int degree, const Lanes& x, const Lanes& v, Transport& result), (degree, x, v, result))
 
 }  // namespace tanktread::surface::kernel

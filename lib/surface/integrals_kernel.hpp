@@ -9,13 +9,13 @@ constexpr int largest_degree = 6;
 constexpr int most_bezier = (largest_degree + 1) * (largest_degree + 1);
 
 /// Bezier points, or what is dual to them, of as many elements of one degree p: component c of point b in lane l is
-/// value[(c * (p+1)^2 + b) * lanes + l].
-struct alignas(sizeof(double) * lanes) Lanes {
-  double value[3 * most_bezier * lanes];
+/// value[(c * (p+1)^2 + b) * pack_lanes() + l].
+struct alignas(sizeof(double) * most_lanes) Lanes {
+  double value[3 * most_bezier * most_lanes];
 };
 
 /// 1/3 int x.n dG of each element: the sum over a closed surface is its volume. Exact, (3p - 1)/2 + 1 Gauss points a direction.
-void volume(int degree, const Lanes& x, double (&volume)[lanes]);
+void volume(int degree, const Lanes& x, double (&volume)[most_lanes]);
 
 /// int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, the same points.
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient);
@@ -26,14 +26,14 @@ void moment_gradient(int degree, const Lanes& x, const double* g, Lanes& gradien
 /// Contributions of each element to the area, int dG, and to the integrals of 1, x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior,
 /// by the divergence theorem 1/3 int x.n, 1/4 int x_i x.n, 1/5 int x_i x_j x.n. All but the area exact, (5p - 1)/2 + 1 Gauss points a direction.
 struct Moments {
-  double area[lanes], volume[lanes], first[3][lanes], second[6][lanes];
+  double area[most_lanes], volume[most_lanes], first[3][most_lanes], second[6][most_lanes];
 };
 void moments(int degree, const Lanes& x, Moments& result);
 
 /// What a velocity v carries out of each element: int v.n dG and int x_i v.n dG; and its volume and int x_i over the interior, as above. Exact,
 /// (4p - 1)/2 + 1 Gauss points a direction.
 struct Transport {
-  double volume[lanes], first[3][lanes], flux[lanes], carried[3][lanes];
+  double volume[most_lanes], first[3][most_lanes], flux[most_lanes], carried[3][most_lanes];
 };
 void transport(int degree, const Lanes& x, const Lanes& v, Transport& result);
 

@@ -88,7 +88,7 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
     const int n_b = (block.degree + 1) * (block.degree + 1);
     const Table derivatives = table(block.degree);
     const auto at_points = [&](const std::vector<double>& rows, double* out) {
-      three_sums(points, n_b, rows.data(), [&](int b, int c) { return bezier[c * n_b + b]; }, out);
+      three_sums(points, n_b, rows.data(), bezier, out);
     };
     for (const int e : elements) {
       if (map.degree(e) != block.degree) continue;

@@ -78,6 +78,7 @@ class Element {
 /// The Bezier points of a register of elements of one degree; a short group repeats its last.
 kernel::Lanes in_lanes(const BezierMap& map, const Net& net, std::span<const int> group) {
   kernel::Lanes packed;
+  const std::size_t lanes = pack_lanes();
   for (size_t l = 0; l < lanes; ++l) {
     const Element element(map, net, group[std::min(l, group.size() - 1)]);
     for (int k = 0; k < 3 * element.patch().n_bezier(); ++k)
@@ -99,9 +100,10 @@ Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
   const Net y = x.rowwise() - mean;  // about its own mean, as integrals by the divergence theorem lose digits where the origin is far away
   double volume = 0, flux = 0;
   Vec3 first = Vec3::Zero(), carried = Vec3::Zero();
+  const std::size_t lanes = pack_lanes();
   for (const Block& block : map.blocks().blocks)
     for (size_t begin = 0; begin < block.elements.size(); begin += lanes) {
-      const std::span group = std::span(block.elements).subspan(begin, std::min<size_t>(lanes, block.elements.size() - begin));
+      const std::span group = std::span(block.elements).subspan(begin, std::min(lanes, block.elements.size() - begin));
       kernel::Transport part;
       kernel::transport(block.degree, in_lanes(map, y, group), in_lanes(map, v, group), part);
       for (size_t l = 0; l < group.size(); ++l) {

@@ -67,15 +67,43 @@ TEST(FarSum, IsTheSumOfStokeslets) {
   }
 }
 
+// 1/r of one node in every lane, in numbers far beyond those of single precision, which some processors' estimates of it begin with.
+TEST(FarSum, IsAccurateAtEveryScale) {
+  for (double scale = 1e-100; scale < 1e100; scale *= 7.3) {
+    const Vec3 place = scale * r, force(0.4, -0.2, 0.9);
+    double target[3 * far_block] = {}, u[3 * far_block];
+    for (int l = 0; l < far_block; ++l) target[l] = 0.1 * l * scale;
+    far_sum(PointForces{1, &place[0], &place[1], &place[2], &force[0], &force[1], &force[2]}, target, u);
+    for (int l = 0; l < far_block; ++l) {
+      const Vec3 exact = stokeslet(place - Vec3(target[l], 0, 0)) * force;
+      EXPECT_LT((Vec3(u[l], u[far_block + l], u[2 * far_block + l]) - exact).norm(), 1e-14 * exact.norm()) << scale;
+    }
+  }
+}
+
+// A target's sum does not depend on its neighbours, whatever the instructions.
+TEST(FarSum, OfATargetIsTheSameToTheBitInEveryLane) {
+  const Forces forces(37);
+  double target[3 * far_block], u[3 * far_block];
+  for (int k = 0; k < 3 * far_block; ++k) target[k] = std::sin(k / far_block + 1);
+  far_sum(forces.view, target, u);
+  for (int c = 0; c < 3; ++c)
+    for (int l = 1; l < far_block; ++l) EXPECT_EQ(u[far_block * c + l], u[far_block * c]);
+}
+
 TEST(FarSum, TakesNothingFromANodeAtTheTarget) {
   Forces forces(5);
   double target[3 * far_block], u[3 * far_block];
-  for (int l = 0; l < far_block; ++l)
-    for (int c = 0; c < 3; ++c) target[far_block * c + l] = forces.position(2)[c];
+  for (int l = 0; l < far_block; ++l)  // in lanes beyond the first but for rounding
+    for (int c = 0; c < 3; ++c) target[far_block * c + l] = forces.position(2)[c] * (1 + 1e-16 * l * (c + 1));
   far_sum(forces.view, target, u);
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = Vec3::Zero(), one;
   for (const int k : {0, 1, 3, 4}) sum += stokeslet(forces.position(k) - forces.position(2)) * forces.force(k);
-  EXPECT_LT((Vec3(u[0], u[far_block], u[2 * far_block]) - sum).norm(), 1e-12 * sum.norm());
+  for (int l = 0; l < far_block; ++l) {
+    EXPECT_LT((Vec3(u[l], u[far_block + l], u[2 * far_block + l]) - sum).norm(), 1e-12 * sum.norm());
+    node_sum(forces.view, Vec3(target[l], target[far_block + l], target[2 * far_block + l]).data(), one.data());
+    EXPECT_LT((one - sum).norm(), 1e-12 * sum.norm());
+  }
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+# Kernels with the instructions that the environment asks for: the same results, or a sentence.
+import os
+import re
+
+from harness import check, deck, main, run, series
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 4}
+  Time: {final time: 0.5}
+"""
+
+
+def _run_with(instructions, *words, code=0):
+    os.environ["TANKTREAD_INSTRUCTIONS"] = instructions
+    return run(deck(DECK), *words, code=code)
+
+
+def _allowed():
+    said = _run_with("none of them", "--check", code=2).stderr
+    return re.search(r"TANKTREAD_INSTRUCTIONS: (.*) \(", said)[1].split(", ")
+
+
+def those_that_the_processor_lacks_are_refused_in_a_sentence():
+    check(_allowed()[0] == "baseline", _allowed())
+
+
+def the_plan_names_those_in_use():
+    for instructions in _allowed():
+        check(re.search(rf"kernels +{instructions}\b", _run_with(instructions, "--check").stdout), instructions)
+
+
+def results_agree():
+    for instructions in _allowed():
+        _run_with(instructions, "--output", instructions, "--quiet")
+    first, *others = (series(instructions, "taylor_inertia") for instructions in _allowed())
+    for other in others:
+        check(len(other) == len(first) and max(abs(other - first)) < 1e-10, first, other)
+
+
+main()
