@@ -104,15 +104,14 @@ std::vector<Item> agreed(const std::vector<Item>& mine) {
   return items;
 }
 
-std::vector<std::array<double, 2>> lengths_of(const std::vector<std::array<surface::Resolution, 2>>& resolution) {
+/// Of each element along s and t.
+template <class Indicator>
+std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& found) {
   std::vector<std::array<double, 2>> lengths;
-  for (const auto& [along_s, along_t] : resolution) lengths.push_back({along_s.length, along_t.length});
-  return lengths;
-}
-
-std::vector<std::array<double, 2>> lengths_of(const std::vector<surface::ElementMetrics>& metrics) {
-  std::vector<std::array<double, 2>> lengths;
-  for (const surface::ElementMetrics& one : metrics) lengths.push_back({one.along[0].length, one.along[1].length});
+  for (const Indicator& one : found) {
+    if constexpr (requires { one.along; }) lengths.push_back({one.along[0].length, one.along[1].length});
+    else lengths.push_back({one[0].length, one[1].length});
+  }
   return lengths;
 }
 

@@ -107,9 +107,7 @@ class Deforming : public ParticleSystem {
     std::vector<double> of_particles;
     for (std::size_t p = 0; p < members_.size(); ++p) {
       const Moment now = moment(p, state, v, report);
-      const Scene& one = members_[p].scene;
-      std::ranges::copy(tanktread::row(series(one, one.particle.rigid() ? of_rigid : of_deforming), now),
-                        std::back_inserter(of_particles));
+      std::ranges::copy(tanktread::row(particle_series(members_[p].scene), now), std::back_inserter(of_particles));
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
       whole.velocity += now.velocity / static_cast<double>(members_.size());
     }
@@ -137,7 +135,7 @@ class Deforming : public ParticleSystem {
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
     arrange(members_);
-    all_ = together(members_);
+    all_ = stacked_body(members_);
     if (all_ && scene_.tube.present) all_->wall = before ? before->wall : wall(scene_, *all_);
     std::unique_ptr<coupling::Tube> around;
     if (capsule_ && capsule_->tube())

@@ -61,7 +61,7 @@ void arrange(std::vector<Member>& members) {
   }
 }
 
-std::unique_ptr<Body> together(const std::vector<Member>& members) {
+std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
   if (members.size() == 1) return {};
   auto all = std::make_unique<Body>();
   std::vector<const spline::Space*> spaces;

@@ -44,7 +44,7 @@ std::vector<Member> members(const Scene& scene);
 void arrange(std::vector<Member>& members);
 
 /// All of them as one body: its nets are stacked, its measures those of the whole. Of one particle nothing is copied: then there is none.
-std::unique_ptr<Body> together(const std::vector<Member>& members);
+std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// The coupled system that they need, and no more, in a tube if there is one. `all`: their space and nets.
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,

@@ -173,7 +173,7 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
   std::vector<Member> all = members(scene);
   check_apart(all);
   arrange(all);
-  const std::unique_ptr<Body> stacked = together(all);
+  const std::unique_ptr<Body> stacked = stacked_body(all);
   return plan(scene, stacked ? *stacked : *all.front().body, ranks);
 }
 

@@ -190,12 +190,14 @@ std::vector<Series> series(const Scene& scene, Owner owner) {
   return found;
 }
 
+std::vector<Series> particle_series(const Scene& one) { return series(one, one.particle.rigid() ? of_rigid : of_deforming); }
+
 std::vector<Series> run_series(const Scene& scene) {
   if (scene.particle.motion == Motion::free) return series(scene, of_free);
   if (scene.particle.motion == Motion::prescribed) return series(scene, of_prescribed);
   std::vector<Series> all = series(scene, of_run);
   for (const Scene& one : scene.alone())
-    for (Series& own : series(one, one.particle.rigid() ? of_rigid : of_deforming)) {
+    for (Series& own : particle_series(one)) {
       if (!one.name.empty()) own.name = one.name + "/" + own.name;
       all.push_back(std::move(own));
     }

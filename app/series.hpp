@@ -73,6 +73,9 @@ const std::vector<Series>& all_series();
 /// Those of one row, as the owner has them in this scene.
 std::vector<Series> series(const Scene& scene, Owner owner);
 
+/// Those of one particle of a system, which is a capsule, a drop or a rigid body.
+std::vector<Series> particle_series(const Scene& one);
+
 /// Those of the run of a scene, one particle after another: `<name>`, of one of several particles `<particle>/<name>`.
 std::vector<Series> run_series(const Scene& scene);
 
