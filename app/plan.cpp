@@ -102,6 +102,25 @@ std::string forces_line(const Scene& scene) {
   return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
 }
 
+/// The systems that are solved by iteration, and by what.
+std::string solvers_line(const Scene& scene) {
+  const coupling::SolverOptions& solvers = scene.solvers;
+  std::string line;
+  const auto add = [&](const char* system, const coupling::IterativeOptions& options) {
+    const coupling::IterativeOptions own = solvers.of(options);
+    line += (line.empty() ? "" : "; ") + std::string(system) + " by " + *own.solver;
+    if (own.preconditioner != "own") line += ", preconditioner `" + own.preconditioner + "`";
+  };
+  if (scene.particles.empty() && scene.particle.rigid()) {
+    add("traction", solvers.traction);
+    return line;
+  }
+  const auto coupled = [](const Scene& one) { return one.particle.rigid() || one.particle.viscosity_ratio != 1; };
+  if (std::ranges::any_of(scene.alone(), coupled) || (scene.tube.present && solvers.tube != "schur")) add("velocity", solvers.velocity);
+  if (scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
+  return line.empty() ? "none iterates" : line;
+}
+
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   const int n = body.space.n_points;
   Lines lines = {{"surface", std::to_string(n) + " control points: " + body.space.description},
@@ -110,6 +129,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("particle", rigid_line(scene, body));
   lines.emplace_back("forces", forces_line(scene));
   lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
+  lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("assembled", formatted("%.1f MB ", 72e-6 * n * n) + on_ranks(ranks));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
@@ -134,6 +154,7 @@ Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint + ", of each");
   lines.emplace_back("time", time_line(scene, n * n, ranks));
+  lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("symmetry", "none looked for among several particles");
   std::string last;
   for (const Scene& one : scene.alone()) {
@@ -164,6 +185,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint);
   lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
+  lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("mesh", mesh_line(scene));
   lines.emplace_back("symmetry", symmetry_line(scene, body));
   return lines;

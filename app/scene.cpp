@@ -156,15 +156,14 @@ void check_size(const Scene& scene) {
 }
 
 /// Vectors that every rank keeps for the iterative solver, and the matrix of their products.
-void check_vectors(const Scene& scene) {
+void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
   const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
   double vectors = 1;
   std::string keys;
   for (const char* key : {"Num Blocks", "Block Size", "Num Recycled Blocks", "Deflation Blocks", "Adaptive Block Size"}) {
-    const auto& list = scene.solvers.belos;
     if (!list || !list->isType<int>(key)) continue;
     vectors *= std::max(1, list->get<int>(key));
-    keys += (keys.empty() ? "Solvers/Belos/" : " and Solvers/Belos/") + std::string(key);
+    keys += (keys.empty() ? std::string() : " and ") + path + "/Belos/" + key;
   }
   const double most = std::floor((std::sqrt(unknowns * unknowns + 4 * most_vector_bytes / 8) - unknowns) / 2);
   if (vectors > most)
@@ -318,7 +317,9 @@ void Scene::check() const {
   in_its_unit.check();
   check_adaptation(*this);
   check_size(*this);
-  check_vectors(*this);
+  check_vectors(*this, "Solvers", solvers.belos);
+  for (const coupling::IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step})
+    check_vectors(*this, system->path, system->belos);
 }
 
 std::string Scene::interface_motion() const {

@@ -43,9 +43,9 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, parameters.quadrature),
       collocation_(parameters.solvers.direct, parameters.symmetry),
       mass_(parameters.solvers.direct, parameters.symmetry),
-      velocity_solver_(parameters.solvers.krylov, parameters.solvers.belos),
-      step_solver_(parameters.solvers.krylov, parameters.solvers.belos),
-      inner_solver_(parameters.solvers.krylov, parameters.solvers.belos),
+      velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
+      step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
+      inner_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature),
       tube_(std::move(tube)) {
   surface::Symmetry& symmetry = parameters_.symmetry;

@@ -10,7 +10,7 @@ FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radi
     : RigidParticle(body.surface(), centre, radius, flow, driven),
       body_(body),
       viscosity_(viscosity),
-      krylov_(solvers.krylov, solvers.belos),
+      krylov_(solvers.of(solvers.traction)),
       tolerance_(solvers.tolerance),
       unknowns_(Eigen::VectorXd::Zero(body.surface().size() + 6)) {}
 

@@ -8,9 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace Teuchos {
-class ParameterList;
-}
+#include "coupling/options.hpp"
 
 namespace tanktread::coupling {
 
@@ -49,9 +47,10 @@ class Krylov {
   /// The names of solvers: those of Belos' factory.
   static std::vector<std::string> names();
 
-  /// `solver` is one of them ("GMRES", "BICGSTAB", …); `list` goes to Belos as it is, after our defaults.
-  /// Throws UserError for a name or a parameter that Belos does not know.
-  Krylov(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list);
+  /// The solver is one of them ("GMRES", "BICGSTAB", …); its list goes to Belos as it is, after our defaults. Throws UserError for a name or a
+  /// parameter that Belos does not know.
+  explicit Krylov(const IterativeOptions& options);
+  Krylov(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list) : Krylov(IterativeOptions{solver, list}) {}
   ~Krylov();
 
   /// Solves the system for the right-hand side b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw

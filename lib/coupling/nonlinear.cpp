@@ -148,7 +148,7 @@ Teuchos::ParameterList defaults(const std::string& method) {
 struct FixedPoint::Impl {
   Teuchos::ParameterList given, list;
   Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
-  Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver = belos_factory("GMRES", nullptr).factory;
+  Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver = belos_factory({"GMRES"}).factory;
 };
 
 FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list) : impl_(std::make_unique<Impl>()) {

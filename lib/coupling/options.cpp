@@ -1,5 +1,7 @@
 #include "coupling/options.hpp"
 
+#include <Teuchos_ParameterList.hpp>
+
 #include "deck/section.hpp"
 
 namespace tanktread::coupling {
@@ -18,9 +20,29 @@ void InterfaceOptions::declare(deck::Section& section) {
               "`relaxed`: the mesh slides as an elastic bag of capillary number 1/relaxation would");
 }
 
+void IterativeOptions::declare(deck::Section& section) {
+  path = section.path();
+  section.key("iterative solver", solver, deck::Choice{}, "Belos' name of its solver, in place of Solvers/iterative solver");
+  section.foreign("Belos", belos, "list handed to it as it is, in place of Solvers/Belos");
+  section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
+              "`own`: what the system brings (rigid bodies inverted alone and across films; the blocks of Solvers/tube), or none; `neumann`: "
+              "2 - A for the system A, scaled, a product more in each application; `recycled`: what products of the solves before tell, and "
+              "elsewhere `own`");
+}
+
+IterativeOptions SolverOptions::of(IterativeOptions system) const {
+  const bool own_list = system.belos && system.belos->numParams() > 0;
+  if (!system.solver && !own_list) system.belos = belos;
+  if (!system.solver) system.solver = krylov;
+  return system;
+}
+
 void SolverOptions::declare(deck::Section& section) {
-  section.key("iterative solver", krylov, deck::Choice{}, "Belos' name of the solver of the implicit step");
+  section.key("iterative solver", krylov, deck::Choice{}, "Belos' name of the iterative solver of linear systems");
   section.foreign("Belos", belos, "list handed to the iterative solver as it is; what it says, and how, cannot be set");
+  section.section("velocity", velocity, "the system of a velocity: viscosity ratio other than 1, rigid bodies among others, the blocks in a tube");
+  section.section("traction", traction, "the system of the traction of a single rigid particle, and of its motion in a tube");
+  section.section("implicit step", implicit_step, "the system of an implicit step");
   section.foreign("NOX", nox, "list handed as it is to the nonlinear solver of Time/scheme `crank-nicolson`, where that is not `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual of the systems that a velocity (viscosity ratio other than 1) or a traction (rigid particle) comes from");

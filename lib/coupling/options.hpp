@@ -26,10 +26,21 @@ struct InterfaceOptions {
   void declare(deck::Section& section);
 };
 
+/// The iterative solver of one kind of system: `Solvers/<system>` of the deck.
+struct IterativeOptions {
+  std::optional<std::string> solver;              ///< Belos' name; that of SolverOptions where it is not given
+  std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is; that of SolverOptions where neither this nor the name is given
+  std::string preconditioner = "own";             ///< own, none, neumann, recycled
+  std::string path = "Solvers";                   ///< of its list in the deck
+
+  void declare(deck::Section& section);
+};
+
 /// The solvers of the linear systems: `Solvers/*` of the deck.
 struct SolverOptions {
-  std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of the implicit step
+  std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver, of all systems that have none of their own
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
+  IterativeOptions velocity, traction, implicit_step;
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< list of the nonlinear solver of crank-nicolson, as it is
   double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
   std::string double_layer = "auto";              ///< assembled once a velocity, for all iterations; matrix-free: summed in each of them;
@@ -40,6 +51,9 @@ struct SolverOptions {
 
   /// What `double layer` means where far sums are taken by clusters, or not.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
+
+  /// The system's own solver, or that of all.
+  IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);
 };

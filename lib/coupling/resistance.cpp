@@ -23,7 +23,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
       collocation_(solvers.direct),
       tube_(tube),
       place_(surface),
-      krylov_(solvers.krylov, solvers.belos),
+      krylov_(solvers.of(solvers.traction)),
       tolerance_(solvers.tolerance) {
   const auto clock = phases_.time("assembly");
   own_points_ = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;

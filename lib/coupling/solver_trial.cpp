@@ -45,9 +45,10 @@ Eigen::SparseMatrix<double> system_matrix() {
   return a;
 }
 
-bool solves(const std::string& solver, const List& list) {
+bool solves(IterativeOptions options, const List& list) {
   return runs([&] {
-    const Krylov krylov(solver, std::make_shared<List>(list));
+    options.belos = std::make_shared<List>(list);
+    const Krylov krylov(options);
     const Eigen::SparseMatrix<double> a = system_matrix();
     int products = 0;
     const auto apply = [&](const double* in, double* out) {
@@ -86,12 +87,14 @@ std::string culprit(const List& given, const Works& works, const std::string& pa
   throw UserError(library + " cannot solve with " + (found.empty() ? path : found) + ".");
 }
 
-void try_iterative(const SolverOptions& solvers) {
-  const Krylov known(solvers.krylov, solvers.belos);
-  if (!solvers.belos || solvers.belos->numParams() == 0) return;
-  const Works works = [&](const List& list) { return solves(solvers.krylov, list); };
-  if (works(*solvers.belos)) return;
-  refuse("Solvers/Belos", "Belos", *solvers.belos, works);
+void try_iterative(const IterativeOptions& options) {
+  const Krylov known(options);
+  const List list = options.belos ? *options.belos : List();
+  const Works works = [&](const List& some) { return solves(options, some); };
+  if (works(list)) return;
+  if (!works(List()))
+    throw UserError(options.path + ": the solver " + *options.solver + " cannot be used with the preconditioner " + options.preconditioner + ".");
+  refuse(options.path + "/Belos", "Belos", list, works);
 }
 
 void try_direct(const membrane::DirectSolverOptions& options) {
@@ -131,7 +134,9 @@ void try_nonlinear(const std::string& method, const List& list) {
 void try_solvers(const SolverOptions& solvers, const std::string& nonlinear_solver) {
   const auto given = [](const auto& list) { return list && list->numParams() > 0; };
   const SolverOptions defaults;
-  if (solvers.krylov != defaults.krylov || given(solvers.belos)) try_iterative(solvers);
+  if (solvers.krylov != defaults.krylov || given(solvers.belos)) try_iterative(solvers.of({}));
+  for (const IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step})
+    if (system->solver || given(system->belos) || system->preconditioner != "own") try_iterative(solvers.of(*system));
   if (solvers.direct.name != defaults.direct.name || given(solvers.direct.amesos2)) try_direct(solvers.direct);
   if (given(solvers.nox)) try_nonlinear(nonlinear_solver, *solvers.nox);
 }

@@ -51,6 +51,6 @@ struct BelosFactory {
   Teuchos::RCP<Thyra::LinearOpWithSolveFactoryBase<double>> factory;
   bool flexible = false;
 };
-BelosFactory belos_factory(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list);
+BelosFactory belos_factory(const IterativeOptions& options);
 
 }  // namespace tanktread::coupling

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include <Eigen/LU>
 #include <Teuchos_ParameterList.hpp>
@@ -132,6 +134,33 @@ TEST(Krylov, SolvesTheSameInOneBlockAndInSeveral) {
     EXPECT_TRUE(krylov.solve({{{"one", 40}, {"two", 19}, {"three", 1}}, apply, {}}, b, y, 1e-10).converged) << name;
     EXPECT_LT((a * x - b).norm(), 2e-10 * b.norm()) << name;
     EXPECT_LT((x - y).norm(), 1e-12 * x.norm()) << name;
+  }
+}
+
+// A preconditioner changes the way to the solution, not the solution.
+TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
+  const int n = 60;
+  Eigen::MatrixXd a = nonsymmetric(n);
+  a.diagonal() += Eigen::VectorXd::LinSpaced(n, 0, 2);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const char* name : {"GMRES", "BICGSTAB", "TFQMR"}) {
+    std::map<std::string, int> iterations;
+    for (const char* preconditioner : {"own", "none", "neumann", "recycled"}) {
+      const Krylov krylov(IterativeOptions{name, nullptr, preconditioner});
+      for (int repeated = 0; repeated < 2; ++repeated) {
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+        const SolveReport report = krylov.solve({{{"unknowns", n}}, apply, {}}, b, x, 1e-6);
+        EXPECT_TRUE(report.converged) << name << ", " << preconditioner;
+        EXPECT_LT((a * x - b).norm(), 2e-6 * b.norm()) << name << ", " << preconditioner;
+        iterations[preconditioner] = report.iterations;
+      }
+    }
+    EXPECT_EQ(iterations["own"], iterations["none"]) << name;
+    EXPECT_LT(iterations["neumann"], iterations["none"]) << name;
+    EXPECT_LE(iterations["recycled"], 1) << name;  // the solution is a sum of what was multiplied before
   }
 }
 
