@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "coupling/own_load.hpp"
 #include "membrane/mass.hpp"
 #include "surface/geometry.hpp"
 
@@ -37,7 +36,7 @@ RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& r
     const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
       return other.lacking && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
     });
-    body.lacking = alike == bodies_.end() ? std::make_shared<const std::array<Net, 6>>(lacking_of_own_loads(*particle.space, x, quadrature))
+    body.lacking = alike == bodies_.end() ? std::make_shared<const OwnLacking>(*particle.space, x, quadrature)
                                           : alike->lacking;
     const Eigen::SparseMatrix<double> mass = membrane::MassMatrix(*particle.space, 8).update(x);
     body.weight = mass * Eigen::VectorXd::Ones(x.rows());
@@ -94,8 +93,15 @@ void RigidParticles::add_load(Net& load) const {
 Net RigidParticles::Body::lacking_of(const RigidMotion& load) const {
   const Vec3 a = turn.transpose() * load.velocity, b = turn.transpose() * load.angular_velocity;
   Net sum = Net::Zero(rest.rows(), 3);
-  for (int k = 0; k < 3; ++k) sum += a[k] * (*lacking)[static_cast<std::size_t>(k)] + b[k] * (*lacking)[static_cast<std::size_t>(3 + k)];
+  for (int k = 0; k < 3; ++k) sum += a[k] * lacking->loads[static_cast<std::size_t>(k)] + b[k] * lacking->loads[static_cast<std::size_t>(3 + k)];
   return sum * turn.transpose();
+}
+
+Net RigidParticles::Body::lacking_of(const Net& w) const {
+  if (lacking->density.size() == 0) return Net::Zero(rest.rows(), 3);
+  const Net own = block.rows(w) * turn;
+  const Eigen::VectorXd sum = lacking->density * Eigen::Map<const Eigen::VectorXd>(own.data(), own.size());
+  return Eigen::Map<const Net>(sum.data(), rest.rows(), 3) * turn.transpose();
 }
 
 void RigidParticles::add_lacking(Net& v) const {
@@ -110,7 +116,7 @@ void RigidParticles::subtract_told(Net& v) const {
 
 void RigidParticles::complete(const Net& w, Net& v) const {
   for (const Body& body : bodies_) {
-    body.block.rows(v) -= body.block.rows(w);
+    body.block.rows(v) += body.lacking_of(w) - Net(body.block.rows(w));
     const RigidMotion mean = body.mean(w);
     body.block.rows(v) += body.rigid.told ? Net(body.lacking_of(mean) / body.radius) : body.field(mean);
   }

@@ -1,13 +1,13 @@
 #pragma once
 // Rigid bodies among capsules and drops.
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "base/types.hpp"
+#include "coupling/own_lacking.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/rigid_motion.hpp"
 #include "quadrature/options.hpp"
@@ -35,9 +35,9 @@ class RigidParticles {
   void place(Net& x);
 
   void add_load(Net& load) const;            ///< the load of given forces and torques
-  void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (own_load.hpp)
+  void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (own_lacking.hpp)
   void subtract_told(Net& v) const;          ///< V of the bodies that move as told
-  void complete(const Net& w, Net& v) const; ///< rows of v: w goes out of them, <w> comes in where force and torque are given
+  void complete(const Net& w, Net& v) const; ///< rows of v: w goes out of them, <w> comes in where force and torque are given, and what R^-1 H w lacks
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as told, 0 elsewhere
   void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
   void clear(Net& net) const;                ///< 0 in all rows of bodies
@@ -56,8 +56,8 @@ class RigidParticles {
   /// Whether two bodies are equal where they were at rest, but for where that was.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (own_load.hpp).
-  const Net& lacking(std::size_t p, int k) const { return (*body(p).lacking)[static_cast<std::size_t>(k)]; }
+  /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (own_lacking.hpp).
+  const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
   /// Component k of <w>, the velocity's and then the angular velocity's, as a linear functional of its rows of w, row after row, where it was at
   /// rest.
@@ -70,7 +70,7 @@ class RigidParticles {
     Rigid rigid;
     double radius = 0, viscosity = 0;
     Net rest;             // about the centre
-    std::shared_ptr<const std::array<Net, 6>> lacking;  // equal bodies have it in common
+    std::shared_ptr<const OwnLacking> lacking;  // equal bodies have it in common
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
     Eigen::Matrix<double, 6, 6> inertia;  // of the surface: int and int r x of the six rigid motions
@@ -87,6 +87,7 @@ class RigidParticles {
     Net field(const RigidMotion& of) const;                             // its rows of it
     RigidMotion load() const;                                           // a and b of the force on the fluid
     Net lacking_of(const RigidMotion& load) const;                      // of R^-1 A f
+    Net lacking_of(const Net& w) const;                                 // of R^-1 H w
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 
