@@ -54,7 +54,7 @@ Body body(const Scene& scene) {
     b.rest = before->arrays.at("initial");
   }
   b.initial = initial_shape(scene, b, before ? &*before : nullptr);
-  b.unstressed = membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
+  b.unstressed = scene.particle.rigid() ? b.rest : membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
   b.duct = duct(scene);
   b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
   b.plane = flow_plane(scene.flow);

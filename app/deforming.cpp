@@ -95,8 +95,7 @@ class Deforming : public ParticleSystem {
   }
 
   stokes::Evaluations kernel_evaluations() const override {
-    const stokes::Evaluations now = capsule_->kernel_evaluations();
-    return {kernel_evaluations_.far + now.far, kernel_evaluations_.near + now.near, kernel_evaluations_.self + now.self};
+    return kernel_evaluations_ + capsule_->kernel_evaluations();
   }
 
   std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {

@@ -103,7 +103,7 @@ class Free : public ParticleSystem {
   surface::Geometry geometry_;
   std::unique_ptr<coupling::Tube> tube_;
   coupling::Resistance resistance_;
-  std::unique_ptr<coupling::RigidParticle> free_;
+  std::unique_ptr<coupling::LoneRigidBody> free_;
   PhaseAngle phase_angle_;
   coupling::Work before_;  // of earlier parts of a resumed run
 };

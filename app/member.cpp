@@ -13,6 +13,7 @@ namespace tanktread {
 namespace {
 
 membrane::Material material(const Scene& scene, const Body& body) {
+  if (scene.particle.rigid()) return {body.law, {}};
   return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed"}};
 }
 

@@ -22,7 +22,8 @@ constexpr Entry fields[] = {
     {"Normals", "1", "all", "unit normals, out of the particle"},
     {"load", "force/length^2", "capsule, drop",
      "load of the fluids on the membrane, per unstressed area (3.7) or per present area (3.6), as Membrane/load measure says"},
-    {"traction", "force/length^2", "all", "the load per present area; of a rigid body the traction of the fluid on it"},
+    {"traction", "force/length^2", "all", "the load per present area; of a rigid body alone the traction on it, among others "
+     "the load of (2.23)"},
     {"displacement", "length", "capsule, drop", "x - X from the unstressed shape"},
     {"velocity", "length/time", "capsule, drop, free body", "of the fluids on the surface; of a free body its own"},
     {"smallest tension", "1", "capsule, drop", "smaller principal tension (3.2) over G_s, of a drop over sigma"},

@@ -202,8 +202,7 @@ class Run {
   void settle() {
     totals_.work = particle_->work();
     totals_.phase_angle = particle_->phase_angle();
-    const stokes::Evaluations now = coupling::of_all(particle_->kernel_evaluations(), ranks_);
-    totals_.kernel = {earlier_kernel_.far + now.far, earlier_kernel_.near + now.near, earlier_kernel_.self + now.self};
+    totals_.kernel = earlier_kernel_ + coupling::of_all(particle_->kernel_evaluations(), ranks_);
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
     if (!output::equal_on_all_ranks(state_)) fail("the ranks hold states that are not the same to the bit");

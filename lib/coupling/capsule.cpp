@@ -110,7 +110,9 @@ void Capsule::replicate_sums(Net& net) {
   replicate(net);
 }
 
-void Capsule::add(Net& net) {
+/// Of what a layer gives at own points, or, where its far sums are shared, of parts that add up.
+void Capsule::gather(const stokes::Layer& layer, Net& net) {
+  if (!layer.shared()) return replicate(net);
   Net* const one[] = {&net};
   ranks_.add(one);
 }
@@ -156,10 +158,13 @@ void Capsule::add_weight(const Net& x, Net& gradient) const {
   }
 }
 
-Net Capsule::load(const Net& x) { return same(x, latest_.x) ? latest_.load : load_there(x, nullptr); }
+Net Capsule::load(const Net& x) {
+  if (!rigid_.empty()) velocity(x);  // a rigid body's load is part of what its velocity is solved from
+  return same(x, latest_.x) ? latest_.load : membrane_load(x, nullptr);
+}
 
 /// The load at x, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than twice three.
-Net Capsule::load_there(const Net& x, Net* other) {
+Net Capsule::membrane_load(const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && !parameters_.strong_load && parameters_.measure == stokes::Measure::reference;
   if (other && !together) *other = solved(mass_.reference(), std::move(*other));
@@ -199,18 +204,18 @@ Net Capsule::symmetric(Net field) const {
   return field;
 }
 
-Net Capsule::velocity(const Net& x, const Net& near) {
+Net Capsule::velocity(const Net& x, const Net& guess) {
   if (same(x, latest_.x)) return latest_.velocity;
   ++work_.evaluations;
   latest_ = {};
-  Net v = symmetric(present_velocity(x, near));
+  Net v = symmetric(evaluate(x, guess));
   if (!v.allFinite()) return v;
   latest_.x = x;
   return latest_.velocity = std::move(v);
 }
 
-Net Capsule::fluid_velocity(const Net& x, const Net& near) {
-  const Net v = velocity(x, near);
+Net Capsule::fluid_velocity(const Net& x, const Net& guess) {
+  const Net v = velocity(x, guess);
   return interface_ ? latest_.fluid : v;
 }
 
@@ -232,26 +237,23 @@ void Capsule::place(const Net& x) {
   placed_ = x;
 }
 
-Net Capsule::present_velocity(const Net& x, const Net& near) {
-  if (rigid_.empty()) return present_velocity_there(x, near);
-  Net placed = x;
-  rigid_.place(placed);
-  return present_velocity_there(placed, near);
-}
-
-Net Capsule::present_velocity_there(const Net& x, const Net& near) {
+/// (4.2), station by station: the load of membranes (membrane_load) and of bodies, what it drives through the layers and the ambient flow
+/// (explicit_velocity), the volumes' conditions (constrain), and where viscosities differ, bodies are rigid or a tube's blocks are asked for, the
+/// system of all (solve_velocity).
+Net Capsule::evaluate(Net x, const Net& guess) {
+  rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x))) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
-  Net f = load_there(x, constrained ? &c : nullptr);
+  Net f = membrane_load(x, constrained ? &c : nullptr);
   rigid_.add_load(f);
   latest_.load = f;
-  Net v = load_velocity(x, f);
+  Net v = explicit_velocity(x, f);
   rigid_.add_lacking(v);
-  rigid_.subtract_told(v);
+  rigid_.subtract_prescribed(v);
   if (constrained) constrain(v, b, c);
-  if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : near);
+  if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
   latest_.unknowns = v;
   if (!rigid_.empty()) {
     latest_.unknowns = symmetric(v);
@@ -267,7 +269,7 @@ Net Capsule::present_velocity_there(const Net& x, const Net& near) {
 }
 
 /// A f, at the sites; nothing is summed of no load.
-Net Capsule::applied(const Net& x, const Net& f) {
+Net Capsule::single_layer_of(const Net& x, const Net& f) {
   Net u = Net::Zero(x.rows(), 3);
   if (f.isZero(0)) return u;
   {
@@ -275,13 +277,13 @@ Net Capsule::applied(const Net& x, const Net& f) {
     layer_.place(x, measure());
     layer_.apply(f, own_points_, u);
   }
-  layer_.shared() ? add(u) : replicate(u);
+  gather(layer_, u);
   return u;
 }
 
-/// v_inf - R^-1 A f, and what the wall answers to the load where it is eliminated.
-Net Capsule::load_velocity(const Net& x, const Net& f) {
-  Net u = applied(x, f);
+/// v_inf - (1/mu) R^-1 A f, and what the wall answers to the load where it is eliminated.
+Net Capsule::explicit_velocity(const Net& x, const Net& f) {
+  Net u = single_layer_of(x, f);
   if (by_sites()) {
     u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
     if (tube_ && schur()) {
@@ -310,8 +312,8 @@ bool Capsule::enter_tube(const Net& x) {
   return !ranks_.any(outside);
 }
 
-/// B v = v - R^-1 (H v), from what the double layer gives at the sites.
-Net Capsule::viscous(const Net& v, const Net& hv) const { return v - collocation_.solve(hv); }
+/// B v = v - R^-1 D v, from what the double layers give at the sites.
+Net Capsule::viscous(const Net& v, const Net& dv) const { return v - collocation_.solve(dv); }
 
 void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   ++work_.velocity_solves;
@@ -323,7 +325,7 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Rows of H on every rank, each made by the rank whose point it is: taken from what is assembled, or assembled for this.
+/// Rows of D on every rank, each made by the rank whose point it is: taken from what is assembled, or assembled for this.
 stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
@@ -342,8 +344,8 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
 }
 
 /// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
-/// are solved for. Starts from `near`, else from the right-hand side.
-Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near) {
+/// are solved for. Starts from `guess`, else from the right-hand side.
+Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
@@ -360,8 +362,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     } else {
       double_layer_->apply(v, own_points_, hv);
     }
-    !assembled && double_layer_->shared() ? add(hv) : replicate(hv);
-    if (rigid_.told()) hv -= applied(x, rigid_.completing_load(v)) / parameters_.viscosity;
+    assembled ? replicate(hv) : gather(*double_layer_, hv);
+    if (rigid_.prescribed()) hv -= single_layer_of(x, rigid_.completing_load(v)) / parameters_.viscosity;
     Net bv = viscous(v, hv);
     rigid_.complete(v, bv);
     return bv;
@@ -374,12 +376,12 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     Net v = Eigen::Map<const Net>(in, n, 3);
     project(v);
     Net bv = unbounded(v);
-    if (tube_) bv -= collocation_.solve(tube_->respond(rigid_.told() ? rigid_.completing_load(v) : Net(), v).velocity);
+    if (tube_) bv -= collocation_.solve(tube_->respond(rigid_.prescribed() ? rigid_.completing_load(v) : Net(), v).velocity);
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  Eigen::VectorXd v = near.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(near.data(), near.size())) : right;
+  Eigen::VectorXd v = guess.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size())) : right;
   if (!alone_) alone_.emplace(particles(), rigid_, rest_, parameters_.quadrature);
   const auto rows_of = [&](std::span<const int> targets) { return double_rows_of(x, targets, assembled); };
   const FilmInverses films(particles(), *alone_, rigid_, x, rows_of);
@@ -472,11 +474,8 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
 
 stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layer_.evaluations();
-  const auto add = [&sum](const stokes::Evaluations& other) {
-    sum = {sum.far + other.far, sum.near + other.near, sum.self + other.self};
-  };
-  if (double_layer_) add(double_layer_->evaluations());
-  if (tube_) add(tube_->kernel_evaluations());
+  if (double_layer_) sum += double_layer_->evaluations();
+  if (tube_) sum += tube_->kernel_evaluations();
   return sum;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Capsules, drops and rigid bodies, in unbounded flow or one in a tube: fluid and membrane meet here.
+// Capsules, drops and rigid bodies, in unbounded flow or in a tube: fluid and membrane meet here.
 
 #include <functional>
 #include <memory>
@@ -62,9 +62,10 @@ struct CapsuleParameters {
 
 /// dx/dt = v(x) of the stacked nets of all particles without a wall (2.4), (4.2):
 ///
-///   B v = v_inf - R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} H,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b    (2.8)
+///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
-/// A, H: layers over all surfaces, at all; H with the factor 1 - lambda of each. One condition b.v = 0, and one factor of P, a particle.
+/// A, D: the single and the double layer of all surfaces at the sites of all; D with the factor 1 - lambda of each. One condition b.v = 0, and one
+/// factor of P, a particle.
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
 ///
@@ -81,9 +82,9 @@ class Capsule : public Dynamics {
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
-  /// Of the latest place nothing is evaluated again. A system starts from `near`, a velocity near the answer, where there is one.
+  /// Of the latest place nothing is evaluated again. A system starts from `guess`, where there is one.
   Net velocity(const Net& x) override { return velocity(x, {}); }
-  Net velocity(const Net& x, const Net& near);
+  Net velocity(const Net& x, const Net& guess);
   void at(double time, double start) override;
   double next_kink(double time) const override { return flow_.next_kink(time); }
   void freeze(const Net& x) override;
@@ -96,14 +97,15 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
-  /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say.
+  /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say. Of a rigid body the load of
+  /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
   Net load(const Net& x);
 
   /// Whether control points slide along the interface, so that their velocity is not the fluids'.
   bool slides() const { return interface_.has_value(); }
 
   /// The fluids' velocity on the surface at x: `velocity`, unless control points slide.
-  Net fluid_velocity(const Net& x, const Net& near = {});
+  Net fluid_velocity(const Net& x, const Net& guess = {});
 
   /// The same at the latest place that was asked about, if that is within `distance` (in `norm`) of x: for a row of the series, at no cost.
   Net fluid_velocity_about(const Net& x, double distance) {
@@ -149,16 +151,15 @@ class Capsule : public Dynamics {
  private:
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
-  Net present_velocity(const Net& x, const Net& near);
-  Net present_velocity_there(const Net& x, const Net& near);
-  Net applied(const Net& x, const Net& f);
-  Net load_there(const Net& x, Net* other);
+  Net evaluate(Net x, const Net& guess);
+  Net single_layer_of(const Net& x, const Net& f);
+  Net membrane_load(const Net& x, Net* other);
   void place(const Net& x);
-  Net load_velocity(const Net& x, const Net& f);
+  Net explicit_velocity(const Net& x, const Net& f);
   void own(const surface::Share& share);
   void replicate(Net& net);
   void replicate_sums(Net& net);
-  void add(Net& net);
+  void gather(const stokes::Layer& layer, Net& net);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
@@ -166,11 +167,11 @@ class Capsule : public Dynamics {
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
-  Net viscous(const Net& v, const Net& hv) const;
+  Net viscous(const Net& v, const Net& dv) const;
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
-  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& near);
+  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
   Blocks velocity_blocks() const;
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);

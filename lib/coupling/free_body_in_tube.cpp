@@ -7,7 +7,7 @@ namespace tanktread::coupling {
 
 FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                                const SolverOptions& solvers, const Rigid& driven)
-    : RigidParticle(body.surface(), centre, radius, flow, driven),
+    : LoneRigidBody(body.surface(), centre, radius, flow, driven),
       body_(body),
       viscosity_(viscosity),
       krylov_(solvers.of(solvers.traction)),

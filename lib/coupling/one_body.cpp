@@ -16,7 +16,7 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
     const Particle& particle = particles[p];
     if (!particle.rigid || particle.block.n_points > most_points) continue;
     const auto alike = std::ranges::find_if(
-        factors_, [&](const Use& use) { return use.factors->told == particle.rigid->told && bodies.alike(use.particle, p); });
+        factors_, [&](const Use& use) { return use.factors->prescribed == particle.rigid->prescribed && bodies.alike(use.particle, p); });
     factors_.push_back(
         {p, particle.block, alike == factors_.end() ? inverted(particle, bodies, p, particle.block.rows(rest), quadrature) : alike->factors});
   }
@@ -26,7 +26,7 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
                                                                           const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
-  factors->told = particle.rigid->told;
+  factors->prescribed = particle.rigid->prescribed;
   factors->sites = collocation_matrix(*particle.space);
   std::vector<int> all(static_cast<std::size_t>(particle.space->n_points));
   std::iota(all.begin(), all.end(), 0);
@@ -40,7 +40,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   const Vec3 centre = bodies.rest_centre(p);
   for (int k = 0; k < 6; ++k) {
     Net field = rigid_velocity(own, unit_motion(k), centre), at_sites = factors->sites * field;
-    if (factors->told) {
+    if (factors->prescribed) {
       layer.apply(field / particle.radius, all, at_sites);
       at_sites += factors->sites * bodies.lacking(p, k) / particle.radius;
     }

@@ -38,7 +38,7 @@ class OneBodyInverses {
 
  private:
   struct Factors {
-    bool told;
+    bool prescribed;
     Eigen::SparseMatrix<double> sites;  // R
     Eigen::MatrixXd inverse;
   };

@@ -14,10 +14,10 @@
 
 namespace tanktread::coupling {
 
-/// What drives a rigid body: force and torque on it, about the centre of its volume; or it moves as told.
+/// What drives a rigid body: force and torque on it, about the centre of its volume; or it moves as prescribed.
 struct Rigid {
-  bool told = false;
-  RigidMotion motion;                                  ///< as told
+  bool prescribed = false;
+  RigidMotion motion;                                  ///< as prescribed
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< otherwise
 };
 

@@ -86,8 +86,7 @@ Net Resistance::force_density(const Net& u) {
 }
 
 stokes::Evaluations Resistance::kernel_evaluations() const {
-  const stokes::Evaluations assembly = layer_.evaluations();
-  return {assembly.far + residual_evaluations_.far, assembly.near + residual_evaluations_.near, assembly.self + residual_evaluations_.self};
+  return layer_.evaluations() + residual_evaluations_;
 }
 
 Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
@@ -105,8 +104,7 @@ Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>
     for (const int i : own) v.row(i) -= viscosity_ * answer.row(i) * turn_;
   }
   ranks_.add({v.data(), static_cast<std::size_t>(v.size())});
-  const stokes::Evaluations& count = layer.evaluations();
-  residual_evaluations_ = {residual_evaluations_.far + count.far, residual_evaluations_.near + count.near, residual_evaluations_.self + count.self};
+  residual_evaluations_ += layer.evaluations();
   const Net rest = u(at_sites * surface_) - v / viscosity_;
   const Net weighted = Eigen::Map<const Eigen::VectorXd>(areas.data(), rest.rows()).asDiagonal() * rest;
   Eigen::VectorXd work(static_cast<Eigen::Index>(z.size()));

@@ -85,7 +85,7 @@ Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
 Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
 
 FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
-    : RigidParticle(body.surface(), centre, radius, flow, driven), modes_(body, centre, !flow.affine()) {
+    : LoneRigidBody(body.surface(), centre, radius, flow, driven), modes_(body, centre, !flow.affine()) {
   mobility_ = modes_.response.leftCols<6>().inverse();
   drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
 }
@@ -116,7 +116,7 @@ RigidMotion FreeBody::motion(const Net& place) const {
   return {flow_.velocity(centre) + turn * a.segment<3>(0), angular_velocity(flow_.gradient(centre)) + turn * a.segment<3>(3)};
 }
 
-Net RigidParticle::velocity(const Net& place) {
+Net LoneRigidBody::velocity(const Net& place) {
   ++evaluations_;
   const RigidMotion now = motion(place);
   const Eigen::Quaterniond q = quaternion(place);
@@ -128,13 +128,13 @@ Net RigidParticle::velocity(const Net& place) {
   return slope;
 }
 
-void RigidParticle::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
+void LoneRigidBody::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
 
-double RigidParticle::norm(const Net& displacement) const {
+double LoneRigidBody::norm(const Net& displacement) const {
   return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
 }
 
-Net RigidParticle::surface(const Net& place) const {
+Net LoneRigidBody::surface(const Net& place) const {
   Net x = (surface_.rowwise() - centre_.transpose()) * rotation_of(place).transpose();
   x.rowwise() += place.row(0);
   return x;

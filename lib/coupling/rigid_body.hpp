@@ -30,10 +30,10 @@ Vec3 centre_of(const Net& place);
 Mat3 rotation_of(const Net& place);
 
 /// Centre and orientation of a rigid body as dx/dt = v(x).
-class RigidParticle : public Dynamics {
+class LoneRigidBody : public Dynamics {
  public:
   /// `surface`: control net of the body at its initial place; `radius`: R_C; `driven`: by which force, and torque about the centre.
-  RigidParticle(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+  LoneRigidBody(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
       : surface_(surface), centre_(centre), radius_(radius), flow_(flow), driven_(driven) {}
 
   void at(double time, double start) override { flow_.at(time, start); }
@@ -68,7 +68,7 @@ class RigidParticle : public Dynamics {
 
 /// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega', where (U', Omega')
 /// makes force and torque what they are, or vanish, in what else the flow is about x_c. A few small matrices a call.
-class FreeBody : public RigidParticle {
+class FreeBody : public LoneRigidBody {
  public:
   FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
 
@@ -90,7 +90,7 @@ class FreeBody : public RigidParticle {
 ///
 /// with u the answer of wall and pressure drop. Belos starts from the solution before. Calls are collective, and those at one place
 /// after another cost one solve. The motion is not finite where the body reaches into the wall.
-class FreeBodyInTube : public RigidParticle {
+class FreeBodyInTube : public LoneRigidBody {
  public:
   /// `body`: with its tube. `solvers`: of the system above.
   FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,

@@ -48,8 +48,8 @@ RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& r
   }
 }
 
-bool RigidParticles::told() const {
-  return std::ranges::any_of(bodies_, [](const Body& body) { return body.rigid.told; });
+bool RigidParticles::prescribed() const {
+  return std::ranges::any_of(bodies_, [](const Body& body) { return body.rigid.prescribed; });
 }
 
 /// The rotation by the singular vectors of sum y r^T (Kabsch 1976).
@@ -87,7 +87,7 @@ RigidMotion RigidParticles::Body::load() const { return carrying(force, torque);
 
 void RigidParticles::add_load(Net& load) const {
   for (const Body& body : bodies_)
-    if (!body.rigid.told) body.block.rows(load) -= body.field(body.carrying(body.rigid.force, body.rigid.torque));
+    if (!body.rigid.prescribed) body.block.rows(load) -= body.field(body.carrying(body.rigid.force, body.rigid.torque));
 }
 
 Net RigidParticles::Body::lacking_of(const RigidMotion& load) const {
@@ -106,26 +106,26 @@ Net RigidParticles::Body::lacking_of(const Net& w) const {
 
 void RigidParticles::add_lacking(Net& v) const {
   for (const Body& body : bodies_)
-    if (!body.rigid.told) body.block.rows(v) += body.lacking_of(body.carrying(body.rigid.force, body.rigid.torque)) / body.viscosity;
+    if (!body.rigid.prescribed) body.block.rows(v) += body.lacking_of(body.carrying(body.rigid.force, body.rigid.torque)) / body.viscosity;
 }
 
-void RigidParticles::subtract_told(Net& v) const {
+void RigidParticles::subtract_prescribed(Net& v) const {
   for (const Body& body : bodies_)
-    if (body.rigid.told) body.block.rows(v) -= body.field(body.rigid.motion);
+    if (body.rigid.prescribed) body.block.rows(v) -= body.field(body.rigid.motion);
 }
 
 void RigidParticles::complete(const Net& w, Net& v) const {
   for (const Body& body : bodies_) {
     body.block.rows(v) += body.lacking_of(w) - Net(body.block.rows(w));
     const RigidMotion mean = body.mean(w);
-    body.block.rows(v) += body.rigid.told ? Net(body.lacking_of(mean) / body.radius) : body.field(mean);
+    body.block.rows(v) += body.rigid.prescribed ? Net(body.lacking_of(mean) / body.radius) : body.field(mean);
   }
 }
 
 Net RigidParticles::completing_load(const Net& w) const {
   Net load = Net::Zero(w.rows(), 3);
   for (const Body& body : bodies_)
-    if (body.rigid.told) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
+    if (body.rigid.prescribed) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
   return load;
 }
 
@@ -134,13 +134,13 @@ void RigidParticles::move(Net& v) {
     const RigidMotion mean = body.mean(v);
     body.density = body.block.rows(v);
     body.force = body.rigid.force, body.torque = body.rigid.torque;
-    if (body.rigid.told) {
+    if (body.rigid.prescribed) {
       Motions of_body, integrals;
       of_body << body.turn.transpose() * mean.velocity, body.turn.transpose() * mean.angular_velocity;
       integrals = -body.viscosity / body.radius * body.inertia * of_body;
       body.force = body.turn * integrals.head<3>(), body.torque = body.turn * integrals.tail<3>();
     }
-    body.motion = body.rigid.told ? body.rigid.motion : mean;
+    body.motion = body.rigid.prescribed ? body.rigid.motion : mean;
     body.block.rows(v) = body.field(body.motion);
   }
 }

@@ -29,16 +29,16 @@ class RigidParticles {
   RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
 
   bool empty() const { return bodies_.empty(); }
-  bool told() const;  ///< whether any moves as told
+  bool prescribed() const;  ///< whether any moves as prescribed
 
   /// Puts every body where its rows of x are nearest to it, and its rows there.
   void place(Net& x);
 
   void add_load(Net& load) const;            ///< the load of given forces and torques
   void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (own_lacking.hpp)
-  void subtract_told(Net& v) const;          ///< V of the bodies that move as told
-  void complete(const Net& w, Net& v) const; ///< rows of v: w goes out of them, <w> comes in where force and torque are given, and what R^-1 H w lacks
-  Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as told, 0 elsewhere
+  void subtract_prescribed(Net& v) const;          ///< V of the bodies that move as prescribed
+  void complete(const Net& w, Net& v) const; ///< rows of v: w out, <w> in where force and torque are given, and what R^-1 D w lacks
+  Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as prescribed, 0 elsewhere
   void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
   void clear(Net& net) const;                ///< 0 in all rows of bodies
 

@@ -24,8 +24,7 @@ const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
-  const stokes::Evaluations of_wall = wall_->evaluations(), of_particle = particle_->evaluations();
-  return {of_wall.far + of_particle.far, of_wall.near + of_particle.near, of_wall.self + of_particle.self};
+  return wall_->evaluations() + particle_->evaluations();
 }
 
 void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }

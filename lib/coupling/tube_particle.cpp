@@ -105,9 +105,7 @@ void Tube::Particle::freeze(Wall& wall) {
 }
 
 stokes::Evaluations Tube::Particle::evaluations() const {
-  stokes::Evaluations sum = single.evaluations();
-  if (dual) sum.far += dual->evaluations().far, sum.near += dual->evaluations().near;
-  return sum;
+  return dual ? single.evaluations() + dual->evaluations() : single.evaluations();
 }
 
 }  // namespace tanktread::coupling

@@ -115,8 +115,7 @@ Net Wall::force_weights() const {
 }
 
 stokes::Evaluations Wall::evaluations() const {
-  const stokes::Evaluations& off = layer_.evaluations();
-  return {assembly_.far + off.far, assembly_.near + off.near, assembly_.self + off.self};
+  return assembly_ + layer_.evaluations();
 }
 
 }  // namespace tanktread::coupling

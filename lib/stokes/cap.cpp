@@ -8,13 +8,13 @@
 #include "quadrature/ellipse.hpp"
 #include "quadrature/gauss.hpp"
 #include "stokes/cap_kernel.hpp"
+#include "stokes/kernels.hpp"
 
 namespace tanktread::stokes {
 namespace {
 
 using surface::Vec2;
 
-constexpr double factor = 1 / (8 * std::numbers::pi);
 constexpr int close_order = 16;
 
 /// Points closer to the cap's plane than this many half pieces get rules of their own.
@@ -106,7 +106,7 @@ const Cap::Nodes& Cap::nodes_for(double distance) const {
 Vec3 Cap::integral(const Vec3& x0) const {
   const Vec2 p(x0[1], x0[2]);
   const double h = place_ - x0[0];
-  return factor * around(integrand, outline_, p, h, 1e-10 * reach_);
+  return over_8_pi * around(integrand, outline_, p, h, 1e-10 * reach_);
 }
 
 Net Cap::integral(const Net& x) const {
@@ -119,7 +119,7 @@ Net Cap::integral(const Net& x) const {
     }
     const Nodes& n = nodes_for(std::abs(h));
     const CapSums sums = cap_sums(static_cast<int>(n.y.size()), n.y.data(), n.z.data(), n.ny.data(), n.nz.data(), h, y, z);
-    c.row(i) << factor * sums.flux, -factor * h * sums.normal_y, -factor * h * sums.normal_z;
+    c.row(i) << over_8_pi * sums.flux, -over_8_pi * h * sums.normal_y, -over_8_pi * h * sums.normal_z;
   }
   return c;
 }
@@ -142,7 +142,7 @@ double Cap::double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const
   m.bottomRightCorner<2, 2>() += angle / 3 * Eigen::Matrix2d::Identity();
   m.block<2, 1>(1, 0) = m.block<1, 2>(0, 1).transpose();
   m(0, 0) = angle - m(1, 1) - m(2, 2);
-  return 6 * factor * v.dot(m * n);
+  return 6 * over_8_pi * v.dot(m * n);
 }
 
 /// int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'
@@ -151,7 +151,7 @@ double Cap::own_flow() const {
   double sum = 0;
   for (std::size_t k = 0; k < n.y.size(); ++k)
     sum -= around(distance_times_normal, outline_, {n.y[k], n.z[k]}, 0, 1e-4 * reach_).dot(Vec3(0, n.ny[k], n.nz[k]));
-  return factor * sum;
+  return over_8_pi * sum;
 }
 
 }  // namespace tanktread::stokes

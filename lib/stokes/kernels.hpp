@@ -1,8 +1,13 @@
 #pragma once
 
+#include <numbers>
+
 #include "base/types.hpp"
 
 namespace tanktread::stokes {
+
+/// What integrals of both kernels are taken over.
+constexpr double over_8_pi = 1 / (8 * std::numbers::pi);
 
 /// Free-space Stokeslet: velocity at x0 due to a unit point force at x, times 8 pi mu.
 ///
@@ -18,6 +23,11 @@ Mat3 stresslet(const Vec3& r, const Vec3& n);
 struct Evaluations {
   long long far = 0, near = 0, self = 0;
   long long total() const { return far + near + self; }
+  Evaluations& operator+=(const Evaluations& other) {
+    far += other.far, near += other.near, self += other.self;
+    return *this;
+  }
+  friend Evaluations operator+(Evaluations one, const Evaluations& other) { return one += other; }
 };
 
 }  // namespace tanktread::stokes

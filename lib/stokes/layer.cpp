@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -12,8 +11,6 @@
 
 namespace tanktread::stokes {
 namespace {
-
-constexpr double eighth_of_pi = 1 / (8 * std::numbers::pi);
 
 /// Rules are chosen for int G f dG; the double layer, steeper by one order, errs up to five times as much under them (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
@@ -50,6 +47,7 @@ Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, cons
 void Layer::set_symmetry(const surface::Symmetry& symmetry) {
   surface_.set_symmetry(symmetry);
   fundamental_sites_ = symmetry.fundamental();
+  tree_rows_.clear();
 }
 
 void Layer::set_reference(const Net& unstressed) {
@@ -63,6 +61,7 @@ void Layer::share(int part, int parts, std::vector<int> everybody) {
   if (!tree_ || parts == 1) return;
   everybody_ = std::move(everybody);
   tree_->share(part, parts);
+  tree_rows_.clear();
 }
 
 void Layer::place(const Net& x, Measure measure) {
@@ -74,9 +73,14 @@ void Layer::place(const Net& x, Measure measure) {
   if (!single() || surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
   if (single() && measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_);
   if (single() && measure == Measure::reference) weight_ = weight_unstressed_;
-  for (int e = 0; e < surface_.panels.size() && !factor_.empty(); ++e)
-    for (auto* const carrier : {&normal_[0], &normal_[1], &normal_[2], &weight_})
-      for (int k = 0; k < surface_.panels[e].table->n_nodes && !carrier->empty(); ++k) (*carrier)[surface_.panels[e].first_node + k] *= factor_[e];
+  if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
+}
+
+/// By the factors of the panels.
+void Layer::scale(std::span<std::vector<double>> at_nodes) const {
+  for (int e = 0; e < surface_.panels.size(); ++e)
+    for (std::vector<double>& values : at_nodes)
+      for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) values[surface_.panels[e].first_node + k] *= factor_[e];
 }
 
 void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
@@ -85,7 +89,7 @@ void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
 }
 
 /// The density at the far nodes.
-void Layer::load(const Net& f) {
+void Layer::set_density(const Net& f) {
   const auto clock = phases_.time("setup");
   values(f, density_);
   if (!single()) return;
@@ -105,13 +109,13 @@ Stresslets Layer::stresslets() const {
 }
 
 void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
-  load(f);
+  assert(surface_.n_sites > 0 && "a layer is for sites or for points off its surfaces");
+  set_density(f);
   const std::span<const int> far_rows = shared() ? everybody_ : sites, in_tree = tree_ ? std::span<const int>(fundamental_sites_) : sites;
   Net at(u.rows(), 3), f0 = Net::Zero(u.rows(), 3);
   for (const int i : in_tree) at.row(i) = surface_.site(i).transpose();
-  for (const auto rows : {far_rows, sites})
-    for (const int i : rows)
-      if (!single()) f0.row(i) = surface_.value(i, bezier_f_).transpose();
+  for (const int i : far_rows)
+    if (!single()) f0.row(i) = surface_.value(i, bezier_f_).transpose();
   integrate({sites, far_rows, at, f0, in_tree, true}, u);
 }
 
@@ -120,7 +124,9 @@ void Layer::apply(const Net& f, const Net& at, std::span<const int> targets, Net
 }
 
 void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
-  load(f);
+  assert(surface_.n_sites == 0 && !shared() && "a layer is for sites or for points off its surfaces");
+  assert(!kept || kept->first.size() == targets.size() + 1);
+  set_density(f);
   std::vector<int> all(static_cast<std::size_t>(at.rows()));
   std::iota(all.begin(), all.end(), 0);
   integrate({targets, targets, at, f0, all, false, kept}, u);
@@ -149,7 +155,7 @@ void Layer::integrate(const Targets& targets, Net& u) {
       }
     if (single() && surface_.options.rule == "desingularised") subtract_identities(targets.rows, u);
   }
-  for (const int i : targets.far_rows) u.row(i) *= eighth_of_pi;
+  for (const int i : targets.far_rows) u.row(i) *= over_8_pi;
 }
 
 /// What the rule `table` for panel e gives a target beyond the far sum.
@@ -271,7 +277,8 @@ void Layer::panel_moments(int e, const PointTable& table, SelfPair* pair, const 
     single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch_.data(), moments);
   else
     double_moments(table, bezier, at.data(), scratch_.data(), moments);
-  for (int k = 0; k < 6 * surface_.panels[e].table->n_bernstein && !factor_.empty(); ++k) moments[k] *= factor_[e];
+  if (factor_.empty()) return;
+  for (int k = 0; k < 6 * surface_.panels[e].table->n_bernstein; ++k) moments[k] *= factor_[e];
 }
 
 Layer::Near Layer::near(const Net& at, std::span<const int> targets) {

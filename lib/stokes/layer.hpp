@@ -48,7 +48,7 @@ class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
 
-  /// `sites`: targets on the surfaces, for a start those of the space's collocation; none: all targets are off them. `factor`: k of each element; 1
+  /// `sites`: all targets are on the surfaces, as the space's `collocation` is; none: all are off them. `factor`: k of each element; 1
   /// where there are none.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
@@ -82,7 +82,7 @@ class Layer {
     std::vector<double> moments;
   };
 
-  /// For densities that are many, at the same points of the same shape.
+  /// For densities that are many, at the same points, in the same order, of the shape that is placed.
   Near near(const Net& at, std::span<const int> targets);
 
   /// Rows `targets` of u, shape of `at`, at points off the surfaces with rows `at`. `kept`: near(at, targets), or nothing.
@@ -125,7 +125,8 @@ class Layer {
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   PointForces forces() const;
   Stresslets stresslets() const;
-  void load(const Net& f);
+  void set_density(const Net& f);
+  void scale(std::span<std::vector<double>> at_nodes) const;
   void integrate(const Targets& targets, Net& u);
   void add_far(const Targets& targets, Net& u);
   void place_tree(const Targets& targets);
@@ -156,7 +157,7 @@ class Layer {
   std::optional<TreeSum> tree_;                                    // where clusters are faster
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows that far sums are shared of; empty: they are not
   std::vector<Vec3> tree_at_;                                      // targets of the tree
-  std::vector<int> tree_rows_;                                     // rows wanted of it; none: it is not placed
+  std::vector<int> tree_rows_;                                     // rows wanted of it; none: it is to be placed
   std::vector<double> stress_;                                     // 8 pi times the solid angle of the far nodes at the targets, six numbers each
   std::vector<double> moment_[6];                                  // of the far nodes: symmetric part of density times normal
   std::vector<Pack> point_weights_, scratch_;

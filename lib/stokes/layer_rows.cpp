@@ -1,8 +1,8 @@
 // Assembled rows of a layer: far moments sixteen targets at a time, own rules target by target. Whole rows, or what near control points add to them.
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -76,7 +76,7 @@ void add_moments(const Panels& panels, int e, const int* rows, const double* mom
 template <class Real>
 void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
   constexpr int entry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-  const Real scale = static_cast<Real>(1 / (8 * std::numbers::pi));
+  const Real scale = static_cast<Real>(over_8_pi);
   for (int i = 0; i < 3; ++i) {
     Real* to = &a(row + i, 0);
     const Real* from = sums;
@@ -141,8 +141,10 @@ class Layer::RowSums {
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
     const int first = layer_.surface_.panels[basis.panels[k]].first_node;
     PanelNodes<Real> nodes = basis.nodes(layer_.surface_, k);
-    if (layer_.single()) nodes.weight = &layer_.weight_[first];
-    for (int c = 0; c < 3 && !layer_.single(); ++c) nodes.normal[c] = &layer_.normal_[c][first];
+    if (layer_.single())
+      nodes.weight = &layer_.weight_[first];
+    else
+      for (int c = 0; c < 3; ++c) nodes.normal[c] = &layer_.normal_[c][first];
     kernel_.resize(static_cast<std::size_t>(6) * assembly_block * nodes.n_nodes);
     add_far_moments<Real>(nodes, place, skip_[k], kernel_.data(), sums.data());
     layer_.evaluations_.far += static_cast<long long>(n_targets) * nodes.n_nodes;
@@ -195,9 +197,9 @@ void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
 
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
+  assert(single());
   const auto clock = phases_.time("assembly");
   constexpr std::size_t block = assembly_block;
-  constexpr double scale = 1 / (8 * std::numbers::pi);
   const Panels& panels = surface_.panels;
   std::vector<std::vector<int>> panels_of(static_cast<std::size_t>(surface_.n_points));
   for (int e = 0; e < panels.size(); ++e)
@@ -222,7 +224,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
     for (std::size_t l = 0; l < some.size(); ++l)
       for (std::size_t j = near.first[first + l]; j < near.first[first + l + 1]; ++j)
         for (std::size_t c = 0; c < 6; ++c)
-          entries[6 * j + c] = scale * rows.sums[block * (6 * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
+          entries[6 * j + c] = over_8_pi * rows.sums[block * (6 * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
   }
   if (surface_.options.rule == "desingularised") subtract_identities(sites, near, entries);
 }
@@ -252,7 +254,7 @@ void Layer::subtract_identities(std::span<const int> sites, Net& u) {
 template <class Real>
 void Layer::subtract_identities(std::span<const int> sites, Rows<Real>& a) const {
   for (std::size_t k = 0; k < sites.size(); ++k) {
-    const Mat3 m = identities(sites[k]) / (8 * std::numbers::pi);
+    const Mat3 m = over_8_pi * identities(sites[k]);
     const auto [panel, basis] = surface_.self_field.basis(sites[k], surface_.panels);
     for (int b = 0; b < basis.size(); ++b)
       a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * surface_.panels.points(panel)[b]) -= (basis[b] * m).template cast<Real>();
@@ -261,7 +263,7 @@ void Layer::subtract_identities(std::span<const int> sites, Rows<Real>& a) const
 
 void Layer::subtract_identities(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) const {
   for (std::size_t k = 0; k < sites.size(); ++k) {
-    const Mat3 m = identities(sites[k]) / (8 * std::numbers::pi);
+    const Mat3 m = over_8_pi * identities(sites[k]);
     const auto [panel, basis] = surface_.self_field.basis(sites[k], surface_.panels);
     const std::span<const int> points(surface_.panels.points(panel), static_cast<std::size_t>(basis.size()));
     for (std::size_t j = near.first[k]; j < near.first[k + 1]; ++j) {

@@ -71,6 +71,7 @@ bool sums_by_tree(const spline::Space& space, const quadrature::Options& options
 LayerSurface::LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& how, bool steep)
     : options(how),
       n_points(space.n_points),
+      n_sites(static_cast<int>(sites.size())),
       panels(space, far_orders(space, how, far_order(how, !sites.empty()))),
       near_field(panels, how.tolerance, far_order(how, !sites.empty()), steep, sites.empty()),
       self_field(space, sites, how) {

@@ -51,7 +51,7 @@ class LayerSurface {
   void place(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;
-  int n_points;
+  int n_points, n_sites;  ///< control points, and targets on the surfaces
   Panels panels;
   NearField near_field;
   SelfField self_field;

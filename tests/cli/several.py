@@ -19,6 +19,7 @@ Tanktread:
     drop: {center: [1.5, 0.0, -0.4], viscosity ratio: 5.0, Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 4}}
     small: {like: capsule, center: [0.0, 2.5, 0.0], radius: 0.8}
     ball: {motion: free, center: [0.0, -2.0, 0.0], shape: ellipsoid, semi-axes: [0.8, 0.6, 0.7]}
+    pebble: {motion: prescribed, velocity: [0.1, 0.0, 0.0], center: [0.1, -3.15, 0.05], radius: 0.5}
   Time: {fixed step: 0.02, final time: 0.12}
   Solvers: {tolerance: 1.0e-12}
   Output: {interval: 0.04}
@@ -95,6 +96,23 @@ def the_order_is_of_no_consequence():
             continue  # numbers in the order of the deck
         off = numpy.abs(a[name] - b[name]).max() / max(1, numpy.abs(a[name]).max())
         check(off <= 1e-10, name, "is off by", off)
+
+
+def membranes_of_others_do_not_concern_a_rigid_body():
+    plain = """
+Tanktread:
+  Flow: {type: quiescent}
+  Particles:
+    defaults: {Surface: {elements per side: 3}}
+    one: {motion: free, force: [1.0, 0.0, 0.0]}
+    two: {motion: free, center: [0.0, 3.0, 0.0]}
+  Time: {fixed step: 0.05, final time: 0.05}
+"""
+    deck(plain, "plain.yaml")
+    deck(plain.replace("defaults: {", "defaults: {Membrane: {law: Skalak, pre-inflation: 0.1, capillary number: 0.3}, "), "inflated.yaml")
+    for name in ("plain", "inflated"):
+        run(f"{name}.yaml", "--output", name, "--quiet", "--no-expect")
+    _same("plain", "inflated", 1e-13)
 
 
 def one_far_away_changes_nothing():
