@@ -86,7 +86,7 @@ BelosFactory belos_factory(const IterativeOptions& options) {
   all->set("Solver Type", type->second);
   Teuchos::ParameterList& own = all->sublist("Solver Types").sublist(type->second);
   own.set("Maximum Iterations", 200);
-  if (name.ends_with("GMRES")) own.set("Num Blocks", 100);
+  if (name.ends_with("GMRES")) own.set("Num Blocks", options.restart);
   const bool flexible = name == "GMRES" || name == "FLEXIBLE GMRES";
   if (flexible) own.set("Flexible Gmres", true);
   if (options.belos) {

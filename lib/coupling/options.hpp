@@ -28,10 +28,11 @@ struct InterfaceOptions {
 
 /// The iterative solver of one kind of system: `Solvers/<system>` of the deck.
 struct IterativeOptions {
-  std::optional<std::string> solver;              ///< Belos' name; that of SolverOptions where it is not given
-  std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is; that of SolverOptions where neither this nor the name is given
+  std::optional<std::string> solver{};            ///< Belos' name; that of SolverOptions where it is not given
+  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< its list, as it is; that of SolverOptions where neither this nor the name is given
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
   std::string path = "Solvers";                   ///< of its list in the deck
+  int restart = 100;                              ///< of GMRES, where the list does not say: all these vectors are allocated in each solve
 
   void declare(deck::Section& section);
 };
@@ -40,7 +41,8 @@ struct IterativeOptions {
 struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver, of all systems that have none of their own
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
-  IterativeOptions velocity, traction, implicit_step;
+  IterativeOptions velocity, traction;
+  IterativeOptions implicit_step{.restart = 30};  ///< three iterations are usual
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< list of the nonlinear solver of crank-nicolson, as it is
   double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
   std::string double_layer = "auto";              ///< assembled once a velocity, for all iterations; matrix-free: summed in each of them;
