@@ -8,13 +8,10 @@
 
 #include "coupling/agreement.hpp"
 #include "motion/adaptation.hpp"
-#include "spline/coarsening.hpp"
-#include "spline/locate.hpp"
-#include "spline/projection.hpp"
 #include "spline/refinement.hpp"
+#include "spline/locate.hpp"
 #include "spline/transfer.hpp"
 #include "surface/metrics.hpp"
-#include "surface/resolution.hpp"
 
 namespace tanktread {
 

@@ -6,7 +6,7 @@
 
 #include "app/body.hpp"
 #include "motion/integrator.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 
 namespace tanktread {
 

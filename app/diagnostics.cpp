@@ -13,10 +13,8 @@
 
 #include "base/errors.hpp"
 #include "spline/bernstein.hpp"
-#include "surface/extremes.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
-#include "surface/shape_velocity.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {

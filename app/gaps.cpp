@@ -9,7 +9,6 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "surface/closest_points.hpp"
-#include "surface/films.hpp"
 
 namespace tanktread {
 

@@ -12,7 +12,7 @@
 #include "membrane/membrane.hpp"
 #include "output/checkpoint.hpp"
 #include "spline/locate.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread {

@@ -17,7 +17,6 @@
 #include "quadrature/options.hpp"
 #include "stokes/flow_options.hpp"
 #include "surface/options.hpp"
-#include "surface/tube_options.hpp"
 
 namespace tanktread {
 

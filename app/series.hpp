@@ -13,7 +13,6 @@
 #include "membrane/membrane.hpp"
 #include "motion/integrator.hpp"
 #include "surface/geometry.hpp"
-#include "surface/principal_axes.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {

@@ -9,7 +9,7 @@
 #include "base/formatted.hpp"
 #include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
-#include "surface/fundamental.hpp"
+#include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
 

@@ -8,9 +8,8 @@
 
 #include "base/types.hpp"
 #include "coupling/rigid_motion.hpp"
-#include "membrane/material.hpp"
+#include "membrane/laws.hpp"
 #include "spline/space.hpp"
-#include "spline/stacked.hpp"
 
 namespace tanktread::coupling {
 

@@ -1,7 +1,6 @@
 #include "membrane/direct_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -16,7 +15,7 @@
 
 #include "base/errors.hpp"
 #include "deck/foreign.hpp"
-#include "membrane/incomplete_solver.hpp"
+#include "spline/sparse_systems.hpp"
 
 namespace tanktread::membrane {
 namespace {
@@ -55,44 +54,33 @@ std::string last_line(const std::string& text) {
   return text.substr(before == std::string::npos ? 0 : before + 1, end - (before == std::string::npos ? 0 : before + 1) + 1);
 }
 
-bool same_pattern(const RowMajor& a, const RowMajor& b) {
-  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
-         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.rows() + 1, b.outerIndexPtr()) &&
-         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
-}
-
 }  // namespace
 
 struct DirectSolver::Impl {
   DirectSolverOptions options;
   RowMajor a;
   Teuchos::RCP<const Map> map;
-  Teuchos::RCP<Matrix> matrix;
-  std::array<Teuchos::RCP<MultiVector>, 3> x, b;  // of one, two and three columns
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
-  Eigen::MatrixXd inverse;  // of a small matrix, else empty
-  std::optional<IncompleteSolver> iterative;  // in place of the factors
+  Eigen::MatrixXd inverse;                            // of a small matrix, else empty
+  std::optional<spline::IncompleteSolver> iterative;  // in place of the factors
 
   bool iterates() const {
     return options.sparse_systems == "iterative" || (options.sparse_systems == "auto" && a.rows() >= worth_iterating);
   }
 
-  // Everything that depends on the pattern only.
-  void analyse() {
+  void factor() {
     const auto n = static_cast<std::size_t>(a.rows());
     map = Teuchos::rcp(new Map(n, n, 0, Teuchos::rcp(new Teuchos::SerialComm<int>)));
     Teuchos::ArrayRCP<std::size_t> starts(n + 1);
     Teuchos::ArrayRCP<int> columns(a.nonZeros());
+    Teuchos::ArrayRCP<double> values(a.nonZeros());
     std::copy_n(a.outerIndexPtr(), n + 1, starts.begin());
     std::copy_n(a.innerIndexPtr(), a.nonZeros(), columns.begin());
-    const Teuchos::ArrayRCP<double> values(a.nonZeros());
-    matrix = Teuchos::rcp(new Matrix(map, map, starts, columns, values));
-    refill();
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = Teuchos::rcp(new MultiVector(map, k + 1));
-      b[k] = Teuchos::rcp(new MultiVector(map, k + 1));
-    }
-    solver = Amesos2::create<Matrix, MultiVector>(options.name, matrix, x[2], b[2]);
+    std::copy_n(a.valuePtr(), a.nonZeros(), values.begin());
+    const auto matrix = Teuchos::rcp(new Matrix(map, map, starts, columns, values));
+    matrix->fillComplete(map, map);
+    const auto vectors = [&] { return Teuchos::rcp(new MultiVector(map, 3)); };
+    solver = Amesos2::create<Matrix, MultiVector>(options.name, matrix, vectors(), vectors());
     const auto list = Teuchos::rcp(options.amesos2 ? new Teuchos::ParameterList(*options.amesos2) : new Teuchos::ParameterList);
     list->setName("Amesos2");
     deck::check_foreign("Solvers/Amesos2", *list, *solver->getValidParameters());
@@ -102,42 +90,23 @@ struct DirectSolver::Impl {
       throw UserError("Solvers/Amesos2: Amesos2's " + options.name + " does not take this list: " + last_line(error.what()));
     }
     solver->symbolicFactorization();
-  }
-
-  void refill() {
-    matrix->resumeFill();
-    for (int row = 0; row < a.rows(); ++row) {
-      const int first = a.outerIndexPtr()[row], n = a.outerIndexPtr()[row + 1] - first;
-      matrix->replaceLocalValues(row, n, a.valuePtr() + first, a.innerIndexPtr() + first);
-    }
-    matrix->fillComplete(map, map);
-  }
-
-  // By the factors.
-  void invert() {
-    inverse.resize(0, 0);
-    const Eigen::Index n = a.rows();
-    if (n > worth_inverting) return;
-    Eigen::MatrixXd all(n, n);
-    Columns unit = Columns::Zero(n, 1), one(n, 1);
-    for (Eigen::Index c = 0; c < n; ++c) {
-      unit(c, 0) = 1;
-      solve(unit, one);
-      unit(c, 0) = 0;
-      all.col(c) = one;
-    }
+    solver->numericFactorization();
+    if (a.rows() > worth_inverting) return;
+    Eigen::MatrixXd all(a.rows(), a.rows());
+    for (Eigen::Index c = 0; c < a.rows(); ++c) all.col(c) = substituted(Eigen::VectorXd::Unit(a.rows(), c));
     inverse = std::move(all);
   }
 
-  // Up to three columns.
-  void solve(const Eigen::Ref<const Columns>& right, Eigen::Ref<Columns> left) const {
-    const auto columns = static_cast<std::size_t>(right.cols());
-    MultiVector &known = *b[columns - 1], &found = *x[columns - 1];
-    for (std::size_t c = 0; c < columns; ++c)
-      Eigen::Map<Eigen::VectorXd>(known.getDataNonConst(c).getRawPtr(), right.rows()) = right.col(static_cast<Eigen::Index>(c));
+  /// By the factors.
+  Eigen::MatrixXd substituted(const Eigen::MatrixXd& right) const {
+    MultiVector known(map, right.cols()), found(map, right.cols());
+    for (Eigen::Index c = 0; c < right.cols(); ++c)
+      Eigen::Map<Eigen::VectorXd>(known.getDataNonConst(c).getRawPtr(), right.rows()) = right.col(c);
     solver->solve(Teuchos::ptr(&found), Teuchos::ptr(&known));
-    for (std::size_t c = 0; c < columns; ++c)
-      left.col(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::VectorXd>(found.getData(c).getRawPtr(), right.rows());
+    Eigen::MatrixXd left(right.rows(), right.cols());
+    for (Eigen::Index c = 0; c < right.cols(); ++c)
+      left.col(c) = Eigen::Map<const Eigen::VectorXd>(found.getData(c).getRawPtr(), right.rows());
+    return left;
   }
 
   // Solves for a net without small or repeated entries and looks at what is left.
@@ -162,33 +131,24 @@ DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
 DirectSolver& DirectSolver::operator=(DirectSolver&&) noexcept = default;
 
 void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
-  RowMajor rows = a;
-  rows.makeCompressed();
-  const bool known = impl_->solver != Teuchos::null && same_pattern(rows, impl_->a);
-  impl_->a = std::move(rows);
-  impl_->iterative.reset();
+  impl_->a = a;
+  impl_->a.makeCompressed();
+  impl_->inverse.resize(0, 0);
   if (impl_->iterates()) {
-    impl_->inverse.resize(0, 0);
     if (impl_->iterative.emplace().factor(impl_->a) && impl_->residual(*this) < residual_of_iteration) return;
-    impl_->iterative.reset();  // complete factors serve any matrix
   }
+  impl_->iterative.reset();  // complete factors serve any matrix
   std::string trouble;
   try {
-    if (known)
-      impl_->refill();
-    else
-      impl_->analyse();
-    impl_->solver->numericFactorization();
-    impl_->invert();
+    impl_->factor();
     const double left = impl_->residual(*this);
-    if (!(left < residual_allowed)) trouble = "it leaves a relative residual of " + std::to_string(left);
+    if (left < residual_allowed) return;
+    trouble = "it leaves a relative residual of " + std::to_string(left);
   } catch (const UserError&) {
     throw;
   } catch (const std::exception& error) {
     trouble = last_line(error.what());
   }
-  if (trouble.empty()) return;
-  impl_->solver = Teuchos::null;
   if (impl_->options.name != "KLU2")
     throw UserError("Solvers/direct solver: " + impl_->options.name + " does not suit a sparse system of this run (" + trouble +
                     "); KLU2 does.");
@@ -196,20 +156,12 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
 }
 
 void DirectSolver::solve(const Columns& b, Columns& x) const {
-  if (impl_->iterative) {
-    const Eigen::MatrixXd right = b;  // by columns
-    x.resize(b.rows(), b.cols());
-    for (Eigen::Index c = 0; c < b.cols(); ++c) x.col(c) = impl_->iterative->solve(right.col(c));
-    return;
-  }
-  if (impl_->inverse.size() > 0) {
-    const Eigen::MatrixXd right = b;  // by columns
-    x.resize(b.rows(), b.cols());
-    for (Eigen::Index c = 0; c < b.cols(); ++c) x.col(c) = impl_->inverse * right.col(c);
-    return;
-  }
-  x.resize(b.rows(), b.cols());
-  impl_->solve(b, x);
+  Eigen::MatrixXd all = b;  // by columns
+  if (impl_->iterative)
+    for (auto column : all.colwise()) column = impl_->iterative->solve(column);
+  else
+    all = impl_->inverse.size() > 0 ? Eigen::MatrixXd(impl_->inverse * all) : impl_->substituted(all);
+  x = all;
 }
 
 Net DirectSolver::solve(const Net& b) const {

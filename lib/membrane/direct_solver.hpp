@@ -23,7 +23,7 @@ class DirectSolver {
   DirectSolver(DirectSolver&&) noexcept;
   DirectSolver& operator=(DirectSolver&&) noexcept;
 
-  /// Factors A (square). With the pattern of the factorisation before, only numerically. A solve with a known solution follows, and a
+  /// Factors A (square). A solve with a known solution follows, and a
   /// relative residual above 1e-8 throws: RunFailure for a singular matrix, UserError where the chosen solver does not suit the matrix
   /// (Tacho is for symmetric positive definite ones).
   void factor(const Eigen::SparseMatrix<double>& a);

@@ -11,58 +11,30 @@ namespace tanktread::membrane {
 template <class Number>
 struct Dual {
   Number value, slope;
+
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
+  friend Dual operator+(const Dual& a, const Number& b) { return {a.value + b, a.slope}; }
+  friend Dual operator+(const Number& a, const Dual& b) { return b + a; }
+  friend Dual operator-(const Dual& a) { return {-a.value, -a.slope}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
+  friend Dual operator-(const Dual& a, const Number& b) { return {a.value - b, a.slope}; }
+  friend Dual operator*(const Dual& a, const Dual& b) { return {a.value * b.value, a.slope * b.value + a.value * b.slope}; }
+  friend Dual operator*(double a, const Dual& b) { return {a * b.value, a * b.slope}; }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const Number ratio = a.value / b.value;
+    return {ratio, (a.slope - ratio * b.slope) / b.value};
+  }
+  friend Dual operator/(double a, const Dual& b) {
+    const Number ratio = a / b.value;
+    return {ratio, -ratio * b.slope / b.value};
+  }
+  friend Dual sqrt(const Dual& a) {
+    const Number root = tanktread::sqrt(a.value);
+    return {root, 0.5 * a.slope / root};
+  }
 };
 
-template <class N>
-Dual<N> operator+(const Dual<N>& a, const Dual<N>& b) {
-  return {a.value + b.value, a.slope + b.slope};
-}
-template <class N>
-Dual<N> operator-(const Dual<N>& a, const Dual<N>& b) {
-  return {a.value - b.value, a.slope - b.slope};
-}
-template <class N>
-Dual<N> operator*(const Dual<N>& a, const Dual<N>& b) {
-  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
-}
-template <class N>
-Dual<N> operator/(const Dual<N>& a, const Dual<N>& b) {
-  const N ratio = a.value / b.value;
-  return {ratio, (a.slope - ratio * b.slope) / b.value};
-}
-template <class N>
-Dual<N> operator-(const Dual<N>& a) {
-  return {-a.value, -a.slope};
-}
-template <class N>
-Dual<N> operator+(const Dual<N>& a, double b) {
-  return {a.value + b, a.slope};
-}
-template <class N>
-Dual<N> operator+(double a, const Dual<N>& b) {
-  return b + a;
-}
-template <class N>
-Dual<N> operator-(const Dual<N>& a, double b) {
-  return {a.value - b, a.slope};
-}
-inline Dual<Register> operator-(const Dual<Register>& a, const Register& b) { return {a.value - b, a.slope}; }
-template <class N>
-Dual<N> operator*(double a, const Dual<N>& b) {
-  return {a * b.value, a * b.slope};
-}
-template <class N>
-Dual<N> operator/(double a, const Dual<N>& b) {
-  const N ratio = a / b.value;
-  return {ratio, -ratio * b.slope / b.value};
-}
-using tanktread::sqrt;
-template <class N>
-Dual<N> sqrt(const Dual<N>& a) {
-  const N root = sqrt(a.value);
-  return {root, 0.5 * a.slope / root};
-}
-
+/// Vectors in space, of any kind of number.
 template <class N>
 using Vector = std::array<N, 3>;
 template <class N>

@@ -1,5 +1,5 @@
 #pragma once
-// Constitutive laws of a thin membrane: the stored energy per unstressed area as a function of the two surface invariants.
+// What membranes are made of. Constitutive laws: the stored energy per unstressed area as a function of the two surface invariants.
 //
 //   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5, less 2 there
 //
@@ -7,6 +7,7 @@
 
 #include <array>
 #include <variant>
+#include <vector>
 
 #include "base/register.hpp"
 
@@ -103,5 +104,23 @@ double energy(const Law& law, double stretch1, double stretch2);
 ///
 ///   T_i = (2/J_s) Psi_1 l_i^2 + 2 J_s Psi_2,   J_s = l1 l2                            from (3.2)
 std::array<double, 2> principal_tensions(const Law& law, double stretch1, double stretch2);
+
+/// E_b/2 int (2 chi - c0)^2 dGamma, chi = 1/2 div n: Helfrich's energy, in the weak form. It needs a surface that is C1, geometrically, across every
+/// element side. The term with the Gaussian curvature is constant on a closed surface and left out.
+struct Bending {
+  double modulus = 0;               ///< E_b, force x length; 0: no bending
+  bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point; otherwise 0
+};
+
+struct Material {
+  Law law;
+  Bending bending;
+};
+
+/// The materials of a surface, and which of them each element is of.
+struct Materials {
+  std::vector<Material> all;
+  std::vector<int> of_element;  ///< none where there is one material
+};
 
 }  // namespace tanktread::membrane

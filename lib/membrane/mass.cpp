@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "membrane/points_kernel.hpp"
+#include "spline/sparse_systems.hpp"
 
 namespace tanktread::membrane {
 namespace {
@@ -19,38 +19,10 @@ int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) /
 
 /// Zeros where two functions meet on an element.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
-  const int n = space.n_points;
-  std::vector<std::vector<int>> around(static_cast<std::size_t>(n));
-  for (std::size_t e = 0; e < space.elements.size(); ++e)
-    for (const int a : space.elements[e].points) around[a].push_back(static_cast<int>(e));
-  std::vector<int> met(static_cast<std::size_t>(n), -1);
-  const auto each_neighbour = [&](int a, int mark, const auto& act) {
-    for (const int e : around[a])
-      for (const int b : space.elements[e].points)
-        if (std::exchange(met[b], mark) != mark) act(b);
-  };
-  Eigen::SparseMatrix<double> matrix(n, n);
-  int* const start = matrix.outerIndexPtr();
-  for (int a = 0; a < n; ++a) {
-    start[a + 1] = start[a];
-    each_neighbour(a, a, [&](int) { ++start[a + 1]; });
-  }
-  matrix.resizeNonZeros(start[n]);
-  std::fill_n(matrix.valuePtr(), start[n], 0.);
-  std::vector<int> next(start, start + n);
-  for (int a = 0; a < n; ++a) each_neighbour(a, n + a, [&](int b) { matrix.innerIndexPtr()[next[b]++] = a; });  // column b: row by row, ascending
-  return matrix;
-}
-
-/// Where the matrix keeps the entries of an element's functions a, b: [functions a + b]. `row`: as many integers as the matrix has rows.
-std::vector<int> slots_of(const std::vector<int>& points, const Eigen::SparseMatrix<double>& matrix, std::vector<int>& row) {
-  const std::size_t n = points.size();
-  std::vector<int> slots(n * n);
-  for (std::size_t b = 0; b < n; ++b) {
-    for (int k = matrix.outerIndexPtr()[points[b]]; k < matrix.outerIndexPtr()[points[b] + 1]; ++k) row[matrix.innerIndexPtr()[k]] = k;
-    for (std::size_t a = 0; a < n; ++a) slots[n * a + b] = row[points[a]];
-  }
-  return slots;
+  const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(max_functions, max_functions);
+  std::vector<spline::LocalMatrix> local;
+  for (const spline::Element& element : space.elements) local.push_back({element.points, &zeros});
+  return spline::assemble(space.n_points, local);
 }
 
 std::vector<Pack> values_at_gauss_points(const Group& g) {
@@ -74,25 +46,25 @@ std::vector<Pack> values_at_gauss_points(const Group& g) {
   return values;
 }
 
-// Functions that an element lacks share slot 0 and add zero to it.
+/// Where the matrix keeps what is added to functions a, b and b, a of the elements in the lanes. Functions that an element lacks share slot 0 and add
+/// zero to it.
 std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& matrix, const spline::Space& space) {
+  const int *start = matrix.outerIndexPtr(), *row = matrix.innerIndexPtr();
+  const auto slot = [&](int a, int b) { return static_cast<int>(std::lower_bound(row + start[b], row + start[b + 1], a) - row); };
   const int lanes = pack_lanes();
-  std::size_t size = 0;
-  for (const Batch& batch : g.batches) size += static_cast<std::size_t>(2 * pairs(batch) * lanes);
-  std::vector<int> slots(size), row(static_cast<std::size_t>(matrix.rows()));
-  int* out = slots.data();
+  std::vector<int> slots;
   for (const Batch& batch : g.batches) {
+    const std::size_t first = slots.size();
+    slots.resize(first + 2 * pairs(batch) * lanes, 0);
     for (int l = 0; l < lanes; ++l) {
       const std::vector<int>& points = space.elements[batch.elements[l]].points;
-      const std::vector<int> mine = slots_of(points, matrix, row);
-      const int n = static_cast<int>(points.size());
-      for (int a = 0, pair = 0; a < n; ++a)
-        for (int b = 0; b <= a; ++b, ++pair) {
-          out[2 * pair * lanes + l] = mine[n * a + b];
-          out[(2 * pair + 1) * lanes + l] = mine[n * b + a];
+      int* out = &slots[first + l];
+      for (std::size_t a = 0; a < points.size(); ++a)
+        for (std::size_t b = 0; b <= a; ++b, out += 2 * lanes) {
+          out[0] = slot(points[a], points[b]);
+          out[lanes] = slot(points[b], points[a]);
         }
     }
-    out += 2 * pairs(batch) * lanes;
   }
   return slots;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "membrane/material.hpp"
+#include "membrane/laws.hpp"
 #include "spline/space.hpp"
 #include "surface/patch.hpp"
 

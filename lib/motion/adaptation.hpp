@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "spline/coarsening.hpp"
 #include "spline/refinement.hpp"
 #include "surface/metrics.hpp"
-#include "surface/resolution.hpp"
 
 namespace tanktread::deck {
 class Section;

@@ -3,7 +3,6 @@
 #include <cassert>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <numbers>
 
 namespace tanktread::quadrature {
@@ -49,19 +48,18 @@ GaussRule made(int n) {
 }
 
 template <class Rule, class Make>
-const Rule& kept(int n, std::map<int, Rule>& rules, std::mutex& guard, Make make) {
+const Rule& kept(int n, std::map<int, Rule>& rules, Make make) {
   assert(n >= 1);
-  const std::lock_guard lock(guard);
-  const auto found = rules.find(n);
-  return found != rules.end() ? found->second : rules.emplace(n, make(n)).first->second;
+  const auto [rule, fresh] = rules.try_emplace(n);
+  if (fresh) rule->second = make(n);
+  return rule->second;
 }
 
 }  // namespace
 
 const GaussRule& gauss(int n) {
   static std::map<int, GaussRule> rules;
-  static std::mutex guard;
-  return kept(n, rules, guard, made);
+  return kept(n, rules, made);
 }
 
 TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t) {
@@ -79,8 +77,7 @@ TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t) {
 
 const TensorRule& tensor_gauss(int n) {
   static std::map<int, TensorRule> rules;
-  static std::mutex guard;
-  return kept(n, rules, guard, [](int points) { return tensor(gauss(points), gauss(points)); });
+  return kept(n, rules, [](int points) { return tensor(gauss(points), gauss(points)); });
 }
 
 }  // namespace tanktread::quadrature

@@ -1,6 +1,8 @@
 #pragma once
 // Gauss-Legendre rules on the unit interval and their tensor products on the unit square.
 
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace tanktread::quadrature {
@@ -27,5 +29,14 @@ TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t);
 
 /// The n x n Gauss rule. Made once and kept.
 const TensorRule& tensor_gauss(int n);
+
+/// Points (s, t) of the unit square and their weights, in no particular arrangement.
+struct Rule {
+  std::vector<double> s, t, weights;
+
+  int size() const { return static_cast<int>(weights.size()); }
+  void clear() { s.clear(), t.clear(), weights.clear(); }
+  void add(double at_s, double at_t, double weight) { s.push_back(at_s), t.push_back(at_t), weights.push_back(weight); }
+};
 
 }  // namespace tanktread::quadrature

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/types.hpp"
-#include "quadrature/rule.hpp"
+#include "quadrature/gauss.hpp"
 
 namespace tanktread::quadrature {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/types.hpp"
-#include "quadrature/rule.hpp"
+#include "quadrature/gauss.hpp"
 
 namespace tanktread::quadrature {
 

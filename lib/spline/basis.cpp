@@ -1,7 +1,5 @@
 #include "spline/basis.hpp"
 
-#include "spline/bernstein.hpp"
-
 namespace tanktread::spline {
 
 Basis basis(const Element& element, double s, double t, int derivatives) {
@@ -32,6 +30,20 @@ Basis basis(const Element& element, double s, double t, int derivatives) {
     b.tt = combine(0, 2);
   }
   return b;
+}
+
+BezierPoints bezier_points(const Element& e, const Net& field) {
+  const auto gather = [&](auto& P) {
+    for (std::size_t i = 0; i < e.points.size(); ++i) P.row(Eigen::Index(i)) = field.row(e.points[i]);
+  };
+  if (e.degree == 3 && e.points.size() == 16) {  // of a size that the compiler knows
+    Eigen::Matrix<double, 16, 3> P;
+    gather(P);
+    return Eigen::Map<const Eigen::Matrix<double, 16, 16>>(e.extraction.data()).transpose().lazyProduct(P);
+  }
+  Eigen::Matrix<double, Eigen::Dynamic, 3> P(Eigen::Index(e.points.size()), 3);
+  gather(P);
+  return e.extraction.transpose().lazyProduct(P);
 }
 
 }  // namespace tanktread::spline

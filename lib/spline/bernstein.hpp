@@ -1,5 +1,7 @@
 #pragma once
-// Bernstein polynomials of any degree on [0, 1], on plain arrays and without allocation.
+// Bernstein polynomials of any degree on [0, 1], on plain arrays and without allocation; one cubic B-spline on one interval.
+
+#include <array>
 
 #include <Eigen/Core>
 
@@ -19,5 +21,9 @@ Eigen::MatrixXd elevation(int p, int q);
 /// De Casteljau restriction to [a, b]: (coefficients on [a, b]) = S (coefficients on [0, 1]). Shape (p + 1, p + 1).
 /// Extrapolates when [a, b] leaves [0, 1].
 Eigen::MatrixXd restriction(int p, double a, double b);
+
+/// Bernstein coefficients on [a, b] of the cubic B-spline with knots k0 <= .. <= k4, none of them strictly inside [a, b] in [k0, k4]:
+/// coefficient i is the blossom f(a, .., a, b, .., b) with i times b.
+std::array<double, 4> b_spline_on(const std::array<double, 5>& k, double a, double b);
 
 }  // namespace tanktread::spline

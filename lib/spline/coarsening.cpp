@@ -1,38 +1,18 @@
-#include "spline/coarsening.hpp"
+#include "spline/refinement.hpp"
 
 #include <algorithm>
 #include <bit>
 
 #include "spline/extended_mesh.hpp"
-#include "spline/extraordinary_zone.hpp"
 
 namespace tanktread::spline {
 
 namespace {
 
-/// A unit edge in the frame of a macro face: from (x, y) one step along x (or y), on the line with this number.
-struct PlacedEdge {
-  int face, x, y;
-  bool horizontal;
-  int line() const { return horizontal ? y : x; }
-};
-
-PlacedEdge placed(const Lattice& l, Ray e) {
-  if (l.cell[e.vertex][e.slot] < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // on the border of an open face
-  const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot];
-  return {l.face_of(c), l.x_of(c) + (k == 1), l.y_of(c) + (k == 2), k % 2 == 0};
-}
-
-/// Larger coordinate of an edge's farther end from the corner of its face.
-int farther_end(const Lattice& l, const PlacedEdge& e, int corner) {
-  auto distance = [&](int i, int j) { return std::max(corner == 1 || corner == 2 ? l.units - i : i, corner >= 2 ? l.units - j : j); };
-  return std::max(distance(e.x, e.y), distance(e.x + e.horizontal, e.y + !e.horizontal));
-}
-
 /// Whether the edge lies in the rings of a point at spacing h or a larger one.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
-    if (e.line() % h == 0 && farther_end(l, e, corner) <= 3 * h) return true;
+    if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
   return false;
 }
 
@@ -53,18 +33,6 @@ struct Remover {
 
   const Lattice& lattice() const { return *mesh.lattice; }
   bool may_go(Ray e) const { return removable[e.vertex] >> e.slot & 1; }
-
-  void clear(Ray e) {
-    const Lattice& l = lattice();
-    mesh.edges[e.vertex] &= std::uint8_t(~(1 << e.slot));
-    mesh.edges[l.neighbour[e.vertex][e.slot]] &= std::uint8_t(~(1 << l.back[e.vertex][e.slot]));
-  }
-
-  void set(Ray e) {
-    const Lattice& l = lattice();
-    mesh.edges[e.vertex] |= std::uint8_t(1 << e.slot);
-    mesh.edges[l.neighbour[e.vertex][e.slot]] |= std::uint8_t(1 << l.back[e.vertex][e.slot]);
-  }
 
   /// The bay that starts at a vertex with a perpendicular edge; empty if one of its edges must stay or an end would lose its rectangle.
   std::vector<Ray> removable_bay(Ray start) const {
@@ -90,9 +58,7 @@ struct Remover {
       if (!l.is_flat(c)) continue;
       const bool south = l.y_of(c) == 0;
       const Ray end = south ? Ray{l.corners[c][3], 3} : Ray{l.corners[c][0], 1};
-      clear(end);
-      if (!mesh.edge(end.vertex, end.slot ^ 2)) continue;
-      set(end);
+      mesh.set(end, mesh.edge(end.vertex, end.slot ^ 2));
     }
   }
 
@@ -103,10 +69,10 @@ struct Remover {
     for (Ray s : starts) {
       if (!mesh.edge(s.vertex, s.slot)) continue;  // its own image
       const auto bay = removable_bay(s);
-      for (Ray e : bay) clear(e);
+      for (Ray e : bay) mesh.set(e, false);
       gone.insert(gone.end(), bay.begin(), bay.end());
       if (!bay.empty()) continue;
-      for (Ray e : gone) set(e);
+      for (Ray e : gone) mesh.set(e, true);
       return false;
     }
     bays += !gone.empty();
@@ -140,7 +106,7 @@ struct Remover {
         for (int i = 0; i < 6 * h; ++i) {
           const int c = left(l, forward(l, corner, i), j).cell;
           for (int k = 0; k < 4; ++k) {
-            const Ray e{l.corners[c][k], l.slot[c][k]};
+            const Ray e = l.side(c, k);
             if (mesh.edge(e.vertex, e.slot) && placed(l, e).line() % (2 * h) != 0) out.push_back(e);
           }
         }
@@ -176,7 +142,7 @@ struct Remover {
       std::vector<Ray> edges;
       for (int p : group)
         for (Ray e : ring_edges(p)) edges.push_back(e);
-      for (Ray e : edges) clear(e);
+      for (Ray e : edges) mesh.set(e, false);
       for (int p : group) mesh.spacing[p] *= 2;
       doublings += int(group.size());
       any = any || !group.empty();
@@ -224,14 +190,11 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
       if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
-      const int v = l.corners[c][k], s = l.slot[c][k];
-      if (vertical && l.pad && (l.height(row) == 0 || l.height(row + 1) == l.rows - 2 * l.pad)) {  // with its end in the row of no height
-        const Ray end = l.height(row) == 0 ? Ray{v, 3} : Ray{l.neighbour[v][1], 1};
-        removable[end.vertex] |= std::uint8_t(1 << end.slot);
-        removable[l.neighbour[end.vertex][end.slot]] |= std::uint8_t(1 << l.back[end.vertex][end.slot]);
-      }
-      removable[v] |= std::uint8_t(1 << s);
-      removable[l.neighbour[v][s]] |= std::uint8_t(1 << l.back[v][s]);
+      const Ray edge = l.side(c, k);
+      l.set(removable, edge, true);
+      if (!vertical || !l.pad) continue;  // otherwise with its end in the row of no height
+      if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
+      if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }
   return take_out(mesh, removable, rules);
 }

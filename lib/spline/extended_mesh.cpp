@@ -14,16 +14,13 @@ ExtendedMesh::ExtendedMesh(TMesh mesh) : mesh_(std::move(mesh)) {
 void ExtendedMesh::keep_extensions() {
   required_ = mesh_.edges;
   for (const auto& [vertex, trace] : traces_)
-    for (Ray e : trace.edges) {
-      required_[e.vertex] |= std::uint8_t(1 << e.slot);
-      required_[mesh_.lattice->neighbour[e.vertex][e.slot]] |= std::uint8_t(1 << mesh_.lattice->back[e.vertex][e.slot]);
-    }
+    for (Ray e : trace.edges) mesh_.lattice->set(required_, e, true);
   missing_.clear();
 }
 
 Ray ExtendedMesh::canonical(Ray e) const {
-  const int w = mesh_.lattice->neighbour[e.vertex][e.slot];
-  return w < e.vertex ? Ray{w, mesh_.lattice->back[e.vertex][e.slot]} : e;
+  const Ray reverse = mesh_.lattice->reverse(e);
+  return reverse.vertex < e.vertex ? reverse : e;
 }
 
 void ExtendedMesh::check_missing(Ray e) {
@@ -52,9 +49,9 @@ void ExtendedMesh::add(int v) {
   t.missing = missing_slot(mesh_, v);
   if (t.missing < 0) return;
   auto follow = [&](const std::vector<Ray>& path, bool face) {
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      t.edges.push_back(path[i]);
-      t.vertices.push_back(step(*mesh_.lattice, path[i]));
+    for (Ray e : path) {
+      t.edges.push_back(e);
+      t.vertices.push_back(step(*mesh_.lattice, e));
       t.face.push_back(face);
     }
   };
@@ -91,35 +88,17 @@ void ExtendedMesh::erase(int v) {
 }
 
 void ExtendedMesh::change(const std::vector<Ray>& path, bool present) {
-  const Lattice& l = *mesh_.lattice;
-  std::vector<int> touched, affected;
-  for (Ray e : path) {
-    touched.push_back(e.vertex);
-    touched.push_back(l.neighbour[e.vertex][e.slot]);
-  }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  std::set<int> touched, affected;
+  for (Ray e : path) touched.insert({e.vertex, mesh_.lattice->reverse(e).vertex});
   for (int v : touched)
-    for (const Passing& p : passing_[v]) affected.push_back(p.junction);
-  std::sort(affected.begin(), affected.end());
-  affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
+    for (const Passing& p : passing_[v]) affected.insert(p.junction);
   for (int v : affected) erase(v);
-
   for (Ray e : path) {
-    const int w = l.neighbour[e.vertex][e.slot], b = l.back[e.vertex][e.slot];
-    if (present) {
-      mesh_.edges[e.vertex] |= std::uint8_t(1 << e.slot);
-      mesh_.edges[w] |= std::uint8_t(1 << b);
-    } else {
-      mesh_.edges[e.vertex] &= std::uint8_t(~(1 << e.slot));
-      mesh_.edges[w] &= std::uint8_t(~(1 << b));
-    }
+    mesh_.set(e, present);
     check_missing(canonical(e));
   }
-
-  std::vector<int> again;
-  std::set_union(touched.begin(), touched.end(), affected.begin(), affected.end(), std::back_inserter(again));
-  for (int v : again) add(v);
+  touched.merge(affected);
+  for (int v : touched) add(v);
 }
 
 std::pair<TJunction, TJunction> ExtendedMesh::crossing(int& cursor) const {
@@ -140,13 +119,10 @@ std::vector<TJunction> ExtendedMesh::around_missing() const {
   const Lattice& l = *mesh_.lattice;
   const auto [v, k] = *missing_.begin();
   std::vector<TJunction> out;
-  for (Ray start : {Ray{v, k}, Ray{l.neighbour[v][k], l.back[v][k]}}) {
-    // Look along the line behind the edge: the first vertex with an edge on the line.
+  for (Ray start : {Ray{v, k}, l.reverse({v, k})}) {
     if (l.ends(start.vertex, start.slot)) continue;
-    Ray r = step(l, start);
-    while (!l.ends(r.vertex, r.slot) && l.valence(r.vertex) == 4 && !mesh_.edge(r.vertex, r.slot)) {
-      r = step(l, r);
-    }
+    Ray r = step(l, start);  // along the line behind the edge, to the first vertex with an edge on the line
+    while (!l.ends(r.vertex, r.slot) && l.valence(r.vertex) == 4 && !mesh_.edge(r.vertex, r.slot)) r = step(l, r);
     const auto t = traces_.find(r.vertex);
     if (t != traces_.end() && t->second.missing == ((r.slot + 2) & 3)) out.push_back({r.vertex, t->second.missing});
   }
@@ -159,29 +135,67 @@ const ExtendedMesh::Passing* ExtendedMesh::facing(int v, int heading, int juncti
   return nullptr;
 }
 
-bool ExtendedMesh::overlap(TJunction& a, TJunction& b) const {
+std::vector<std::pair<TJunction, TJunction>> ExtendedMesh::facing_pairs(std::size_t most) const {
+  std::vector<std::pair<TJunction, TJunction>> found;
   for (const auto& [vertex, trace] : traces_)
-    for (std::size_t i = 1; i < trace.vertices.size() && trace.face[i]; ++i) {
+    for (std::size_t i = 1; i < trace.vertices.size() && trace.face[i] && found.size() < most; ++i) {
       const Ray r = trace.vertices[i];
-      const int along = r.slot & 1 ? 10 : 5;
-      if (!touches(mesh_, r) || (mesh_.edges[r.vertex] & along)) continue;
-      if (const Passing* other = facing(r.vertex, r.slot, vertex)) {
-        a = {vertex, trace.missing};
-        b = {other->junction, traces_.at(other->junction).missing};
-        return true;
-      }
+      if (!touches(mesh_, r) || (mesh_.edges[r.vertex] & (r.slot & 1 ? 10 : 5))) continue;
+      if (const Passing* other = facing(r.vertex, r.slot, vertex))
+        found.push_back({{vertex, trace.missing}, {other->junction, traces_.at(other->junction).missing}});
     }
-  return false;
+  return found;
 }
 
-int ExtendedMesh::overlaps() const {
-  int n = 0;
-  for (const auto& [vertex, trace] : traces_)
-    for (std::size_t i = 1; i < trace.vertices.size() && trace.face[i]; ++i) {
-      const Ray r = trace.vertices[i];
-      if (touches(mesh_, r) && !(mesh_.edges[r.vertex] & (r.slot & 1 ? 10 : 5)) && facing(r.vertex, r.slot, vertex)) ++n;
+std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings) {
+  const Lattice& l = *mesh.lattice;
+  std::vector<int> out;
+  if (l.extraordinary.empty()) return out;
+  for (Ray e : path) {
+    const PlacedEdge edge = placed(l, e);
+    for (int corner = 0; corner < 4; ++corner) {
+      const int point = l.point_at[edge.face][corner], h = point < 0 ? 1 : mesh.spacing[point];
+      if (edge.line() % h == 0 || distances(l, edge, corner)[0] >= rings * h) continue;
+      if (std::find(out.begin(), out.end(), point) == out.end()) out.push_back(point);
     }
-  return n / 2;
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<std::vector<Ray>> two_ring_cuts(const TMesh& mesh, int point) {
+  const Lattice& l = *mesh.lattice;
+  const int P = l.extraordinary[point], h = mesh.spacing[point];
+  std::vector<std::vector<Ray>> out;
+  for (int s = 0; s < 3; ++s)
+    for (int at : {h / 2, 3 * h / 2})
+      for (int turn : {1, 3}) {  // into the sectors on both sides of the spoke
+        Ray r{P, s};
+        for (int i = 0; i < at; ++i) r = step(l, r);
+        r.slot = (r.slot + turn) & 3;
+        std::vector<Ray> path;
+        for (int i = 0; i < 2 * h; ++i, r = step(l, r)) path.push_back(r);
+        out.push_back(std::move(path));
+      }
+  return out;
+}
+
+int restore_zones(ExtendedMesh& extended, std::vector<std::vector<Ray>> paths, int rings) {
+  int halvings = 0;
+  while (!paths.empty()) {
+    const auto path = std::move(paths.back());
+    paths.pop_back();
+    for (auto broken = broken_zones(extended.mesh(), path, rings); !broken.empty(); broken = broken_zones(extended.mesh(), path, rings))
+      for (int point : broken) {
+        for (auto& cut : two_ring_cuts(extended.mesh(), point)) {
+          extended.insert(cut);
+          paths.push_back(std::move(cut));
+        }
+        extended.set_spacing(point, extended.mesh().spacing[point] / 2);
+        ++halvings;
+      }
+  }
+  return halvings;
 }
 
 }  // namespace tanktread::spline

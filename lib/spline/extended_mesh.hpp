@@ -1,11 +1,12 @@
 #pragma once
-// A T-mesh with the extensions of its T-junctions, kept up to date while edges are put in or taken out.
+// A T-mesh with the extensions of its T-junctions, kept up to date while edges are put in or taken out; and the uniform rings around its
+// extraordinary points.
 
 #include <map>
 #include <set>
 #include <utility>
 
-#include "spline/extension.hpp"
+#include "spline/t_mesh.hpp"
 
 namespace tanktread::spline {
 
@@ -39,9 +40,9 @@ class ExtendedMesh {
   std::pair<TJunction, TJunction> crossing(int& cursor) const;
   /// The T-junctions on both sides of the first missing edge (one or two).
   std::vector<TJunction> around_missing() const;
-  /// A pair of T-junctions with an overlap vertex, first in the order of vertices; false when there is none.
-  bool overlap(TJunction& a, TJunction& b) const;
-  int overlaps() const;
+  /// The two T-junctions of every overlap, at most so many, in the order of vertices. Each overlap comes twice, seen from either side.
+  std::vector<std::pair<TJunction, TJunction>> facing_pairs(std::size_t most) const;
+  int overlaps() const { return int(facing_pairs(passing_.size()).size()) / 2; }
 
  private:
   struct Trace {  // of one T-junction
@@ -74,5 +75,16 @@ class ExtendedMesh {
   std::set<int> crossed_;  // vertices with crossings
   int crossings_ = 0;
 };
+
+/// Extraordinary points (numbers) whose zone a path breaks: within `rings` h of the point, measured in the faces at it by the larger coordinate,
+/// the mesh must be the uniform h lattice, and the path has a unit edge off that lattice there. Three rings are what nestedness needs.
+std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings);
+
+/// Mid lines of the twelve elements of the two rings at an extraordinary point; with them the zone is whole again for h / 2.
+std::vector<std::vector<Ray>> two_ring_cuts(const TMesh& mesh, int point);
+
+/// Halves h of every point whose zone one of the paths breaks, and goes on with the lines that this adds until all zones are whole.
+/// Returns the number of halvings.
+int restore_zones(ExtendedMesh& extended, std::vector<std::vector<Ray>> paths, int rings);
 
 }  // namespace tanktread::spline

@@ -7,8 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "spline/catmull_clark.hpp"
-#include "spline/extraordinary_g1.hpp"
+#include "spline/extraordinary.hpp"
 #include "spline/tile_functions.hpp"
 
 namespace tanktread::spline {
@@ -18,7 +17,7 @@ namespace {
 /// The 19 control points around an irregular element, in the order of OneRing with spoke 0 along its first side seen from the point.
 std::array<int, OneRing::size> ring_of(const Lattice& l, const TileFunctions& f, const std::vector<int>& point, int tile) {
   const Rectangle& r = f.tiling.tiles[tile];
-  const int h = r.width, P = corners(l, r)[f.irregular[tile]];
+  const int h = r.width, P = sides(l, r)[f.irregular[tile]].vertex;
   int first = 0;
   while (f.tiling.tile_of_cell[l.cell[P][first]] != tile) ++first;
   auto walk = [&](Ray ray) {
@@ -49,8 +48,7 @@ Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   Eigen::MatrixXd out(table.cols(), table.rows());
   for (int v = 0; v <= p; ++v)
     for (int u = 0; u <= p; ++u) {
-      const int i = k == 0 ? u : k == 1 ? p - v : k == 2 ? p - u : v;
-      const int j = k == 0 ? v : k == 1 ? u : k == 2 ? p - v : p - u;
+      const auto [i, j] = turned(u, v, p, k);
       out.col((p + 1) * j + i) = table.row((p + 1) * v + u).transpose();
     }
   return out;
@@ -68,10 +66,8 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
     return out;
   }
   for (const Piece& piece : catmull_clark_pieces(depth)) {
-    const double u = piece.u, v = piece.v, far_u = 1 - u - piece.size, far_v = 1 - v - piece.size;
-    const double x[4] = {u, far_v, far_u, v}, y[4] = {v, u, far_v, far_u};
     Element e;
-    e.origin = {x[corner], y[corner]};
+    e.origin = turned(piece.u, piece.v, 1 - piece.size, corner);
     e.size = {piece.size, piece.size};
     const Eigen::MatrixXd all = at_corner(piece.extraction.transpose(), 3, corner);
     std::vector<int> used;

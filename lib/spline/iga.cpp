@@ -1,17 +1,23 @@
 #include "spline/iga.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
+
+#include <Eigen/Geometry>
 
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
-#include "spline/closed_surface.hpp"
+#include "spline/basis.hpp"
+#include "spline/lattice.hpp"
+#include "spline/places.hpp"
 
 namespace tanktread::spline {
 
@@ -92,6 +98,138 @@ Element read_element(Reader& in, int n_points) {
     in.fail("the functions of this element do not sum to 1, so it is not a partition of unity.");
   e.extraction = e.extraction.array().rowwise() / sum.array();
   return e;
+}
+
+struct Frame {
+  Vec3 x, s, t;
+};
+Frame frame(const Space& space, const Net& net, const Site& site) {
+  const Element& e = space.elements[site.element];
+  const Basis b = basis(e, site.s, site.t, 1);
+  Frame f{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t i = 0; i < e.points.size(); ++i) {
+    const Vec3 p = net.row(e.points[i]);
+    f.x += b.value[Eigen::Index(i)] * p;
+    f.s += b.s[Eigen::Index(i)] * p;
+    f.t += b.t[Eigen::Index(i)] * p;
+  }
+  return f;
+}
+
+/// Edge 0 (t = 0), 1 (s = 1), 2 (t = 1), 3 (s = 0), run through with the element on the left.
+Site on_edge(int element, int edge, double x) {
+  const auto [s, t] = turned(x, 0., 1., edge);
+  return {element, s, t};
+}
+
+double extent(const Net& net) { return (net.colwise().maxCoeff() - net.colwise().minCoeff()).norm(); }
+
+/// Number p of the nine places of every element: its corners, mid-sides and centre, s fastest.
+Site place_of_element(std::size_t p) { return {int(p / 9), p % 3 / 2.0, p % 9 / 3 / 2.0}; }
+
+/// For each of these places the first one at the same place in space.
+std::vector<int> numbered_places(const Space& space, const Net& net) {
+  std::vector<Vec3> all;
+  for (std::size_t p = 0; p < 9 * space.elements.size(); ++p) all.push_back(frame(space, net, place_of_element(p)).x);
+  const Places places(std::move(all), 1e-7 * extent(net));
+  std::vector<int> numbers;
+  for (const Vec3& x : places.all()) numbers.push_back(places.at(x));
+  return numbers;
+}
+
+// Gauss points and weights of order five on [0, 1].
+constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 0.769234655052841546, 0.953089922969331996};
+constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
+                               0.118463442528094544};
+
+/// What is wrong with a surface that should be closed and seen from outside, as the end of a sentence; empty if nothing.
+///
+/// Sides of elements are matched by their curves. Those without a partner (at T-junctions, or holes) must cancel as curves: their line integrals
+/// of a few smooth fields must sum to 0, which a hole, a missing or an inverted element breaks. Then the volume must be positive.
+std::string fault_of_closed_surface(const Space& space, const Net& net) {
+  constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
+  const std::vector<int> places = numbered_places(space, net);
+  // Each side by its ends and its middle; the partner runs the other way.
+  std::map<std::array<int, 3>, std::pair<int, int>> open;
+  int once = -1, twice = -1;
+  for (int k = 0; k < int(space.elements.size()); ++k)
+    for (int e = 0; e < 4; ++e) {
+      const int a = places[9 * k + along_edge[e][0]], m = places[9 * k + along_edge[e][1]], b = places[9 * k + along_edge[e][2]];
+      if (a == m && m == b) continue;  // collapsed: a pole
+      if (open.erase({b, m, a})) continue;
+      const auto [side, is_new] = open.try_emplace({a, m, b}, k, e);
+      if (!is_new && twice < 0) once = side->second.first, twice = k;
+    }
+  if (twice >= 0)
+    return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " + std::to_string(once) +
+           ", so one of them is inverted.";
+
+  // Sides without partner: integrals of cos(k_i . x) dx and sin(k_i . x) dx over all of them.
+  Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();
+  double length = 0;
+  const double size = extent(net);
+  const Vec3 wave[3] = {Vec3(1.3, 0.7, -0.4) / size, Vec3(-0.5, 1.9, 1.1) / size, Vec3(2.1, -1.7, 2.3) / size};
+  for (const auto& [ends, side] : open)
+    for (int g = 0; g < 5; ++g) {
+      const Frame f = frame(space, net, on_edge(side.first, side.second, gauss_x[g]));
+      const Vec3 dx = gauss_w[g] * (side.second == 0 ? f.s : side.second == 1 ? f.t : side.second == 2 ? Vec3(-f.s) : Vec3(-f.t));
+      length += dx.norm();
+      for (int i = 0; i < 3; ++i) {
+        sum.col(2 * i) += std::cos(wave[i].dot(f.x)) * dx;
+        sum.col(2 * i + 1) += std::sin(wave[i].dot(f.x)) * dx;
+      }
+    }
+  if (!open.empty() && sum.cwiseAbs().maxCoeff() > 1e-5 * length)
+    return "the surface is not closed: element " + std::to_string(open.begin()->second.first) + " is among those beside a hole.";
+
+  double volume = 0;
+  for (int k = 0; k < int(space.elements.size()); ++k)
+    for (int j = 0; j < 5; ++j)
+      for (int i = 0; i < 5; ++i) {
+        const Frame f = frame(space, net, {k, gauss_x[i], gauss_x[j]});
+        volume += gauss_w[i] * gauss_w[j] * f.x.dot(f.s.cross(f.t)) / 3;
+      }
+  if (!(volume > 0)) return "the surface is inside out: all its elements must be seen counter-clockwise from outside.";
+  return {};
+}
+
+/// For each control point a place where its function is large, each place for one function: corners, mid-sides and centres of all elements, taken
+/// in descending order of the value there. All elements at the place are listed. Throws UserError when a function finds no place.
+std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net& net) {
+  const std::vector<int> places = numbered_places(space, net);
+  std::vector<std::vector<Site>> at_place(places.size());
+  struct Candidate {
+    double value;
+    int point, place;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const Site site = place_of_element(p);
+    std::vector<Site>& sites = at_place[places[p]];
+    if (!sites.empty() && sites.back().element == site.element) continue;  // a side that is a pole
+    sites.push_back(site);
+    if (sites.size() > 1) continue;
+    const Element& e = space.elements[site.element];
+    const Basis b = basis(e, site.s, site.t, 0);
+    for (std::size_t i = 0; i < e.points.size(); ++i)
+      if (b.value[Eigen::Index(i)] > 0.02) candidates.push_back({b.value[Eigen::Index(i)], e.points[i], places[p]});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return std::llround(a.value * 1e10) > std::llround(b.value * 1e10); });
+  std::vector<int> place_of(space.n_points, -1);
+  std::vector<char> taken(at_place.size(), 0);
+  for (const Candidate& c : candidates) {
+    if (place_of[c.point] >= 0 || taken[c.place]) continue;
+    place_of[c.point] = c.place;
+    taken[c.place] = 1;
+  }
+  std::vector<std::vector<Site>> out(space.n_points);
+  for (int i = 0; i < space.n_points; ++i) {
+    if (place_of[i] < 0)
+      throw UserError("Control point " + std::to_string(i) + " of the surface has no place where its function is large.");
+    out[i] = at_place[place_of[i]];
+  }
+  return out;
 }
 
 }  // namespace

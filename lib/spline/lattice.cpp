@@ -67,16 +67,8 @@ Walker cross(const Lattice& l, Walker w, int edge, int& entered) {
 
 /// Cells left before the side of the macro face, going in direction `turn`.
 int room(const Lattice& l, int cell, int turn) {
-  switch (turn) {
-    case 0:
-      return l.units - 1 - l.x_of(cell);
-    case 1:
-      return l.rows - 1 - l.y_of(cell);
-    case 2:
-      return l.x_of(cell);
-    default:
-      return l.y_of(cell);
-  }
+  const int x = l.x_of(cell), y = l.y_of(cell), cells[4] = {l.units - 1 - x, l.rows - 1 - y, x, y};
+  return cells[turn];
 }
 
 /// n cells in direction w.turn + offset.
@@ -100,10 +92,29 @@ Walker move(const Lattice& l, Walker w, int n, int offset) {
 Walker forward(const Lattice& l, Walker w, int n) { return move(l, w, n, 0); }
 Walker left(const Lattice& l, Walker w, int n) { return move(l, w, n, 1); }
 
+PlacedEdge placed(const Lattice& l, Ray e) {
+  const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot];
+  if (c < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // on the border of an open face
+  return {l.face_of(c), l.x_of(c) + (k == 1), l.y_of(c) + (k == 2), k % 2 == 0};
+}
+
+std::array<int, 2> distances(const Lattice& l, const PlacedEdge& e, int corner) {
+  const auto distance = [&](int x, int y) { return std::max(corner == 1 || corner == 2 ? l.units - x : x, corner >= 2 ? l.units - y : y); };
+  const auto [near, far] = std::minmax({distance(e.x, e.y), distance(e.x + e.horizontal, e.y + !e.horizontal)});
+  return {near, far};
+}
+
 int Lattice::length(int v, int k, int steps) const {
   if (pad == 0 || k % 2 == 0) return steps;
   const int y = v / units;
   return k == 1 ? height(y + steps) - height(y) : height(y) - height(y - steps);
+}
+
+void Lattice::set(std::vector<std::uint8_t>& edges, Ray edge, bool present) const {
+  for (const auto [v, k] : {edge, reverse(edge)}) {
+    const int bit = 1 << k;
+    edges[v] = std::uint8_t(present ? edges[v] | bit : edges[v] & ~bit);
+  }
 }
 
 Lattice polar_lattice(int azimuthal_elements, int meridional_elements, int levels) {

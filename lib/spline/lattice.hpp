@@ -10,6 +10,11 @@
 
 namespace tanktread::spline {
 
+/// A vertex with the slot in which one goes on.
+struct Ray {
+  int vertex, slot;
+};
+
 /// Unit quadrilaterals on a few square macro faces, glued along their sides into one closed surface. All of it is fixed; a T-mesh says
 /// which of its edges are there. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary
 /// point); the parity of a slot is its axis. Nothing here knows of rotations between faces: straight on, left and right are slots.
@@ -48,16 +53,38 @@ struct Lattice {
   bool ends(int v, int k) const { return neighbour[v][k] < 0; }  ///< no way on: the border of an open face
   /// Parametric length of so many unit steps straight on.
   int length(int v, int k, int steps) const;
-};
 
-/// A vertex with the slot in which one goes on.
-struct Ray {
-  int vertex, slot;
+  /// The same edge from its other end.
+  Ray reverse(Ray r) const { return {neighbour[r.vertex][r.slot], back[r.vertex][r.slot]}; }
+
+  /// The side of a cell from corner k to the next.
+  Ray side(int c, int k) const { return {corners[c][k], slot[c][k]}; }
+
+  /// Sets or clears an edge among those of all vertices, bit k of a vertex for slot k, at both of its ends.
+  void set(std::vector<std::uint8_t>& edges, Ray edge, bool present) const;
 };
 /// One unit along a ray, straight on. Not defined when it arrives at an extraordinary point: `slot` is then the way back.
 inline Ray step(const Lattice& l, Ray r) {
-  const int v = l.neighbour[r.vertex][r.slot], b = l.back[r.vertex][r.slot];
-  return {v, l.is_extraordinary[v] ? b : (b + 2) & 3};
+  const auto [v, back] = l.reverse(r);
+  return {v, l.is_extraordinary[v] ? back : (back + 2) & 3};
+}
+
+/// A unit edge in the frame of a macro face: from (x, y) one step along x (or y), on the line with this number.
+struct PlacedEdge {
+  int face, x, y;
+  bool horizontal;
+  int line() const { return horizontal ? y : x; }
+};
+PlacedEdge placed(const Lattice& l, Ray edge);
+
+/// How far the nearer and the farther end of an edge are from a corner of its face, by the larger coordinate.
+std::array<int, 2> distances(const Lattice& l, const PlacedEdge& e, int corner);
+
+/// The place (a, b) in a square of side n whose corner `turn` is the origin and whose side from there on is the first axis, seen from corner 0.
+template <class Number>
+std::array<Number, 2> turned(Number a, Number b, Number n, int turn) {
+  const std::array<Number, 2> places[4] = {{a, b}, {n - b, a}, {n - a, n - b}, {b, n - a}};
+  return places[turn & 3];
 }
 
 /// A cell seen from a walker who calls one of four directions "forward": turn = 0 forward is +x of the face, 1: +y, 2: -x, 3: -y; left is

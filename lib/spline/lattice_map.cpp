@@ -1,4 +1,4 @@
-#include "spline/lattice_map.hpp"
+#include "spline/refinement.hpp"
 
 #include <algorithm>
 
@@ -19,8 +19,7 @@ std::vector<Ray> image(const Lattice& l, const LatticeMap& map, const std::vecto
 
 TileImage image(const Lattice& l, const LatticeMap& map, const Tiling& tiling, int tile) {
   const Rectangle& r = tiling.tiles[tile];
-  const int c = l.cell_at(r.face, r.x, r.y);
-  const Ray side = image(l, map, Ray{l.corners[c][0], l.slot[c][0]});  // the image lies on its left, or on its right when mirrored
+  const Ray side = image(l, map, sides(l, r)[0]);  // the image lies on its left, or on its right when mirrored
   const int slot = map.mirrored ? (side.slot + l.valence(side.vertex) - 1) % l.valence(side.vertex) : side.slot;
   return {tiling.tile_of_cell[l.cell[side.vertex][slot]], (l.corner[side.vertex][slot] % 2 == 1) != map.mirrored};
 }
@@ -44,8 +43,7 @@ std::optional<LatticeMap> lattice_map(const Lattice& l, Ray from, Ray to, bool m
       const Ray a{reached[i], k}, b = image(l, map, a);
       if (l.ends(a.vertex, a.slot) != l.ends(b.vertex, b.slot)) return {};
       if (l.ends(a.vertex, a.slot)) continue;
-      const Ray beyond{l.neighbour[a.vertex][a.slot], l.back[a.vertex][a.slot]};
-      if (!agree(beyond, {l.neighbour[b.vertex][b.slot], l.back[b.vertex][b.slot]})) return {};
+      if (!agree(l.reverse(a), l.reverse(b))) return {};
     }
   return map;
 }
@@ -54,13 +52,9 @@ std::optional<LatticeMap> lattice_map(const TMesh& mesh, const Space& space, std
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);
   const std::vector<int> tile = mesh_elements(mesh, space);
-  const Rectangle &from = tiling.tiles[tile[0]], &to = tiling.tiles[tile[element[0]]];
-  const int c = l.cell_at(from.face, from.x, from.y), right = to.x + to.width - 1, top = to.y + to.height - 1;
-  const int cells[4] = {l.cell_at(to.face, to.x, to.y), l.cell_at(to.face, right, to.y), l.cell_at(to.face, right, top),
-                        l.cell_at(to.face, to.x, top)};
-  for (int k = 0; k < 4; ++k) {
-    const int v = l.corners[cells[k]][k];
-    const auto map = lattice_map(l, {l.corners[c][0], l.slot[c][0]}, {v, (l.slot[cells[k]][k] + mirrored) % l.valence(v)}, mirrored);
+  const Ray from = sides(l, tiling.tiles[tile[0]])[0];
+  for (const auto [vertex, slot] : sides(l, tiling.tiles[tile[element[0]]])) {
+    const auto map = lattice_map(l, from, {vertex, (slot + mirrored) % l.valence(vertex)}, mirrored);
     if (!map) continue;
     bool agrees = true;
     for (std::size_t e = 0; e < element.size() && agrees; ++e) agrees = image(l, *map, tiling, tile[e]).tile == tile[element[e]];

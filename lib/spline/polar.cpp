@@ -9,7 +9,6 @@
 #include <Eigen/LU>
 
 #include "base/types.hpp"
-#include "spline/pole_transform.hpp"
 #include "spline/tile_functions.hpp"
 
 namespace tanktread::spline {

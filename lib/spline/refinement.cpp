@@ -5,7 +5,6 @@
 #include <span>
 
 #include "spline/extended_mesh.hpp"
-#include "spline/extraordinary_zone.hpp"
 
 namespace tanktread::spline {
 
@@ -22,7 +21,7 @@ void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
 /// Unit edges of the line that cuts a tile in halves: across s from its bottom to its top, or across t from left to right.
 std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
   const int cell = across_s ? l.cell_at(r.face, r.x + r.width / 2, r.y) : l.cell_at(r.face, r.x, r.y + r.height / 2);
-  Ray ray{l.corners[cell][0], l.slot[cell][0]};
+  Ray ray = l.side(cell, 0);
   if (across_s) ray.slot = (ray.slot + 1) & 3;
   std::vector<Ray> path;
   if (across_s && !l.ends(ray.vertex, 3) && l.length(ray.vertex, 3, 1) == 0) path.push_back({ray.vertex, 3});
@@ -102,25 +101,23 @@ std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules) {
   int bays = 0, halvings = 0, cursor = -1;
   while (true) {
     std::vector<Ray> bay;
-    TJunction a, b;
     if (extended.crossings() > 0) {
-      const auto pair = extended.crossing(cursor);
-      const TJunction both[2] = {pair.first, pair.second};
-      bay = best_bay(extended, std::span(both, pair.first.vertex == pair.second.vertex ? 1 : 2), rules.rings);
+      const auto [a, b] = extended.crossing(cursor);
+      const TJunction both[2] = {a, b};
+      bay = best_bay(extended, std::span(both, a.vertex == b.vertex ? 1 : 2), rules.rings);
     } else if (extended.missing() > 0) {
       bay = best_bay(extended, extended.around_missing(), rules.rings);
-    } else if (rules.no_overlaps && extended.overlap(a, b)) {
-      bay = first_bay(extended.mesh(), a);
-      if (auto other = first_bay(extended.mesh(), b); other.size() < bay.size()) bay = std::move(other);
+    } else if (const auto overlap = extended.facing_pairs(rules.no_overlaps ? 1 : 0); !overlap.empty()) {
+      bay = first_bay(extended.mesh(), overlap[0].first);
+      if (auto other = first_bay(extended.mesh(), overlap[0].second); other.size() < bay.size()) bay = std::move(other);
     } else {
-      break;
+      return {bays, halvings};
     }
     std::vector<std::vector<Ray>> paths;
     insert(extended, std::move(bay), rules, paths);
     ++bays;
     halvings += restore_zones(extended, std::move(paths), rules.rings);
   }
-  return {bays, halvings};
 }
 
 Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules) {

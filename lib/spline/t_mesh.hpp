@@ -15,6 +15,7 @@ struct TMesh {
 
   bool edge(int v, int k) const { return edges[v] >> k & 1; }
   bool edge_of_cell(int c, int k) const { return edge(lattice->corners[c][k], lattice->slot[c][k]); }
+  void set(Ray edge, bool present) { lattice->set(edges, edge, present); }
 };
 
 /// The uniform mesh on the surface of a cube: n^2 elements a face, n >= 3, and room for `levels` bisections of each element; spaces by
@@ -39,8 +40,8 @@ std::vector<int> control_points(const TMesh& mesh);
 struct Rectangle {
   int face, x, y, width, height;
 };
-/// Lattice vertices at the corners (x, y), (x+w, y), (x+w, y+h), (x, y+h): outward orientation.
-std::array<int, 4> corners(const Lattice& lattice, const Rectangle& r);
+/// Its sides k, each by the ray along the first cell of it: from corner (x, y), (x+w, y), (x+w, y+h), (x, y+h) towards the next, outward orientation.
+std::array<Ray, 4> sides(const Lattice& lattice, const Rectangle& r);
 
 /// Whether one of its sides is a pole.
 bool is_degenerate(const Lattice& lattice, const Rectangle& r);
@@ -50,6 +51,23 @@ struct Tiling {
   std::vector<Rectangle> tiles;
   std::vector<int> tile_of_cell;
 };
+
+/// A T-junction: a vertex with exactly three of its four edges; `missing` is the slot of the fourth.
+struct TJunction {
+  int vertex, missing;
+};
+std::vector<TJunction> t_junctions(const TMesh& mesh);
+
+/// The missing slot if the vertex is a T-junction, -1 otherwise.
+int missing_slot(const TMesh& mesh, int vertex);
+
+/// Whether a ray that arrives (its slot goes on) meets an edge perpendicular to it; a vertex on either side counts.
+inline bool touches(const TMesh& mesh, Ray r) { return mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10); }
+
+/// The unit edges (vertex, slot) of an extension: from the T-junction through two bays in its missing direction, up to the second
+/// perpendicular touch; or through one bay the other way.
+std::vector<Ray> face_extension(const TMesh& mesh, const TJunction& t);
+std::vector<Ray> edge_extension(const TMesh& mesh, const TJunction& t);
 
 /// Elements of the T-mesh (the ones that are marked for refinement).
 Tiling elements(const TMesh& mesh);

@@ -3,24 +3,37 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "spline/bernstein.hpp"
+
 namespace tanktread::spline {
 
 namespace {
+
+void reach_along(const TMesh& mesh, Ray ray, int out[2]) {
+  const Lattice& l = *mesh.lattice;
+  int found = 0;
+  for (int distance = 1; found < 2; ++distance) {
+    if (l.ends(ray.vertex, ray.slot)) {  // the end knot, repeated
+      for (; found < 2; ++found) out[found] = distance - 1;
+      return;
+    }
+    ray = step(l, ray);
+    if (l.valence(ray.vertex) == 3) {
+      out[found] = distance;
+      if (found == 0) out[1] = 2 * distance;
+      return;
+    }
+    if (touches(mesh, ray)) out[found++] = distance;
+  }
+}
 
 int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.width; }
 
 /// Cells from `cell` to the near side (behind) of its tile, looking in direction `turn`.
 int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
-  switch (turn & 3) {
-    case 0:
-      return l.x_of(cell) - r.x;
-    case 1:
-      return l.y_of(cell) - r.y;
-    case 2:
-      return r.x + r.width - 1 - l.x_of(cell);
-    default:
-      return r.y + r.height - 1 - l.y_of(cell);
-  }
+  const int x = l.x_of(cell) - r.x, y = l.y_of(cell) - r.y;
+  const int cells[4] = {x, y, r.width - 1 - x, r.height - 1 - y};
+  return cells[turn & 3];
 }
 
 /// The outer product of coefficients along forward and left, in the element's own s, t.
@@ -28,32 +41,11 @@ std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::a
   std::array<double, 16> row;
   for (int b = 0; b < 4; ++b)
     for (int a = 0; a < 4; ++a) {
-      const int i = turn == 0 ? a : turn == 1 ? 3 - b : turn == 2 ? 3 - a : b;
-      const int j = turn == 0 ? b : turn == 1 ? a : turn == 2 ? 3 - b : 3 - a;
+      const auto [i, j] = turned(a, b, 3, turn);
       row[4 * j + i] = ahead[a] * aside[b];
     }
   return row;
 }
-
-/// One B-spline on intervals of a ray, each worked out once: the tiles of a quadrant share them.
-class Intervals {
- public:
-  explicit Intervals(const std::array<double, 5>& knots) : knots_(knots) {}
-  const std::array<double, 4>& on(double a, double b) {
-    for (int i = 0; i < size_; ++i)
-      if (a_[i] == a && b_[i] == b) return value_[i];
-    const int at = size_ < most ? size_++ : most - 1;
-    a_[at] = a, b_[at] = b;
-    return value_[at] = b_spline_on(knots_, a, b);
-  }
-
- private:
-  static constexpr int most = 8;
-  std::array<double, 5> knots_;
-  int size_ = 0;
-  double a_[most], b_[most];
-  std::array<double, 4> value_[most];
-};
 
 struct Builder {
   const TMesh& mesh;
@@ -80,7 +72,7 @@ struct Builder {
       return std::array<double, 5>{-double(l.length(v, back, minus[1])), -double(l.length(v, back, minus[0])), 0.0,
                                    double(l.length(v, slot, plus[0])), double(l.length(v, slot, plus[1]))};
     };
-    Intervals along_ahead(knots_of(q)), along_aside(knots_of(next));
+    const std::array<double, 5> knots_ahead = knots_of(q), knots_aside = knots_of(next);
 
     Walker row{l.cell[v][q], l.corner[v][q]};
     for (int j = 0; j < aside[1];) {
@@ -92,8 +84,8 @@ struct Builder {
         const int along = width_along(r, w.turn), across = width_along(r, w.turn + 1);
         const int below = behind(l, r, w.cell, w.turn + 1), rest = along - behind(l, r, w.cell, w.turn);
         if (below == 0 && rest == along && number >= 0 && out.irregular[number] < 0) {
-          const auto& a = along_ahead.on(l.length(v, q, i), l.length(v, q, i + along));
-          const auto& b = along_aside.on(l.length(v, next, j), l.length(v, next, j + across));
+          const auto a = b_spline_on(knots_ahead, l.length(v, q, i), l.length(v, q, i + along));
+          const auto b = b_spline_on(knots_aside, l.length(v, next, j), l.length(v, next, j + across));
           out.entries.push_back({number, A, in_frame(a, b, w.turn)});
         }
         up = std::min(up, across - below);
@@ -107,6 +99,12 @@ struct Builder {
 };
 
 }  // namespace
+
+Knots knots(const TMesh& mesh, int anchor) {
+  Knots k{};
+  for (int s = 0; s < mesh.lattice->valence(anchor); ++s) reach_along(mesh, {anchor, s}, k.reach[s]);
+  return k;
+}
 
 TileFunctions tile_functions(const TMesh& mesh) {
   const Lattice& l = *mesh.lattice;
@@ -128,8 +126,8 @@ TileFunctions tile_functions(const TMesh& mesh) {
 CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
   const Lattice& l = *mesh.lattice;
   if (l.valence(v) == 3) {
-    const int c = l.corner[v][0];
-    return {l.cell[v][0], c == 1 || c == 2 ? 3 : 0, c >= 2 ? 3 : 0};
+    const auto [x, y] = turned(0, 0, 3, l.corner[v][0]);
+    return {l.cell[v][0], x, y};
   }
   // Offsets along slots 0 and 1, in thirds of a unit.
   const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
@@ -142,35 +140,30 @@ CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
   const int q = o0 >= 0 ? (o1 >= 0 ? 0 : 3) : (o1 >= 0 ? 1 : 2);
   const int ahead = std::abs(q & 1 ? o1 : o0), aside = std::abs(q & 1 ? o0 : o1);
   const Walker w = left(l, forward(l, {l.cell[v][q], l.corner[v][q]}, ahead / 3), aside / 3);
-  const int a = ahead % 3, b = aside % 3;
-  const int at[4][2] = {{a, b}, {3 - b, a}, {3 - a, 3 - b}, {b, 3 - a}};
-  return {w.cell, at[w.turn][0], at[w.turn][1]};
+  const auto [x, y] = turned(ahead % 3, aside % 3, 3, w.turn);
+  return {w.cell, x, y};
 }
 
 std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const CellPoint& p) {
   const Lattice& l = *mesh.lattice;
   std::vector<Site> sites;
-  auto add = [&](int cell, int x, int y) {
+  auto add = [&](int cell, const std::array<int, 2>& at) {
     const int tile = cell < 0 ? -1 : tiling.tile_of_cell[cell];
     if (tile < 0 || std::any_of(sites.begin(), sites.end(), [&](const Site& s) { return s.element == tile; })) return;
     const Rectangle& r = tiling.tiles[tile];
-    sites.push_back({tile, (3 * (l.x_of(cell) - r.x) + x) / (3.0 * r.width), (3 * (l.y_of(cell) - r.y) + y) / (3.0 * r.height)});
+    sites.push_back({tile, (3 * (l.x_of(cell) - r.x) + at[0]) / (3.0 * r.width), (3 * (l.y_of(cell) - r.y) + at[1]) / (3.0 * r.height)});
   };
   const bool on_vertical = p.x % 3 == 0, on_horizontal = p.y % 3 == 0;
   if (on_vertical && on_horizontal) {
     const int w = l.corners[p.cell][p.y == 0 ? (p.x == 0 ? 0 : 1) : (p.x == 0 ? 3 : 2)];
-    for (int s = 0; s < l.valence(w); ++s)
-      add(l.cell[w][s], l.corner[w][s] == 1 || l.corner[w][s] == 2 ? 3 : 0, l.corner[w][s] >= 2 ? 3 : 0);
+    for (int s = 0; s < l.valence(w); ++s) add(l.cell[w][s], turned(0, 0, 3, l.corner[w][s]));
   } else {
-    add(p.cell, p.x, p.y);
+    add(p.cell, {p.x, p.y});
     if (on_vertical || on_horizontal) {
       // The cell over the side, where the side runs the other way round.
-      const int edge = on_vertical ? (p.x == 0 ? 3 : 1) : (p.y == 0 ? 0 : 2);
-      const int along = edge == 0 ? p.x : edge == 1 ? p.y : edge == 2 ? 3 - p.x : 3 - p.y, back = 3 - along;
+      const int edge = on_vertical ? (p.x == 0 ? 3 : 1) : (p.y == 0 ? 0 : 2), along = turned(p.x, p.y, 3, 4 - edge)[0];
       const int u = l.corners[p.cell][edge], s = (l.slot[p.cell][edge] + l.valence(u) - 1) % l.valence(u);
-      const int other = (l.corner[u][s] + 3) & 3;
-      const int at[4][2] = {{back, 0}, {3, back}, {3 - back, 3}, {0, 3 - back}};
-      add(l.cell[u][s], at[other][0], at[other][1]);
+      add(l.cell[u][s], turned(3 - along, 0, 3, (l.corner[u][s] + 3) & 3));
     }
   }
   std::sort(sites.begin(), sites.end(), [](const Site& x, const Site& y) { return x.element < y.element; });

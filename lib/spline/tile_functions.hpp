@@ -1,13 +1,21 @@
 #pragma once
-// The spline functions of a T-mesh on the elements of its Bezier mesh, and their generalised Greville points there.
+// The local knots of the spline functions of a T-mesh, the functions on the elements of its Bezier mesh, and their generalised Greville points there.
 
 #include <array>
 #include <vector>
 
-#include "spline/knots.hpp"
 #include "spline/space.hpp"
+#include "spline/t_mesh.hpp"
 
 namespace tanktread::spline {
+
+/// In each slot of an anchor, the distances (lattice units) to the first and second perpendicular touch. A ray that runs into an extraordinary
+/// point first gets d, 2 d (mirror: the rings there are uniform), and so does every slot of such a point. Beyond the border of an open face the
+/// end knot is repeated. Parametric distances: Lattice::length.
+struct Knots {
+  int reach[4][2];
+};
+Knots knots(const TMesh& mesh, int anchor);
 
 /// Bezier coefficients of one function on one element.
 struct Contribution {

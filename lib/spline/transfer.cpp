@@ -1,12 +1,17 @@
 #include "spline/transfer.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 
-#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 
-#include "spline/bezier_fit.hpp"
+#include "spline/basis.hpp"
+#include "spline/locate.hpp"
+#include "spline/sparse_systems.hpp"
 
 namespace tanktread::spline {
 
@@ -15,140 +20,190 @@ namespace {
 /// Of a field of size 1: far above rounding, far below what spaces that are not nested leave.
 constexpr double nested = 1e-10;
 
-/// A control value from one element: sum of |weights| of its Bezier points above which least squares are more accurate. 9 on a uniform mesh.
-constexpr double most_amplification = 100;
+std::vector<int> first_integers(std::size_t n) {
+  std::vector<int> out(n);
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
 
-using Sixteen = Eigen::Matrix<double, 16, 1>;
+/// The functions of both spaces at one place.
+struct Sample {
+  int old_element, new_element;
+  double weight;
+  Eigen::VectorXd old_basis, new_basis;
+};
+
+/// Samples at the 4 x 4 Gauss points of some elements of a space, found in the other one; weighted by parametric area, or all elements alike.
+class Sampling {
+ public:
+  Sampling(const Space& from, const Space& to) : from_(from), to_(to), in_from_(from), in_to_(to) {}
+
+  std::vector<Sample> at(const std::vector<int>& elements, bool of_from, bool by_area) const {
+    std::vector<Sample> samples;
+    constexpr double x[4] = {0.069431844202973712, 0.330009478207571868, 0.669990521792428132, 0.930568155797026288};
+    constexpr double w[4] = {0.173927422568726929, 0.326072577431273071, 0.326072577431273071, 0.173927422568726929};
+    const Space& own = of_from ? from_ : to_;
+    for (const int k : elements)
+      for (int q = 0; q < 16; ++q) {
+        const Site here{k, x[q % 4], x[q / 4]}, there = (of_from ? in_to_ : in_from_)(place(own, here));
+        const Site &a = of_from ? here : there, &b = of_from ? there : here;
+        const auto& size = own.elements[k].size;
+        samples.push_back({a.element, b.element, w[q % 4] * w[q / 4] * (by_area ? size[0] * size[1] : 1),
+                           basis(from_.elements[a.element], a.s, a.t, 0).value, basis(to_.elements[b.element], b.s, b.t, 0).value});
+      }
+    return samples;
+  }
+
+  const Space &from_, &to_;
+  Locator in_from_, in_to_;
+};
+
+Eigen::RowVector3d value(const Eigen::VectorXd& basis, const Element& e, const Net& net) {
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  for (std::size_t i = 0; i < e.points.size(); ++i) sum += basis[Eigen::Index(i)] * net.row(e.points[i]);
+  return sum;
+}
+
+/// Some control points of `to` by least squares at samples, the others given. One sparse Cholesky factorisation serves all fields.
+class Fit {
+ public:
+  Fit(const Space& from, const Space& to, std::vector<Sample> samples, std::vector<int> unknown)
+      : from_(from), to_(to), samples_(std::move(samples)), unknown_(std::move(unknown)), number_(to.n_points, -1) {
+    for (std::size_t i = 0; i < unknown_.size(); ++i) number_[unknown_[i]] = int(i);
+    std::map<int, Eigen::MatrixXd> products;  // of an element
+    for (const Sample& s : samples_) {
+      Eigen::MatrixXd& m = products.try_emplace(s.new_element, Eigen::MatrixXd::Zero(s.new_basis.size(), s.new_basis.size())).first->second;
+      m.noalias() += s.weight * s.new_basis * s.new_basis.transpose();
+    }
+    std::deque<std::vector<int>> numbers;
+    std::vector<LocalMatrix> local;
+    for (auto& [element, m] : products) {
+      std::vector<int>& mine = numbers.emplace_back();
+      std::vector<Eigen::Index> own;
+      for (std::size_t i = 0; i < to.elements[element].points.size(); ++i)
+        if (const int n = number_[to.elements[element].points[i]]; n >= 0) mine.push_back(n), own.push_back(Eigen::Index(i));
+      m = m(own, own).eval();
+      local.push_back({mine, &m});
+    }
+    if (!unknown_.empty()) factor_.compute(assemble(int(unknown_.size()), local));
+  }
+
+  /// Fills in the rows of the unknown points; the distances of the fields at the samples.
+  std::vector<double> solve(const Net& field, Net& net) const {
+    for (int p : unknown_) net.row(p).setZero();
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(Eigen::Index(unknown_.size()), 3);
+    for (const Sample& s : samples_) {
+      const Element& e = to_.elements[s.new_element];
+      const Eigen::RowVector3d rest = s.weight * (value(s.old_basis, from_.elements[s.old_element], field) - value(s.new_basis, e, net));
+      for (std::size_t i = 0; i < e.points.size(); ++i)
+        if (const int n = number_[e.points[i]]; n >= 0) right.row(n) += s.new_basis[Eigen::Index(i)] * rest;
+    }
+    if (!unknown_.empty()) right = factor_.solve(right).eval();
+    for (std::size_t i = 0; i < unknown_.size(); ++i) net.row(unknown_[i]) = right.row(Eigen::Index(i));
+    std::vector<double> distances;
+    for (const Sample& s : samples_)
+      distances.push_back((value(s.new_basis, to_.elements[s.new_element], net) - value(s.old_basis, from_.elements[s.old_element], field)).norm());
+    return distances;
+  }
+
+  const std::vector<Sample>& samples() const { return samples_; }
+
+ private:
+  const Space &from_, &to_;
+  std::vector<Sample> samples_;
+  std::vector<int> unknown_, number_;  // number_: of a control point among them, or -1
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+};
+
+double largest(const std::vector<double>& numbers) { return numbers.empty() ? 0 : *std::ranges::max_element(numbers); }
 
 }  // namespace
 
 struct Transfer::State {
   const Space& from;
   const Space& to;
-  std::vector<Embedding> embedding;
-  std::vector<int> copied;   // of a control point: the old one that it is, or -1
-  std::vector<int> changed;  // elements on which anything may have changed
-  struct Combination {       // of the old control values of an element
-    int point, element;
-    Eigen::VectorXd weights;
-  };
-  std::vector<Combination> combined;
-  std::optional<BezierFit> rest;         // of few points
-  mutable std::optional<BezierFit> all;  // made when it is needed
+  Sampling sampling;
+  int straddling = 0;
+  std::vector<int> copied;         // of a control point: the old one that it is, or -1
+  std::optional<Fit> rest;         // of what is not copied
+  mutable std::optional<Fit> all;  // made when it is needed
 
-  void copy_what_is_alike();
-  std::vector<int> combine_where_independent();
-  double residual(const Net& field, const Net& net, const std::vector<int>& elements) const;
-  std::vector<int> every(int n) const {
-    std::vector<int> out(n);
-    std::iota(out.begin(), out.end(), 0);
-    return out;
-  }
+  State(const Space& old_space, const Space& new_space);
 };
 
-void Transfer::State::copy_what_is_alike() {
-  copied.assign(to.n_points, -1);
-  std::vector<char> alike(to.elements.size(), 0);
-  for (std::size_t k = 0; k < to.elements.size(); ++k) {
-    const Element &e = to.elements[k], &c = from.elements[embedding[k].around];
-    alike[k] = embedding[k].whole && e.extraction.rows() == c.extraction.rows() && e.extraction == c.extraction;
-    if (alike[k])
+Transfer::State::State(const Space& old_space, const Space& new_space)
+    : from(old_space), to(new_space), sampling(from, to), copied(to.n_points, -1) {
+  std::vector<const Element*> around;  // the old element that holds the centre of a new one
+  std::vector<char> alike;
+  for (const Element& e : to.elements) {
+    const Element& c = from.elements[sampling.in_from_({e.face, e.origin[0] + e.size[0] / 2, e.origin[1] + e.size[1] / 2}).element];
+    around.push_back(&c);
+    bool inside = true;
+    for (int d = 0; d < 2; ++d) {
+      const double low = (e.origin[d] - c.origin[d]) / c.size[d], margin = 1e-9;
+      inside = inside && low >= -margin && low + e.size[d] / c.size[d] <= 1 + margin;
+    }
+    straddling += !inside;
+    alike.push_back(e.degree == c.degree && e.origin == c.origin && e.size == c.size && e.extraction.rows() == c.extraction.rows() &&
+                    e.extraction == c.extraction);
+    if (alike.back())
       for (std::size_t i = 0; i < e.points.size(); ++i) copied[e.points[i]] = c.points[i];
   }
+  std::vector<int> changed, unknown;
   for (int k = 0; k < int(to.elements.size()); ++k) {
-    const Element &e = to.elements[k], &c = from.elements[embedding[k].around];
+    const std::vector<int>& points = to.elements[k].points;
     bool same = alike[k];
-    for (std::size_t i = 0; same && i < e.points.size(); ++i) same = copied[e.points[i]] == c.points[i];
+    for (std::size_t i = 0; same && i < points.size(); ++i) same = copied[points[i]] == around[k]->points[i];
     if (!same) changed.push_back(k);
   }
+  for (int p = 0; p < to.n_points; ++p)
+    if (copied[p] < 0) unknown.push_back(p);
+  if (!changed.empty()) rest.emplace(from, to, sampling.at(changed, false, false), std::move(unknown));
 }
 
-/// Points that one element determines, on the one where their function is largest; returns those that none does.
-std::vector<int> Transfer::State::combine_where_independent() {
-  struct Best {
-    double mean = 0;
-    int element = -1;
-  };
-  std::vector<Best> best(to.n_points);
-  for (int k : changed) {
-    const Element& e = to.elements[k];
-    const bool independent = e.degree == 3 && e.points.size() == 16 && from.elements[embedding[k].around].degree == 3;
-    if (!independent) continue;
-    for (int i = 0; i < 16; ++i) {
-      Best& b = best[e.points[i]];
-      const double mean = copied[e.points[i]] < 0 ? e.extraction.row(i).sum() : 0;
-      if (mean > b.mean) b = {mean, k};
-    }
-  }
-  std::vector<int> left;
-  std::vector<char> seen(to.n_points, 0);
-  for (int k : changed) {
-    const Element& e = to.elements[k];
-    std::vector<int> here;
-    for (int i = 0; i < int(e.points.size()); ++i) {
-      const int p = e.points[i];
-      if (copied[p] < 0 && best[p].element == k) here.push_back(i);
-      if (copied[p] < 0 && best[p].element < 0 && !seen[p]) seen[p] = 1, left.push_back(p);
-    }
-    if (here.empty()) continue;
-    const Element& c = from.elements[embedding[k].around];
-    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(e.extraction);
-    for (int i : here) {
-      Sixteen w = lu.solve(Sixteen(Sixteen::Unit(i)));
-      if (!(w.cwiseAbs().sum() <= most_amplification)) {
-        left.push_back(e.points[i]);
-        continue;
-      }
-      if (!embedding[k].whole) {
-        const Eigen::Matrix4d S = embedding[k].s, T = embedding[k].t;
-        Eigen::Map<Eigen::Matrix4d> W(w.data());
-        W = (S.transpose() * W * T).eval();
-      }
-      combined.push_back({e.points[i], embedding[k].around, c.extraction.lazyProduct(w)});
-    }
-  }
-  std::sort(left.begin(), left.end());
-  return left;
-}
-
-double Transfer::State::residual(const Net& field, const Net& net, const std::vector<int>& elements) const {
-  double largest = 0;
-  for (int k : elements)
-    largest =
-        std::max(largest, (own_points(to.elements[k], embedding[k], net) - restricted(from, embedding[k], field)).cwiseAbs().maxCoeff());
-  return largest;
-}
-
-Transfer::Transfer(const Space& from, const Space& to) : state_(new State{from, to, embeddings(from, to), {}, {}, {}, {}, {}}) {
-  state_->copy_what_is_alike();
-  const auto left = state_->combine_where_independent();
-  if (!left.empty()) state_->rest.emplace(from, to, state_->embedding, left);
-}
-
+Transfer::Transfer(const Space& from, const Space& to) : state_(new State(from, to)) {}
 Transfer::~Transfer() = default;
 Transfer::Transfer(Transfer&&) noexcept = default;
 
-int Transfer::straddling() const {
-  return int(std::count_if(state_->embedding.begin(), state_->embedding.end(), [](const Embedding& e) { return e.straddles; }));
-}
+int Transfer::straddling() const { return state_->straddling; }
 
 Transfer::Result Transfer::operator()(const Net& field) const {
   const State& s = *state_;
   Result out{Net::Zero(s.to.n_points, 3), 0};
   for (int p = 0; p < s.to.n_points; ++p)
     if (s.copied[p] >= 0) out.net.row(p) = field.row(s.copied[p]);
-  for (const auto& c : s.combined) {
-    const auto& points = s.from.elements[c.element].points;
-    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-    for (std::size_t a = 0; a < points.size(); ++a) sum += c.weights[Eigen::Index(a)] * field.row(points[a]);
-    out.net.row(c.point) = sum;
-  }
-  if (s.rest) s.rest->solve(field, out.net);
-  out.residual = s.residual(field, out.net, s.changed);
+  if (s.rest) out.residual = largest(s.rest->solve(field, out.net));
   if (out.residual <= nested * field.cwiseAbs().maxCoeff()) return out;
-  if (!s.all) s.all.emplace(s.from, s.to, s.embedding, s.every(s.to.n_points));
-  s.all->solve(field, out.net);
-  out.residual = s.residual(field, out.net, s.every(int(s.to.elements.size())));
+  if (!s.all)
+    s.all.emplace(s.from, s.to, s.sampling.at(first_integers(s.to.elements.size()), false, false), first_integers(s.to.n_points));
+  out.residual = largest(s.all->solve(field, out.net));
+  return out;
+}
+
+struct Projection::State {
+  const Space& from;
+  const Space& to;
+  std::optional<Fit> fit;
+};
+
+Projection::Projection(const Space& from, const Space& to) : state_(new State{from, to, {}}) {
+  const Sampling sampling(from, to);
+  std::vector<Sample> samples = sampling.at(first_integers(from.elements.size()), true, true);
+  std::ranges::move(sampling.at(first_integers(to.elements.size()), false, true), std::back_inserter(samples));
+  state_->fit.emplace(from, to, std::move(samples), first_integers(to.n_points));
+}
+
+Projection::~Projection() = default;
+Projection::Projection(Projection&&) noexcept = default;
+
+Projection::Result Projection::operator()(const Net& field) const {
+  const auto& [from, to, fit] = *state_;
+  Result out{Net::Zero(to.n_points, 3), std::vector<double>(from.elements.size(), 0.0)};
+  const std::vector<double> distances = fit->solve(field, out.net);
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    double& worst = out.defect[fit->samples()[k].old_element];
+    worst = std::max(worst, distances[k]);
+  }
   return out;
 }
 

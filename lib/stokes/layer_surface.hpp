@@ -10,7 +10,6 @@
 #include "stokes/panels.hpp"
 #include "stokes/self_field.hpp"
 #include "stokes/tree_sum.hpp"
-#include "surface/fundamental.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "spline/knots.hpp"
+#include "spline/bernstein.hpp"
 
 namespace tanktread::stokes {
 namespace {

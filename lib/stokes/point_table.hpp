@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "quadrature/rule.hpp"
+#include "quadrature/gauss.hpp"
 #include "base/pack.hpp"
 
 namespace tanktread::stokes {

@@ -1,7 +1,8 @@
 #pragma once
-// From control nets to the Bezier points of the elements, and back for what is dual to them, in the layouts that the hot loops work on.
+// From control nets to the Bezier points of the elements, and back for what is dual to them; in which order sums over elements are taken.
 
-#include <utility>
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -9,21 +10,37 @@
 
 namespace tanktread::surface {
 
-/// All elements of one degree. `place` of an element is its position in `elements`.
+/// Elements are summed in blocks of this many in a row, then the blocks in their order. Ranks share whole blocks.
+constexpr int block_size = 64;
+
+inline int n_blocks(int n_elements) { return (n_elements + block_size - 1) / block_size; }
+
+/// The elements of some blocks, in their order.
+inline std::vector<int> elements_of(std::span<const int> blocks, int n_elements) {
+  std::vector<int> elements;
+  for (const int b : blocks)
+    for (int e = block_size * b; e < std::min(block_size * (b + 1), n_elements); ++e) elements.push_back(e);
+  return elements;
+}
+
+/// The sum of each block, of one number an element.
+inline std::vector<double> block_sums(std::span<const double> of_elements) {
+  std::vector<double> sums(n_blocks(static_cast<int>(of_elements.size())), 0.);
+  for (std::size_t e = 0; e < of_elements.size(); ++e) sums[e / block_size] += of_elements[e];
+  return sums;
+}
+
+/// All elements of one degree, ascending.
 struct Block {
   int degree = 3;
   std::vector<int> elements;
 };
 
-/// The elements grouped by degree: degrees ascending, elements ascending in each.
-struct Blocks {
-  std::vector<Block> blocks;
-  std::vector<std::pair<int, int>> place;  ///< element -> (block, position in it)
-};
-Blocks blocks_by_degree(const spline::Space& space);
+/// The elements grouped by degree, degrees ascending.
+std::vector<Block> blocks_by_degree(const spline::Space& space);
 
 /// The extraction of a space as a map between control nets and Bezier points, made once a mesh and good for any number of nets.
-/// Equal extraction matrices are kept once (a uniform mesh has one for nearly all elements), so they stay in the cache.
+/// An extraction matrix that is that of the element before, as in most of a uniform mesh, is kept once, so it stays in the cache.
 class BezierMap {
  public:
   explicit BezierMap(const spline::Space& space);
@@ -32,14 +49,10 @@ class BezierMap {
   int n_elements() const { return static_cast<int>(elements_.size()); }
   int degree(int element) const { return elements_[element].degree; }
   int n_bezier(int element) const { return (degree(element) + 1) * (degree(element) + 1); }
-  const Blocks& blocks() const { return blocks_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
 
   /// Bezier points of one element, `out` of shape (3, n_b): all of x1, then x2, then x3.
   void points(int element, const Net& net, double* out) const;
-
-  /// The same for the n_e elements of a block: column c n_e + k holds component c of element k, shape ((p+1)^2, 3 n_e), column-major, so that
-  /// (Bernstein table) * (this) gives one contiguous array a component over all nodes of all elements. `out` is resized only if it has another shape.
-  void points(const Block& block, const Net& net, Eigen::MatrixXd& out) const;
 
   /// The transpose of `points`: net_A += sum_b extraction(A, b) in_b, with `in` of shape (3, n_b). Turns derivatives with respect to
   /// Bezier points into derivatives with respect to control points.
@@ -47,14 +60,13 @@ class BezierMap {
 
  private:
   struct Operator {
-    int m, n_b;
-    std::vector<double> by_function, by_bezier;  ///< the matrix with the Bezier index, with the function index running fastest
+    Eigen::MatrixXd by_bezier, by_function;  ///< the extraction matrix, with the function index running fastest; its transpose
   };
   struct Element {
     int degree, first, operation;  ///< degree, start in `points_`, position in `operators_`
   };
   int n_points_;
-  Blocks blocks_;
+  std::vector<Block> blocks_;
   std::vector<Element> elements_;
   std::vector<int> points_;
   std::vector<Operator> operators_;

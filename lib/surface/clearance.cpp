@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "spline/bernstein.hpp"
+
 namespace tanktread::surface {
 
 namespace {
@@ -63,26 +65,6 @@ Eigen::MatrixXd products(Eigen::Index p) {
       p + 1, p + 1, [&](Eigen::Index i, Eigen::Index k) { return binomial(p, i) * binomial(p, k) / binomial(2 * p, i + k); });
 }
 
-/// De Casteljau's halves along the rows' index.
-std::array<Eigen::MatrixXd, 2> halves(Eigen::MatrixXd points) {
-  Eigen::MatrixXd first = points;
-  for (Eigen::Index r = 1, p = points.rows() - 1; r <= p; ++r) {
-    for (Eigen::Index i = 0; i <= p - r; ++i) points.row(i) = (points.row(i) + points.row(i + 1)) / 2;
-    first.row(r) = points.row(0);
-  }
-  return {first, points};
-}
-
-std::array<Piece, 2> halves(const Piece& piece) {
-  std::array<Piece, 2> parts;
-  for (Piece& part : parts) part.disc = piece.disc, part.bound = piece.bound;
-  for (const int c : coordinates) {
-    auto points = piece.bends_across ? halves(piece.points[c].transpose()) : halves(piece.points[c]);
-    for (const int k : {0, 1}) parts[k].points[c] = std::move(points[k]);
-  }
-  return parts;
-}
-
 /// The search halves pieces, those of the least bound first, until none can be nearer than the best place found.
 class Search {
  public:
@@ -96,7 +78,7 @@ class Search {
       pieces_.pop_back();
       look_at_corner(piece);
       if (near(piece.bound))
-        for (Piece& half : halves(piece)) add(std::move(half));
+        for (const int k : {0, 1}) add(half(piece, k));
     }
     return best_;
   }
@@ -137,6 +119,15 @@ class Search {
     if (!near(piece.bound)) return;
     pieces_.push_back(std::move(piece));
     std::ranges::push_heap(pieces_, std::ranges::greater(), &Piece::bound);
+  }
+
+  Piece half(const Piece& piece, int k) const {
+    Piece part;
+    part.disc = piece.disc, part.bound = piece.bound;
+    const Eigen::MatrixXd halving = spline::restriction(static_cast<int>(piece.points[0].rows()) - 1, 0.5 * k, 0.5 * (k + 1));
+    for (const int c : coordinates)
+      part.points[c] = piece.bends_across ? Eigen::MatrixXd(piece.points[c] * halving.transpose()) : Eigen::MatrixXd(halving * piece.points[c]);
+    return part;
   }
 
   /// Perhaps the best place. Where it is farther from the outline than the disc says, the piece gets a disc that fits.

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
 #include <numeric>
 #include <queue>
-#include <utility>
+
+#include <Eigen/Geometry>
 
 namespace tanktread::surface {
 
@@ -23,43 +27,46 @@ Points bezier_points(const Patch& patch) {
   return Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(patch.points, 3, patch.n_bezier());
 }
 
-/// A part of an element: its Bezier points, s fastest.
+/// A part of an element: its Bezier points, s fastest, and its two halves along its longer side once they are asked for.
 struct Part {
-  int degree;
+  int degree = 0;
   Points points;
+  mutable std::shared_ptr<const std::array<Part, 2>> halves_kept{};
 
   double size() const { return (corner(1, 1) - corner(0, 0)).cwiseAbs().maxCoeff() + (corner(1, 0) - corner(0, 1)).cwiseAbs().maxCoeff(); }
   Vec3 corner(int i, int j) const { return points.col(degree * (i + (degree + 1) * j)); }
   Vec3 middle() const { return points.rowwise().mean(); }
-};
+  Vec3 normal() const { return (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0)).normalized(); }  // at its middle, about
 
-/// The two halves of a part along its longer side, by de Casteljau's rule.
-std::pair<Part, Part> halves(const Part& part) {
-  const int p = part.degree, n = p + 1;
-  const bool along_s = (part.corner(1, 0) - part.corner(0, 0)).squaredNorm() + (part.corner(1, 1) - part.corner(0, 1)).squaredNorm() >
-                       (part.corner(0, 1) - part.corner(0, 0)).squaredNorm() + (part.corner(1, 1) - part.corner(1, 0)).squaredNorm();
-  const int step = along_s ? 1 : n, across = along_s ? n : 1;
-  std::pair<Part, Part> result{part, part};
-  Points& left = result.first.points;
-  Points& right = result.second.points;  // in place: after k rounds its first p - k + 1 points of a row are those of the rule
-  for (int row = 0; row < n; ++row)
-    for (int k = 1; k <= p; ++k) {
-      for (int i = 0; i <= p - k; ++i)
-        right.col(row * across + i * step) = 0.5 * (right.col(row * across + i * step) + right.col(row * across + (i + 1) * step));
-      left.col(row * across + k * step) = right.col(row * across);
-    }
-  return result;
-}
+  const std::array<Part, 2>& halves() const {
+    if (!halves_kept) halves_kept = std::make_shared<const std::array<Part, 2>>(halved());
+    return *halves_kept;
+  }
+
+ private:
+  /// By de Casteljau's rule.
+  std::array<Part, 2> halved() const {
+    const int p = degree, n = p + 1;
+    const bool along_s = (corner(1, 0) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(0, 1)).squaredNorm() >
+                         (corner(0, 1) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(1, 0)).squaredNorm();
+    const int step = along_s ? 1 : n, across = along_s ? n : 1;
+    std::array<Part, 2> result{Part{degree, points}, Part{degree, points}};
+    auto& [left, right] = result;  // right in place: after k rounds its first p - k + 1 points of a row are those of the rule
+    for (int row = 0; row < n; ++row)
+      for (int k = 1; k <= p; ++k) {
+        for (int i = 0; i <= p - k; ++i) {
+          const int at = row * across + i * step;
+          right.points.col(at) = 0.5 * (right.points.col(at) + right.points.col(at + step));
+        }
+        left.points.col(row * across + k * step) = right.points.col(row * across);
+      }
+    return result;
+  }
+};
 
 /// By how much two sets lie apart in a direction from the first to the second, which is of length 1.
 double separation(const Points& a, const Points& b, const Vec3& direction) {
   return (direction.transpose() * b).minCoeff() - (direction.transpose() * a).maxCoeff();
-}
-
-/// A part's normal at its middle, about.
-Vec3 normal(const Part& part) {
-  const Vec3 u = part.corner(1, 1) - part.corner(0, 0), v = part.corner(0, 1) - part.corner(1, 0);
-  return u.cross(v).normalized();
 }
 
 class Search {
@@ -69,14 +76,11 @@ class Search {
   }
 
   ClosestPoints nearest() {
-    push({distance(trees_[0]->boxes()[0], trees_[1]->boxes()[0]), {0, 0}, {-1, -1}});
+    push({distance(trees_[0]->boxes()[0], trees_[1]->boxes()[0]), {0, 0}, {}});
     while (!queue_.empty() && queue_.top().bound < best_.gap - tolerance_) {
       const Pair pair = queue_.top();
       queue_.pop();
-      if (pair.part[0] < 0)
-        open_boxes(pair);
-      else
-        open_parts(pair);
+      pair.part[0] ? open_parts(pair) : open_boxes(pair);
     }
     return best_;
   }
@@ -85,7 +89,8 @@ class Search {
   /// Two boxes, or where these hold an element each, two parts of those.
   struct Pair {
     double bound;
-    int box[2], part[2];
+    int box[2];
+    const Part* part[2];
     bool operator<(const Pair& other) const { return bound > other.bound; }  // the first of a queue is the nearest
   };
 
@@ -93,13 +98,13 @@ class Search {
     if (pair.bound < best_.gap - tolerance_) queue_.push(pair);
   }
 
-  const Box& box(const Pair& pair, int k) const { return trees_[k]->boxes()[static_cast<std::size_t>(pair.box[k])]; }
+  const Box& box(const Pair& pair, int k) const { return trees_[k]->boxes()[pair.box[k]]; }
   bool single(const Pair& pair, int k) const { return box(pair, k).last - box(pair, k).first == 1; }
 
   void open_boxes(const Pair& pair) {
     if (single(pair, 0) && single(pair, 1)) {
       Pair parts = pair;
-      for (int k = 0; k < 2; ++k) parts.part[k] = whole(k, trees_[k]->element(box(pair, k).first));
+      for (int k = 0; k < 2; ++k) parts.part[k] = &whole(k, trees_[k]->element(box(pair, k).first));
       parts.bound = bound(parts);
       return push(parts);
     }
@@ -114,11 +119,11 @@ class Search {
   }
 
   void open_parts(const Pair& pair) {
-    const int opened = part(0, pair).size() > part(1, pair).size() ? 0 : 1;
-    for (const int child : children(opened, pair.part[opened])) {
+    const int opened = pair.part[0]->size() > pair.part[1]->size() ? 0 : 1;
+    for (const Part& half : pair.part[opened]->halves()) {
       Pair next = pair;
-      next.part[opened] = child;
-      meet(part(0, next), part(1, next));
+      next.part[opened] = &half;
+      meet(*next.part[0], *next.part[1]);
       next.bound = std::max(pair.bound, bound(next));
       push(next);
     }
@@ -134,10 +139,10 @@ class Search {
   }
 
   double bound(const Pair& pair) const {
-    const Part &a = part(0, pair), &b = part(1, pair);
+    const Part &a = *pair.part[0], &b = *pair.part[1];
     const Vec3 between = b.middle() - a.middle();
     double most = 0;
-    for (Vec3 direction : {between, normal(a), normal(b), Vec3(best_.second - best_.first)}) {
+    for (Vec3 direction : {between, a.normal(), b.normal(), Vec3(best_.second - best_.first)}) {
       const double length = direction.norm();
       if (!(length > 0)) continue;
       direction *= (direction.dot(between) < 0 ? -1 : 1) / length;
@@ -146,40 +151,17 @@ class Search {
     return most;
   }
 
-  int whole(int k, int element) {
-    const auto found = std::ranges::find(elements_[k], element, &std::pair<int, int>::first);
-    if (found != elements_[k].end()) return found->second;
+  const Part& whole(int k, int element) {
+    Part& part = elements_[k][element];
     const Patch& patch = trees_[k]->surface()[element];
-    elements_[k].emplace_back(element, add(k, {patch.degree, bezier_points(patch)}));
-    return elements_[k].back().second;
+    if (part.points.size() == 0) part.degree = patch.degree, part.points = bezier_points(patch);
+    return part;
   }
-
-  int add(int k, Part part) {
-    parts_[k].push_back(std::move(part));
-    children_[k].push_back(-1);
-    return static_cast<int>(parts_[k].size()) - 1;
-  }
-
-  std::array<int, 2> children(int k, int number) {
-    int& first = children_[k][static_cast<std::size_t>(number)];
-    if (first < 0) {
-      auto [left, right] = halves(parts_[k][static_cast<std::size_t>(number)]);
-      const int added = add(k, std::move(left));
-      add(k, std::move(right));
-      children_[k][static_cast<std::size_t>(number)] = added;
-      return {added, added + 1};
-    }
-    return {first, first + 1};
-  }
-
-  const Part& part(int k, const Pair& pair) const { return parts_[k][static_cast<std::size_t>(pair.part[k])]; }
 
   const ElementBoxes* trees_[2];
   double tolerance_;
   std::priority_queue<Pair> queue_;
-  std::vector<Part> parts_[2];
-  std::vector<int> children_[2];                    // the first of the two of each part
-  std::vector<std::pair<int, int>> elements_[2];    // that are parts by now, and which
+  std::map<int, Part> elements_[2];  // that are looked at
   ClosestPoints best_{Vec3::Zero(), Vec3::Zero(), 0};
 };
 
@@ -197,18 +179,18 @@ ElementBoxes::ElementBoxes(const Patches& surface) : surface_(surface), order_(s
 int ElementBoxes::split(int first, int last) {
   Box box{Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), Eigen::Array3d::Constant(-std::numeric_limits<double>::infinity()),
           first, last};
-  for (int k = first; k < last; ++k) widen(box, own_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])]);
+  for (int k = first; k < last; ++k) widen(box, own_[order_[k]]);
   const int number = static_cast<int>(boxes_.size());
   boxes_.push_back(box);
   if (last - first == 1) return number;
   int longest;
   (box.high - box.low).maxCoeff(&longest);
   const int middle = first + (last - first) / 2;
-  const auto centre = [&](int e) { return own_[static_cast<std::size_t>(e)].low[longest] + own_[static_cast<std::size_t>(e)].high[longest]; };
+  const auto centre = [&](int e) { return own_[e].low[longest] + own_[e].high[longest]; };
   std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](int a, int b) { return centre(a) < centre(b); });
   const int left = split(first, middle), right = split(middle, last);
-  boxes_[static_cast<std::size_t>(number)].child[0] = left;
-  boxes_[static_cast<std::size_t>(number)].child[1] = right;
+  boxes_[number].child[0] = left;
+  boxes_[number].child[1] = right;
   return number;
 }
 
@@ -216,6 +198,58 @@ double distance(const Box& a, const Box& b) { return (b.low - a.high).max(a.low 
 
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond) {
   return Search(first, second, tolerance, beyond).nearest();
+}
+
+namespace {
+
+/// n x n places of an element with normals, and a box around its Bezier points.
+struct Sampled {
+  std::vector<Vec3> place, normal;
+  Eigen::AlignedBox3d box;
+
+  Sampled(const Patch& patch, int n) {
+    for (int k = 0; k < n * n; ++k) {
+      const Jet at = jet(patch, k % n / (n - 1.), k / n / (n - 1.));
+      place.push_back(at.x);
+      normal.push_back(at.s.cross(at.t).normalized());
+    }
+    for (int b = 0; b < patch.n_bezier(); ++b) box.extend(Vec3(patch.coordinate(0, b), patch.coordinate(1, b), patch.coordinate(2, b)));
+  }
+};
+
+std::vector<Sampled> sampled(const Patches& surface, int n) {
+  std::vector<Sampled> all;
+  for (int e = 0; e < surface.size(); ++e) all.emplace_back(surface[e], n);
+  return all;
+}
+
+double distance(const Vec3& x, const Sampled& element) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < element.place.size(); ++k)
+    if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
+  // Beyond the element's edge the plane of another one is nearer.
+  const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
+  return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
+}
+
+}  // namespace
+
+std::vector<double> film_widths(const Patches& surface, std::span<const Patches* const> others, double reach) {
+  const std::vector<Sampled> own = sampled(surface, 3);
+  Eigen::AlignedBox3d around;
+  for (const Sampled& element : own) around.extend(element.box);
+  std::vector<double> widths(own.size(), std::numeric_limits<double>::infinity());
+  for (const Patches* other : others)
+    for (const Sampled& across : sampled(*other, 5)) {
+      if (around.exteriorDistance(across.box) > reach) continue;
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        if (own[e].box.exteriorDistance(across.box) > std::min(reach, widths[e])) continue;
+        for (const Vec3& x : own[e].place)
+          if (const double width = distance(x, across); width <= reach) widths[e] = std::min(widths[e], width);
+      }
+    }
+  return widths;
 }
 
 }  // namespace tanktread::surface

@@ -1,6 +1,7 @@
 #pragma once
-// The smallest distance of two surfaces.
+// The smallest distance of two surfaces, and how narrow the films between surfaces are.
 
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -45,5 +46,10 @@ double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 /// are halved, those first that can be nearest, until none can be nearer than the best points found by `tolerance`. Parts are bounded by planes
 /// between their Bezier points: by much less than their size where surfaces lie side by side.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
+
+/// Of each element of a surface the width of the film between it and others: the smallest of its distances, at 3 x 3 places, from the tangent plane
+/// of the nearest of 5 x 5 places of each element there. Right to the square of a quarter of the others' elements, times their curvature, over eight.
+/// Infinite where no other is within `reach`.
+std::vector<double> film_widths(const Patches& surface, std::span<const Patches* const> others, double reach);
 
 }  // namespace tanktread::surface

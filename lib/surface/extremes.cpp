@@ -1,4 +1,4 @@
-#include "surface/extremes.hpp"
+#include "surface/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,6 @@
 #include <vector>
 
 #include <Eigen/LU>
-
-#include "surface/sampling.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -65,24 +63,6 @@ double summit(const Patch& patch, int c, double sign, Vec2 at) {
     if (moved < 1e-9) break;  // the height errs by the square of this
   }
   return here.value;
-}
-
-/// Smallest and largest coordinate of the Bezier points, between which the patch stays.
-Range hull(const Patch& patch, int c) {
-  const double* x = patch.points + c * patch.n_bezier();
-  double low[4], high[4];  // four chains of comparisons side by side
-  std::copy_n(x, 4, low);
-  std::copy_n(x, 4, high);
-  for (int b = 4; b + 4 <= patch.n_bezier(); b += 4)
-    for (int k = 0; k < 4; ++k) {
-      low[k] = std::min(low[k], x[b + k]);
-      high[k] = std::max(high[k], x[b + k]);
-    }
-  for (int b = patch.n_bezier() / 4 * 4; b < patch.n_bezier(); ++b) {
-    low[0] = std::min(low[0], x[b]);
-    high[0] = std::max(high[0], x[b]);
-  }
-  return {std::min(std::min(low[0], low[1]), std::min(low[2], low[3])), std::max(std::max(high[0], high[1]), std::max(high[2], high[3]))};
 }
 
 /// The largest of sign * x_c, which is `reached` at least, where sign * x_c stays below bounds[e] on element e.
@@ -205,6 +185,12 @@ void add_distances(const Patches& surface, const Vec3& centre, const std::vector
 }
 
 }  // namespace
+
+Range hull(const Patch& patch, int c) {
+  const double* x = patch.points + c * patch.n_bezier();
+  const auto [low, high] = std::minmax_element(x, x + patch.n_bezier());
+  return {*low, *high};
+}
 
 Range coordinate_range(const Patches& surface, int c) {
   Range reached;  // at the corners

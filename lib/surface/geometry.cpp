@@ -1,9 +1,12 @@
 #include "surface/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
@@ -12,29 +15,38 @@
 namespace tanktread::surface {
 namespace {
 
-/// Calls use(elements of the group, Bezier points in lanes) for the elements, a register of one degree at a time; a short group repeats its last.
+/// Calls use(degree, group) for all of the elements, as many of one degree at a time as a register has lanes.
 template <class Use>
-void each_group(const BezierMap& map, const Net& net, std::span<const int> elements, Use use) {
-  kernel::Lanes packed;
-  std::vector<double> one(3 * kernel::most_bezier);
-  std::vector<int> group;
-  const int lanes = pack_lanes();
-  for (const Block& block : map.blocks().blocks) {
-    const int n = 3 * (block.degree + 1) * (block.degree + 1);
-    const auto flush = [&] {
-      for (int l = static_cast<int>(group.size()); l < lanes; ++l)
-        for (int k = 0; k < n; ++k) packed.value[k * lanes + l] = packed.value[k * lanes];
-      use(block.degree, std::span<const int>(group), packed);
-      group.clear();
-    };
-    for (const int e : elements) {
-      if (map.degree(e) != block.degree) continue;
-      map.points(e, net, one.data());
-      for (int k = 0; k < n; ++k) packed.value[k * lanes + static_cast<int>(group.size())] = one[k];
-      group.push_back(e);
-      if (static_cast<int>(group.size()) == lanes) flush();
-    }
-    if (!group.empty()) flush();
+void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
+  const std::size_t lanes = pack_lanes();
+  std::vector<int> alike;
+  for (const Block& block : map.blocks()) {
+    alike.clear();
+    std::ranges::copy_if(elements, std::back_inserter(alike), [&](int e) { return map.degree(e) == block.degree; });
+    for (std::size_t first = 0; first < alike.size(); first += lanes)
+      use(block.degree, std::span<const int>(alike).subspan(first, std::min(lanes, alike.size() - first)));
+  }
+}
+
+/// The Bezier points of a group, one element in each lane; a short group repeats its last.
+kernel::Lanes points_of(const BezierMap& map, const Net& net, std::span<const int> group) {
+  const std::size_t lanes = pack_lanes();
+  kernel::Lanes points;
+  double one[3 * kernel::most_bezier];
+  for (std::size_t l = 0; l < lanes; ++l) {
+    if (l < group.size()) map.points(group[l], net, one);
+    for (int k = 0; k < 3 * map.n_bezier(group[0]); ++k) points.value[k * lanes + l] = one[k];
+  }
+  return points;
+}
+
+/// Adds what is dual to the Bezier points of a group to the control points.
+void add_transposed(const BezierMap& map, std::span<const int> group, const kernel::Lanes& dual, Net& net) {
+  const std::size_t lanes = pack_lanes();
+  double one[3 * kernel::most_bezier];
+  for (std::size_t l = 0; l < group.size(); ++l) {
+    for (int k = 0; k < 3 * map.n_bezier(group[0]); ++k) one[k] = dual.value[k * lanes + l];
+    map.add_transposed(group[l], one, net);
   }
 }
 
@@ -74,9 +86,9 @@ double Geometry::volume(const Net& net) const {
   double sum = 0;
   for (const int b : all_blocks_) {
     double of_block = 0;
-    each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+    each_group(map_, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group) {
       double part[most_lanes];
-      kernel::volume(degree, points, part);
+      kernel::volume(degree, points_of(map_, here, group), part);
       for (std::size_t l = 0; l < group.size(); ++l) of_block += part[l];
     });
     sum += of_block;
@@ -87,27 +99,18 @@ double Geometry::volume(const Net& net) const {
 void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
   b.setZero(map_.n_points(), 3);
   kernel::Lanes gradient;
-  double one[3 * kernel::most_bezier];
-  each_group(map_, net, elements, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
-    kernel::volume_gradient(degree, points, gradient);
-    const int n = 3 * (degree + 1) * (degree + 1), lanes = pack_lanes();
-    for (int l = 0; l < static_cast<int>(group.size()); ++l) {
-      for (int k = 0; k < n; ++k) one[k] = gradient.value[k * lanes + l];
-      map_.add_transposed(group[l], one, b);
-    }
+  each_group(map_, elements, [&](int degree, std::span<const int> group) {
+    kernel::volume_gradient(degree, points_of(map_, net, group), gradient);
+    add_transposed(map_, group, gradient, b);
   });
 }
 
 void Geometry::add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const {
+  const Net here = net.rowwise() - origin.transpose();
   kernel::Lanes gradient;
-  double one[3 * kernel::most_bezier];
-  each_group(map_, net.rowwise() - origin.transpose(), elements, [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
-    kernel::moment_gradient(degree, points, g.data(), gradient);
-    const int n = 3 * (degree + 1) * (degree + 1), lanes = pack_lanes();
-    for (int l = 0; l < static_cast<int>(group.size()); ++l) {
-      for (int k = 0; k < n; ++k) one[k] = gradient.value[k * lanes + l];
-      map_.add_transposed(group[l], one, b);
-    }
+  each_group(map_, elements, [&](int degree, std::span<const int> group) {
+    kernel::moment_gradient(degree, points_of(map_, here, group), g.data(), gradient);
+    add_transposed(map_, group, gradient, b);
   });
 }
 
@@ -124,9 +127,9 @@ std::vector<double> Geometry::block_moments(const Net& net, std::span<const int>
   const Net here = about_mean(net, mean);
   std::vector<double> moments(static_cast<std::size_t>(n_moments) * n_blocks(), 0.);
   for (const int b : blocks)
-    each_group(map_, here, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group, const kernel::Lanes& points) {
+    each_group(map_, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group) {
       kernel::Moments part;
-      kernel::moments(degree, points, part);
+      kernel::moments(degree, points_of(map_, here, group), part);
       double* const sum = &moments[static_cast<std::size_t>(n_moments) * b];
       for (std::size_t l = 0; l < group.size(); ++l) {
         sum[0] += part.area[l];
@@ -178,7 +181,37 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
   return result;
 }
 
+PrincipalAxes principal_axes(const Measures& measures) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> moments(measures.second_moments);  // ascending
+  PrincipalAxes axes;
+  for (int k = 0; k < 3; ++k) {
+    axes.lengths[k] = std::sqrt(5 * moments.eigenvalues()[2 - k] / measures.volume);
+    Vec3 direction = moments.eigenvectors().col(2 - k);
+    for (double& component : direction)
+      if (std::abs(component) < 1e-9) component = 0;  // rounding is not to choose the sense
+    for (int c = 2; c >= 0; --c)
+      if (direction[c] != 0) axes.directions.col(k) = std::copysign(1.0, direction[c]) * direction;
+  }
+  return axes;
+}
+
 Measures measures(const spline::Space& space, const Net& net) { return Geometry(space).measures(net); }
 double volume(const spline::Space& space, const Net& net) { return Geometry(space).volume(net); }
+
+Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
+  Vec3 mean, first = Vec3::Zero(), carried = Vec3::Zero();
+  const Net here = about_mean(x, mean);
+  double volume = 0, flux = 0;
+  for (const Block& block : map.blocks())
+    each_group(map, block.elements, [&](int degree, std::span<const int> group) {
+      kernel::Transport part;
+      kernel::transport(degree, points_of(map, here, group), points_of(map, v, group), part);
+      for (std::size_t l = 0; l < group.size(); ++l) {
+        volume += part.volume[l], flux += part.flux[l];
+        for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], carried[c] += part.carried[c][l];
+      }
+    });
+  return (carried - flux / volume * first) / volume;
+}
 
 }  // namespace tanktread::surface

@@ -1,15 +1,16 @@
 #pragma once
 // Points, measures and moments of a spline surface. A surface is a space and a control net.
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
 #include "surface/bezier_points.hpp"
-#include "surface/element_blocks.hpp"
-#include "surface/extremes.hpp"
+#include "surface/patch.hpp"
 
 namespace tanktread::surface {
 
@@ -33,8 +34,34 @@ struct Measures {
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
+/// Semi-axes of the ellipsoid with the same second moments (6.1).
+struct PrincipalAxes {
+  Vec3 lengths = Vec3::Zero();     ///< the longest first
+  Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along them, the first component of each that is not zero positive
+};
+PrincipalAxes principal_axes(const Measures& measures);
+
 /// What measures are made of: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
+
+// Extremal coordinates of a closed surface and extremal distances on a plane section, by Newton's method on the polynomials themselves.
+
+struct Range {
+  double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< of nothing
+};
+
+/// Of two parts.
+inline Range wider(const Range& a, const Range& b) { return {std::min(a.smallest, b.smallest), std::max(a.largest, b.largest)}; }
+
+/// Smallest and largest coordinate x_{c+1} of the Bezier points, between which the patch stays.
+Range hull(const Patch& patch, int c);
+
+/// Smallest and largest coordinate x_{c+1} on the surface, to round-off. Of a whole surface, the wider of its parts.
+Range coordinate_range(const Patches& surface, int c);
+
+/// Shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface. To round-off where the surface
+/// has a simple extremum; no symmetry is assumed. Of a whole surface, the wider of its parts; of nothing when the plane misses it.
+Range section_distances(const Patches& surface, const Vec3& centre);
 
 /// What the series report (6.2). D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90.
 struct Deformation {
@@ -63,7 +90,7 @@ class Geometry {
 
   Measures measures(const Net& net) const;
 
-  /// The same of each block of elements (element_blocks.hpp), block after block: those asked for, zero for the others; and measures from all.
+  /// The same of each block of elements, block after block: those asked for, zero for the others; and measures from all.
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 
@@ -89,5 +116,8 @@ class Geometry {
 /// The same for a single use.
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
+
+/// Velocity U of the centroid (P-42) of the interior of x when the net moves by v (6.4): exact.
+Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v);
 
 }  // namespace tanktread::surface

@@ -15,10 +15,6 @@
 namespace tanktread::surface {
 namespace {
 
-/// Partitions to choose from where few points have work: their elements reach far beyond them, and how far is chance. More take longer than they
-/// save.
-constexpr int few_points_seeds = 4;
-
 /// Neighbours of every element in compressed rows, weighted by the number of common control points.
 struct Graph {
   std::vector<idx_t> start, neighbour, weight;
@@ -32,19 +28,16 @@ std::vector<std::vector<int>> elements_of_points(const spline::Space& space) {
 }
 
 Graph common_points(const spline::Space& space, const std::vector<std::vector<int>>& elements_of) {
-  const int n = static_cast<int>(space.elements.size());
   Graph graph;
   graph.start.push_back(0);
-  std::vector<int> common(n, 0), touched;
-  for (int e = 0; e < n; ++e) {
-    touched.clear();
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    std::map<int, idx_t> common;
     for (const int a : space.elements[e].points)
       for (const int f : elements_of[a])
-        if (f != e && common[f]++ == 0) touched.push_back(f);
-    std::sort(touched.begin(), touched.end());
-    for (const int f : touched) {
+        if (f != e) ++common[f];
+    for (const auto& [f, points] : common) {
       graph.neighbour.push_back(f);
-      graph.weight.push_back(std::exchange(common[f], 0));
+      graph.weight.push_back(points);
     }
     graph.start.push_back(static_cast<idx_t>(graph.neighbour.size()));
   }
@@ -59,13 +52,13 @@ std::vector<idx_t> scaled(std::span<const double> cost) {
   return result;
 }
 
-std::vector<int> element_owners(Graph graph, int parts, std::span<const double> cost, int seed) {
+std::vector<int> element_owners(Graph graph, int parts, std::span<const double> cost) {
   idx_t n = static_cast<idx_t>(graph.start.size()) - 1, constraints = 1, k = parts, cut = 0;
   std::vector<idx_t> weights = cost.empty() ? std::vector<idx_t>(n, 1) : scaled(cost);
   std::vector<idx_t> owner(n);
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED] = seed;
+  options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_UFACTOR] = 10;  // parts within one per cent of each other
   const auto method = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k,
@@ -100,39 +93,15 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-/// Most elements that the points of one part touch.
-int most_elements(const spline::Space& space, const Partition& partition) {
-  std::vector<int> count(partition.parts, 0), latest(partition.parts, -1);
-  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
-    for (const int a : space.elements[e].points)
-      if (const int part = partition.point_owner[a]; part >= 0 && std::exchange(latest[part], e) != e) ++count[part];
-  return std::ranges::max(count);
-}
-
-/// The best of some partitions.
-Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points, int seeds) {
+/// Parts of nearly equal cost, with these points shared among them.
+Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)
     throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) +
                     " ranks; use at most one rank an element.");
-  Partition result{parts, std::vector<int>(n, 0), std::vector<int>(space.n_points, -1)};
-  if (parts == 1) {
-    for (const int a : points) result.point_owner[a] = 0;
-    return result;
-  }
   const std::vector<std::vector<int>> elements_of = elements_of_points(space);
-  Partition best;
-  const Graph graph = common_points(space, elements_of);
-  for (int seed = 1, least = 0; seed <= seeds; ++seed) {
-    Partition other = result;
-    other.element_owner = element_owners(graph, parts, cost, seed);
-    other.point_owner = point_owners(elements_of, other.element_owner, parts, points);
-    if (const int most = most_elements(space, other); seed == 1 || most < least) {
-      least = most;
-      best = std::move(other);
-    }
-  }
-  return best;
+  const std::vector<int> owner = parts == 1 ? std::vector<int>(n, 0) : element_owners(common_points(space, elements_of), parts, cost);
+  return {parts, owner, point_owners(elements_of, owner, parts, points)};
 }
 
 }  // namespace
@@ -140,7 +109,7 @@ Partition shared(const spline::Space& space, int parts, std::span<const double> 
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
   std::vector<int> all(space.n_points);
   std::iota(all.begin(), all.end(), 0);
-  return shared(space, parts, cost, all, 1);
+  return shared(space, parts, cost, all);
 }
 
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points) {
@@ -151,7 +120,7 @@ Partition partition_of_points(const spline::Space& space, int parts, std::span<c
     const auto n = std::ranges::count_if(e.points, [&](int a) { return wanted[a] != 0; });
     cost.push_back(static_cast<double>(n) / static_cast<double>(e.points.size()));
   }
-  return shared(space, parts, cost, points, static_cast<int>(points.size()) < space.n_points ? few_points_seeds : 1);
+  return shared(space, parts, cost, points);
 }
 
 Share share(const spline::Space& space, const Partition& partition, int rank) {

@@ -57,14 +57,27 @@ double mean_curvature(const Jet& jet) {
   return -(e * jet.tt.dot(n) - 2 * f * jet.st.dot(n) + g * jet.ss.dot(n)) / (2 * (e * g - f * f));
 }
 
-ElementPoints::ElementPoints(const spline::Space& space, const Net& net, int element) {
-  const spline::Element& from = space.elements[element];
-  degree_ = from.degree;
-  points_.assign(3 * from.extraction.cols(), 0.);
-  for (int b = 0; b < from.extraction.cols(); ++b)
-    for (int c = 0; c < 3; ++c)
-      for (int a = 0; a < from.extraction.rows(); ++a)
-        points_[c * from.extraction.cols() + b] += from.extraction(a, b) * net(from.points[a], c);
+/// Sums over s first, then over t.
+Grid sample(const Patch& patch) {
+  const int p = patch.degree;
+  Grid x;
+  double at[cells + 1][spline::max_degree + 1];
+  for (int i = 0; i <= cells; ++i) spline::bernstein(p, double(i) / cells, at[i]);
+  for (int c = 0; c < 3; ++c) {
+    double along_s[spline::max_degree + 1][cells + 1];
+    for (int j = 0; j <= p; ++j)
+      for (int i = 0; i <= cells; ++i) {
+        along_s[j][i] = 0;
+        for (int k = 0; k <= p; ++k) along_s[j][i] += at[i][k] * patch.coordinate(c, j * (p + 1) + k);
+      }
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i) {
+        double sum = 0;
+        for (int k = 0; k <= p; ++k) sum += at[j][k] * along_s[k][i];
+        x[static_cast<size_t>(j)][static_cast<size_t>(i)][c] = sum;
+      }
+  }
+  return x;
 }
 
 Patches::Patches(const BezierMap& map, const Net& net) {

@@ -1,10 +1,12 @@
 #pragma once
 // One Bezier element with its points in space.
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "base/types.hpp"
+#include "spline/basis.hpp"
 #include "surface/bezier_points.hpp"
 
 namespace tanktread::surface {
@@ -33,15 +35,22 @@ Vec3 place(const Patch& patch, double s, double t);
 /// Mean curvature chi = 1/2 div n, positive on a sphere.
 double mean_curvature(const Jet& jet);
 
+constexpr int cells = 6;  ///< intervals of the grid, a direction
+
+/// Places at (i, j)/cells, [j][i].
+using Grid = std::array<std::array<Vec3, cells + 1>, cells + 1>;
+Grid sample(const Patch& patch);
+
 /// The Bezier points of one element of a surface.
 class ElementPoints {
  public:
-  ElementPoints(const spline::Space& space, const Net& net, int element);
+  ElementPoints(const spline::Space& space, const Net& net, int element)
+      : degree_(space.elements[element].degree), points_(spline::bezier_points(space.elements[element], net)) {}
   Patch patch() const { return {degree_, points_.data()}; }
 
  private:
   int degree_;
-  std::vector<double> points_;
+  spline::BezierPoints points_;
 };
 
 /// The Bezier points of all elements of a surface, or of some in their order.

@@ -1,10 +1,10 @@
-#include "surface/plane_curve.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/SparseLU>
+
+#include "surface/outline.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -52,12 +52,12 @@ void join(Rows& rows, int row, const Step& left, const Step& right, const std::a
 
 /// The third derivative of step k (and, unless it is to vanish, less that of step k + 1).
 void third_derivative(Rows& rows, int row, const std::vector<Step>& steps, int k, bool vanishes) {
-  const Step& a = steps[static_cast<std::size_t>(k)];
+  const Step& a = steps[k];
   const double one = 1 / (a.h * a.h);
   rows.add(row, k, one), rows.add(row, k + 1, one);
   Vec2 right = 2 * one * a.slope;
   if (!vanishes) {
-    const Step& b = steps[static_cast<std::size_t>(k + 1)];
+    const Step& b = steps[k + 1];
     const double other = 1 / (b.h * b.h);
     rows.add(row, k + 1, -other), rows.add(row, k + 2, -other);
     right -= 2 * other * b.slope;
@@ -70,15 +70,21 @@ CubicCurve hermite(bool closed, const std::vector<double>& breaks, const std::ve
   for (std::size_t e = 0; e + 1 < breaks.size(); ++e) {
     const std::size_t next = (e + 1) % points.size();
     const double third = (breaks[e + 1] - breaks[e]) / 3;
-    const Vec2 d0 = derivatives.row(static_cast<Eigen::Index>(e)), d1 = derivatives.row(static_cast<Eigen::Index>(next));
+    const Vec2 d0 = derivatives.row(e), d1 = derivatives.row(next);
     curve.bezier.push_back({points[e], points[e] + third * d0, points[next] - third * d1, points[next]});
   }
   return curve;
 }
 
-void join_inner(Rows& rows, const std::vector<Step>& steps) {
-  for (int i = 1; i < static_cast<int>(steps.size()); ++i)
-    join(rows, i, steps[static_cast<std::size_t>(i - 1)], steps[static_cast<std::size_t>(i)], {i - 1, i, i + 1});
+/// The spline through the points, where `ends` adds the rows of an open one's ends.
+template <class Ends>
+CubicCurve interpolate(bool closed, const std::vector<double>& breaks, const std::vector<Vec2>& points, const Ends& ends) {
+  const std::vector<Step> step = steps(breaks, points);
+  const int n = static_cast<int>(points.size()), m = static_cast<int>(step.size());
+  Rows rows(n);
+  for (int i = closed ? 0 : 1; i < m; ++i) join(rows, i, step[(i + m - 1) % m], step[i], {(i + n - 1) % n, i, (i + 1) % n});
+  ends(rows, step, m);
+  return hermite(closed, breaks, points, rows.solution());
 }
 
 PlaneJet jet(const Ellipse& e, double u) {
@@ -102,8 +108,8 @@ PlaneJet jet(const CubicCurve& curve, double u) {
 /// The value of the polar form of a cubic Bezier piece on [a, b] at three parameters.
 Vec2 blossom(std::array<Vec2, 4> b, double begin, double end, const std::array<double, 3>& t) {
   for (int level = 0; level < 3; ++level) {
-    const double s = (t[static_cast<std::size_t>(level)] - begin) / (end - begin);
-    for (std::size_t i = 0; i + static_cast<std::size_t>(level) < 3; ++i) b[i] = (1 - s) * b[i] + s * b[i + 1];
+    const double s = (t[level] - begin) / (end - begin);
+    for (std::size_t i = 0; i + level < 3; ++i) b[i] = (1 - s) * b[i] + s * b[i + 1];
   }
   return b[0];
 }
@@ -125,35 +131,25 @@ PlaneJet jet(const PlaneCurve& curve, double u) {
 }
 
 CubicCurve interpolate_closed(const std::vector<double>& breaks, const std::vector<Vec2>& points) {
-  const int m = static_cast<int>(points.size());
-  const auto step = steps(breaks, points);
-  Rows rows(m);
-  for (int i = 0; i < m; ++i) {
-    const int before = (i + m - 1) % m;
-    join(rows, i, step[static_cast<std::size_t>(before)], step[static_cast<std::size_t>(i)], {before, i, (i + 1) % m});
-  }
-  return hermite(true, breaks, points, rows.solution());
+  return interpolate(true, breaks, points, [](auto&&...) {});
 }
 
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points) {
-  const auto step = steps(breaks, points);
-  const int m = static_cast<int>(step.size());
-  if (m == 1) return interpolate_open(breaks, points, step[0].slope, step[0].slope);
-  Rows rows(m + 1);
-  join_inner(rows, step);
-  third_derivative(rows, 0, step, 0, m == 2);
-  third_derivative(rows, m, step, m == 2 ? 1 : m - 2, m == 2);
-  return hermite(false, breaks, points, rows.solution());
+  if (points.size() == 2) {
+    const Vec2 slope = steps(breaks, points)[0].slope;
+    return interpolate_open(breaks, points, slope, slope);
+  }
+  return interpolate(false, breaks, points, [](Rows& rows, const std::vector<Step>& step, int m) {
+    third_derivative(rows, 0, step, 0, m == 2);
+    third_derivative(rows, m, step, m == 2 ? 1 : m - 2, m == 2);
+  });
 }
 
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points, const Vec2& first, const Vec2& last) {
-  const auto step = steps(breaks, points);
-  const int m = static_cast<int>(step.size());
-  Rows rows(m + 1);
-  join_inner(rows, step);
-  rows.add(0, 0, 1), rows.value(0, first);
-  rows.add(m, m, 1), rows.value(m, last);
-  return hermite(false, breaks, points, rows.solution());
+  return interpolate(false, breaks, points, [&](Rows& rows, const std::vector<Step>&, int m) {
+    rows.add(0, 0, 1), rows.value(0, first);
+    rows.add(m, m, 1), rows.value(m, last);
+  });
 }
 
 std::vector<Vec2> control_points(const CubicCurve& curve) {
@@ -162,7 +158,7 @@ std::vector<Vec2> control_points(const CubicCurve& curve) {
   const auto knot = [&](int i) {
     if (!curve.closed) return curve.breaks[static_cast<std::size_t>(std::clamp(i, 0, m))];
     const int turn = i < 0 ? -1 : i >= m ? 1 : 0;
-    return curve.breaks[static_cast<std::size_t>(i - turn * m)] + turn * period;
+    return curve.breaks[i - turn * m] + turn * period;
   };
   std::vector<Vec2> out;
   for (int i = curve.closed ? 0 : -1; i < (curve.closed ? m : m + 2); ++i) {

@@ -1,4 +1,4 @@
-#include "surface/polar_sphere.hpp"
+#include "surface/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,11 @@
 #include "surface/quality.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <sstream>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/patch.hpp"
@@ -18,50 +17,47 @@ namespace {
 constexpr int points = 16;  ///< 4 x 4
 constexpr int most = (spline::max_degree + 1) * (spline::max_degree + 1);
 
-/// Derivatives in s and t of Bernstein polynomial b at point q, in 16 b + q.
+/// Derivatives in s and t of the Bernstein polynomials, a column each, at the points.
 struct Table {
-  std::vector<double> in_s, in_t;
+  Eigen::Matrix<double, points, Eigen::Dynamic> in_s, in_t;
 };
 
 Table table(int p) {
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(4);
-  const auto size = static_cast<std::size_t>(points * (p + 1) * (p + 1));
-  Table result{std::vector<double>(size), std::vector<double>(size)};
+  Table result;
+  result.in_s.resize(points, (p + 1) * (p + 1));
+  result.in_t.resize(points, (p + 1) * (p + 1));
   double b[spline::max_degree + 1], b1[spline::max_degree + 1], c[spline::max_degree + 1], c1[spline::max_degree + 1];
   for (int q = 0; q < points; ++q) {
     spline::bernstein(p, rule.s[q], b, b1, nullptr);
     spline::bernstein(p, rule.t[q], c, c1, nullptr);
-    for (int j = 0, k = 0; j <= p; ++j) {
+    for (int j = 0, k = 0; j <= p; ++j)
       for (int i = 0; i <= p; ++i, ++k) {
-        result.in_s[static_cast<std::size_t>(points * k + q)] = b1[i] * c[j];
-        result.in_t[static_cast<std::size_t>(points * k + q)] = b[i] * c1[j];
+        result.in_s(q, k) = b1[i] * c[j];
+        result.in_t(q, k) = b[i] * c1[j];
       }
-    }
   }
   return result;
 }
+
+using Tangents = Eigen::Array<double, points, 3>;
 
 struct Worst {
   double jacobian_ratio, aspect_ratio;
   int point;
 };
 
-/// From the tangents at the points, (3, 16).
-Worst worst(const double* a1, const double* a2) {
-  double n[3][points], length[points], length_1[points], length_2[points], along[points];
-  for (int q = 0; q < points; ++q) {
-    const double x1 = a1[q], y1 = a1[points + q], z1 = a1[2 * points + q], x2 = a2[q], y2 = a2[points + q], z2 = a2[2 * points + q];
-    n[0][q] = y1 * z2 - z1 * y2, n[1][q] = z1 * x2 - x1 * z2, n[2][q] = x1 * y2 - y1 * x2;
-    length[q] = std::sqrt(n[0][q] * n[0][q] + n[1][q] * n[1][q] + n[2][q] * n[2][q]);
-    length_1[q] = std::sqrt(x1 * x1 + y1 * y1 + z1 * z1);
-    length_2[q] = std::sqrt(x2 * x2 + y2 * y2 + z2 * z2);
+Worst worst(const Tangents& a1, const Tangents& a2) {
+  Tangents n;
+  for (int c = 0; c < 3; ++c) {
+    const int d = (c + 1) % 3, e = (c + 2) % 3;
+    n.col(c) = a1.col(d) * a2.col(e) - a1.col(e) * a2.col(d);
   }
-  const auto sum = [](const double* numbers) { return std::accumulate(numbers, numbers + points, 0.); };
-  const Vec3 direction = Vec3(sum(n[0]), sum(n[1]), sum(n[2])).normalized();
-  for (int q = 0; q < points; ++q) along[q] = n[0][q] * direction[0] + n[1][q] * direction[1] + n[2][q] * direction[2];
-  const double* const least = std::min_element(along, along + points);
-  const double ratio = sum(length_1) / sum(length_2);
-  return {points * *least / sum(length), std::max(ratio, 1 / ratio), static_cast<int>(least - along)};
+  const auto lengths = [](const Tangents& a) { return a.matrix().rowwise().norm().sum(); };
+  const Vec3 direction = n.colwise().sum().matrix().transpose().normalized();
+  int least;
+  const double smallest = (n.matrix() * direction).minCoeff(&least), ratio = lengths(a1) / lengths(a2);
+  return {points * smallest / lengths(n), std::max(ratio, 1 / ratio), least};
 }
 
 }  // namespace
@@ -83,12 +79,13 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
   for (int a = 0; a < net.rows(); ++a)
     if (!net.row(a).allFinite()) throw RunFailure("control point " + std::to_string(a) + " is no longer a number");
   Quality result;
-  double bezier[3 * most], a1[3 * points], a2[3 * points];
-  for (const Block& block : map.blocks().blocks) {
+  double bezier[3 * most];
+  Tangents a1, a2;
+  for (const Block& block : map.blocks()) {
     const int n_b = (block.degree + 1) * (block.degree + 1);
     const Table derivatives = table(block.degree);
-    const auto at_points = [&](const std::vector<double>& rows, double* out) {
-      three_sums(points, n_b, rows.data(), bezier, out);
+    const auto at_points = [&](const auto& rows, Tangents& out) {
+      three_sums(points, n_b, rows.data(), bezier, out.data());
     };
     for (const int e : elements) {
       if (map.degree(e) != block.degree) continue;
@@ -113,10 +110,9 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
 
 void require_sound(const Quality& quality, double least) {
   if (quality.jacobian_ratio > least) return;
-  std::ostringstream text;
-  text << "element " << quality.folded_element << " is folded at (" << quality.folded_place[0] << ", " << quality.folded_place[1] << ", "
-       << quality.folded_place[2] << "): its smallest Jacobian is " << quality.jacobian_ratio << " times the mean";
-  throw RunFailure(text.str());
+  const Vec3& x = quality.folded_place;
+  throw RunFailure(formatted("element %d is folded at (%g, %g, %g): its smallest Jacobian is %g times the mean", quality.folded_element, x[0], x[1],
+                             x[2], quality.jacobian_ratio));
 }
 
 }  // namespace tanktread::surface

@@ -5,38 +5,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "spline/places.hpp"
 #include "surface/bezier_points.hpp"
 
 namespace tanktread::surface {
 namespace {
 
 constexpr double exact = 1e-10, close = 1e-9;
-
-/// Places in space, to be found again.
-class Places {
- public:
-  Places(std::vector<Vec3> places, double tolerance) : places_(std::move(places)), tolerance_(tolerance) {
-    for (std::size_t i = 0; i < places_.size(); ++i) order_.emplace_back(along(places_[i]), static_cast<int>(i));
-    std::ranges::sort(order_);
-  }
-
-  const std::vector<Vec3>& all() const { return places_; }
-
-  /// The one at x, or -1.
-  int at(const Vec3& x) const {
-    const double from = along(x) - 2 * tolerance_;
-    for (auto i = std::ranges::lower_bound(order_, std::pair(from, 0)); i != order_.end() && i->first <= from + 4 * tolerance_; ++i)
-      if ((places_[i->second] - x).norm() <= tolerance_) return i->second;
-    return -1;
-  }
-
- private:
-  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // no direction of a mesh
-
-  std::vector<Vec3> places_;
-  double tolerance_;
-  std::vector<std::pair<double, int>> order_;
-};
 
 /// One of the eight maps of the unit square onto itself: coordinates exchanged, then turned around.
 struct Turn {
@@ -165,7 +140,7 @@ class Search {
   double size_;
   BezierMap map_;
   std::vector<Eigen::MatrixX3d> bezier_;  // an element
-  Places points_, centres_;
+  spline::Places points_, centres_;
   Image image_;
   std::vector<Turn> turn_;
 };
@@ -266,6 +241,41 @@ Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, 
     group = joined(std::move(group), *found);
   }
   return {generators, *nets[0]};
+}
+
+bool FundamentalElements::whole() const {
+  return std::ranges::all_of(weight, [](double w) { return w == 1; });
+}
+
+FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_elements, const std::function<std::span<const int>(int)>& points) {
+  FundamentalElements result;
+  const auto inside = [&](int e) { return std::ranges::count_if(points(e), [&](int a) { return symmetry.source()[a] == a; }); };
+  for (int e = 0; e < n_elements; ++e) {
+    int same = 1, best = e;
+    for (const Image& g : symmetry.images()) {
+      const int other = g.element[e];
+      same += other == e;
+      if (const auto n = inside(other), most = inside(best); n > most || (n == most && other < best)) best = other;
+    }
+    if (best != e) continue;
+    result.element.push_back(e);
+    result.weight.push_back(1. / same);
+  }
+  return result;
+}
+
+/// What an element adds at p, its image g adds, reflected, at g p; and as many images of p are its source as leave that in place.
+void fold(const Symmetry& symmetry, Net& sums) {
+  if (symmetry.order() == 1) return;
+  const std::vector<int>& source = symmetry.source();
+  std::vector<int> images(source.size(), 0);
+  for (const int a : source) ++images[a];
+  const auto added = [&](int p) -> Eigen::RowVector3d {
+    return symmetry.order() / images[source[p]] * symmetry.signs().row(p).cwiseProduct(sums.row(p));
+  };
+  for (const int a : symmetry.fundamental()) sums.row(a) = added(a);
+  for (int p = 0; p < static_cast<int>(source.size()); ++p)
+    if (source[p] != p) sums.row(source[p]) += added(p);
 }
 
 }  // namespace tanktread::surface

@@ -1,5 +1,6 @@
 #pragma once
-// Reflections that leave a surface and its spline space as they are.
+// Reflections that leave a surface and its spline space as they are, and sums over such a surface from one of each set of elements that are images
+// of one another.
 
 #include <functional>
 #include <optional>
@@ -69,5 +70,19 @@ class Symmetry {
 /// The largest group of images of the space and the nets that `keeps` admits (say because they are symmetries of the flow, or of a wall); it is
 /// asked before the elements are looked at, and sees where the points go.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
+
+/// One of each set, the one with most fundamental points, ascending; and 1 over the number of images (the identity is one) that leave it in place.
+struct FundamentalElements {
+  std::vector<int> element;
+  std::vector<double> weight;
+
+  bool whole() const;  ///< none is an image of itself
+};
+
+/// `points(e)`: the control points of element e.
+FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_elements, const std::function<std::span<const int>(int)>& points);
+
+/// From what fundamental elements, each with its weight, add to all rows of a symmetric field, the rows of the fundamental points of the field.
+void fold(const Symmetry& symmetry, Net& sums);
 
 }  // namespace tanktread::surface

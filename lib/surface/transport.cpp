@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
+#include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
-#include "surface/integrals_kernel.hpp"
 #include "surface/patch.hpp"
-#include "surface/sampling.hpp"
 
 namespace tanktread::surface {
 
@@ -64,64 +64,38 @@ struct Circuit {
   }
 };
 
-/// The Bezier points of one element of a net.
-class Element {
- public:
-  Element(const BezierMap& map, const Net& net, int element) : degree_(map.degree(element)) { map.points(element, net, points_); }
-  Patch patch() const { return {degree_, points_}; }
+constexpr int n_harmonics = 16;  // solid harmonics of degree three at most
+using Values = Eigen::Matrix<double, n_harmonics, 1>;
 
- private:
-  int degree_;
-  double points_[3 * (spline::max_degree + 1) * (spline::max_degree + 1)];
+Values harmonics(const Vec3& at) {
+  const double x = at[0], y = at[1], z = at[2], xx = x * x, yy = y * y, zz = z * z;
+  Values h;
+  h << 1, x, y, z, x * y, y * z, z * x, xx - yy, 2 * zz - xx - yy, x * (xx - 3 * yy), y * (3 * xx - yy), z * (xx - yy), x * y * z,
+      x * (4 * zz - xx - yy), y * (4 * zz - xx - yy), z * (2 * zz - 3 * xx - 3 * yy);
+  return h;
+}
+
+/// Integrals over the surface: of products of harmonics, harmonics times v.n, harmonics times n; the last of these with x/R are 3 V/R.
+struct Sums {
+  Eigen::Map<Eigen::Matrix<double, n_harmonics, n_harmonics>> products;
+  Eigen::Map<Values> motion;
+  Eigen::Map<Eigen::Matrix<double, n_harmonics, 3>> normals;
+  static constexpr int size = n_harmonics * (n_harmonics + 4);
+  explicit Sums(double* numbers)
+      : products(numbers), motion(numbers + n_harmonics * n_harmonics), normals(numbers + n_harmonics * (n_harmonics + 1)) {}
 };
 
-/// The Bezier points of a register of elements of one degree; a short group repeats its last.
-kernel::Lanes in_lanes(const BezierMap& map, const Net& net, std::span<const int> group) {
-  kernel::Lanes packed;
-  const std::size_t lanes = pack_lanes();
-  for (size_t l = 0; l < lanes; ++l) {
-    const Element element(map, net, group[std::min(l, group.size() - 1)]);
-    for (int k = 0; k < 3 * element.patch().n_bezier(); ++k)
-      packed.value[static_cast<size_t>(k) * lanes + l] = element.patch().points[k];
-  }
-  return packed;
-}
-
-/// Whether the element, which lies in the hull of its Bezier points, can come as near to the plane x2 = height.
-bool may_meet(const Patch& patch, double height, double near) {
-  const auto [low, high] = std::minmax_element(patch.points + patch.n_bezier(), patch.points + 2 * patch.n_bezier());
-  return *low <= height + near && height - near <= *high;
-}
-
 }  // namespace
-
-Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
-  const Eigen::RowVector3d mean = x.colwise().mean();
-  const Net y = x.rowwise() - mean;  // about its own mean, as integrals by the divergence theorem lose digits where the origin is far away
-  double volume = 0, flux = 0;
-  Vec3 first = Vec3::Zero(), carried = Vec3::Zero();
-  const std::size_t lanes = pack_lanes();
-  for (const Block& block : map.blocks().blocks)
-    for (size_t begin = 0; begin < block.elements.size(); begin += lanes) {
-      const std::span group = std::span(block.elements).subspan(begin, std::min(lanes, block.elements.size() - begin));
-      kernel::Transport part;
-      kernel::transport(block.degree, in_lanes(map, y, group), in_lanes(map, v, group), part);
-      for (size_t l = 0; l < group.size(); ++l) {
-        volume += part.volume[l], flux += part.flux[l];
-        for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], carried[c] += part.carried[c][l];
-      }
-    }
-  return (carried - flux / volume * first) / volume;
-}
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
   const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // where rounding shall not decide on a side
+  const Patches places(map, x);
   for (int e = 0; e < map.n_elements(); ++e) {
-    const Element places(map, x, e);
-    if (!may_meet(places.patch(), centre[1], in_plane)) continue;
-    const Grid at = sample(places.patch()), moves = sample(Element(map, v, e).patch());
-    const Grid before = unstressed ? sample(Element(map, *unstressed, e).patch()) : at;
+    const auto [low, high] = hull(places[e], 1);
+    if (low > centre[1] + in_plane || high < centre[1] - in_plane) continue;
+    const auto sampled = [&](const Net& net) { return sample(Patches(map, net, {&e, 1})[0]); };
+    const Grid at = sample(places[e]), moves = sampled(v), before = unstressed ? sampled(*unstressed) : at;
     const auto corner = [&](size_t j, size_t i) {
       const double height = at[j][i][1] - centre[1];
       return Corner{at[j][i], moves[j][i], before[j][i], std::abs(height) < in_plane ? 0 : height};
@@ -133,6 +107,38 @@ Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const N
       }
   }
   return circuit.treading();
+}
+
+std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, const Net& v, double radius, std::span<const int> elements) {
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(3);
+  const Vec3 mean = x.colwise().mean().transpose();
+  std::vector<double> numbers(Sums::size, 0.);
+  Sums sums(numbers.data());
+  constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
+  double points[most], velocities[most];
+  for (const int e : elements) {
+    map.points(e, x, points);
+    map.points(e, v, velocities);
+    for (int q = 0; q < rule.size(); ++q) {
+      const Jet at = jet({map.degree(e), points}, rule.s[q], rule.t[q]);
+      const Vec3 normal = rule.weights[q] * at.s.cross(at.t), velocity = place({map.degree(e), velocities}, rule.s[q], rule.t[q]);
+      const Values h = harmonics((at.x - mean) / radius);
+      sums.products += normal.norm() * h * h.transpose();
+      sums.motion += velocity.dot(normal) * h;
+      sums.normals += h * normal.transpose();
+    }
+  }
+  return numbers;
+}
+
+double shape_velocity(std::span<const double> sums, bool along_x1) {
+  std::vector<double> numbers(sums.begin(), sums.end());
+  const Sums all(numbers.data());
+  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R times the identity, but for the rule; with them a translation has no rest
+  Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
+  if (along_x1) frame.tail<2>().setZero();
+  const Values motion = all.motion - all.normals * frame;
+  return std::sqrt(std::max(0.0, motion.dot(all.products.ldlt().solve(motion))) / all.products(0, 0));
 }
 
 }  // namespace tanktread::surface

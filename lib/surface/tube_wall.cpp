@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "spline/knots.hpp"
+#include "spline/bernstein.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -48,44 +48,32 @@ struct Line {
         std::array<double, 5> k;
         std::copy_n(extended.begin() + e + a, 5, k.begin());
         const std::array<double, 4> values = spline::b_spline_on(k, extended[e + 3], extended[e + 4]);
-        for (int b = 0; b < 4; ++b) piece.extraction(a, b) = values[static_cast<std::size_t>(b)];
-        piece.functions[static_cast<std::size_t>(a)] = number(e + a);
+        for (int b = 0; b < 4; ++b) piece.extraction(a, b) = values[b];
+        piece.functions[a] = number(e + a);
       }
       pieces.push_back(piece);
     }
   }
 };
 
-/// Function i has its middle knot at knots[i].
-void add_closed(Line& line, const std::vector<double>& knots) {
-  const int m = static_cast<int>(knots.size()) - 1, first = static_cast<int>(line.pieces.size()), offset = line.n;
+/// Closed: function i has its middle knot at knots[i]. Open: end knots fourfold; `inwards`: sites at the ends go half of the way to the next ones.
+void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards) {
+  const int m = static_cast<int>(knots.size()) - 1, n = closed ? m : m + 3, first = static_cast<int>(line.pieces.size()), offset = line.n;
   const double period = knots[m] - knots[0];
-  std::vector<double> extended;
-  for (int k = -3; k <= m + 3; ++k) extended.push_back(knots[(k + m) % m] + period * std::floor(static_cast<double>(k) / m));
-  line.add_pieces(extended, m, [&](int j) { return offset + (j - 1 + m) % m; });
-  for (int i = 0; i < m; ++i) {
-    double u = (extended[i + 2] + extended[i + 3] + extended[i + 4]) / 3;
-    if (u < knots[0] - 1e-9 * period) u += period;
-    line.add_site(u, knots, first, true);
+  std::vector<double> extended, greville;
+  for (int k = -3; k <= m + 3; ++k)
+    extended.push_back(closed ? knots[(k + m) % m] + period * std::floor(static_cast<double>(k) / m) : knots[std::clamp(k, 0, m)]);
+  line.add_pieces(extended, m, [&](int j) { return offset + (closed ? (j - 1 + m) % m : j); });
+  for (int i = closed ? 1 : 0; i < n + closed; ++i) {
+    const double u = (extended[i + 1] + extended[i + 2] + extended[i + 3]) / 3;
+    greville.push_back(closed && u < knots[0] - 1e-9 * period ? u + period : u);
   }
-  line.n += m;
-}
-
-/// End knots fourfold. `inwards`: the sites at the ends go half of the way to the next ones.
-void add_open(Line& line, const std::vector<double>& knots, bool inwards) {
-  const int m = static_cast<int>(knots.size()) - 1, first = static_cast<int>(line.pieces.size()), offset = line.n;
-  std::vector<double> extended(3, knots[0]);
-  extended.insert(extended.end(), knots.begin(), knots.end());
-  extended.insert(extended.end(), 3, knots[m]);
-  line.add_pieces(extended, m, [&](int j) { return offset + j; });
-  std::vector<double> greville;
-  for (int i = 0; i < m + 3; ++i) greville.push_back((extended[i + 1] + extended[i + 2] + extended[i + 3]) / 3);
   if (inwards) {
     greville[0] = (greville[0] + greville[1]) / 2;
-    greville[m + 2] = (greville[m + 2] + greville[m + 1]) / 2;
+    greville[n - 1] = (greville[n - 1] + greville[n - 2]) / 2;
   }
-  for (const double u : greville) line.add_site(u, knots, first, false);
-  line.n += m + 3;
+  for (const double u : greville) line.add_site(u, knots, first, closed);
+  line.n += n;
 }
 
 /// Integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x.
@@ -115,13 +103,13 @@ spline::Space product(const Line& along, const Line& around) {
   const int m = static_cast<int>(around.pieces.size());
   for (std::size_t i = 0; i < along.pieces.size(); ++i)
     for (int k = 0; k < m; ++k) {
-      const Line::Piece &s = along.pieces[i], &t = around.pieces[static_cast<std::size_t>(k)];
+      const Line::Piece &s = along.pieces[i], &t = around.pieces[k];
       spline::Element element;
       element.extraction.resize(16, 16);
       element.origin = {static_cast<double>(i), static_cast<double>(k)};
       for (int b = 0; b < 4; ++b)
         for (int a = 0; a < 4; ++a) {
-          element.points.push_back(s.functions[static_cast<std::size_t>(a)] * around.n + t.functions[static_cast<std::size_t>(b)]);
+          element.points.push_back(s.functions[a] * around.n + t.functions[b]);
           for (int q = 0; q < 4; ++q)
             for (int p = 0; p < 4; ++p) element.extraction(4 * b + a, 4 * q + p) = s.extraction(a, p) * t.extraction(b, q);
         }
@@ -143,14 +131,14 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
   const double width = std::max(section.radius(), half_length);
   const std::vector<double> knots = graded_knots(length, options.axial_elements, options.grading, width);
   Line along, around;
-  add_open(along, knots, false);
+  add(along, knots, false, false);
   TubeWall wall{{}, {}, section.spline(options.azimuthal_elements), -length / 2, length / 2, 0, 0, 0};
   std::vector<Vec2> ring;
   for (int k = 0; k < wall.outline.n_sides(); ++k) {
     const CubicCurve& side = std::get<CubicCurve>(wall.outline.side(k));
     const std::vector<Vec2> points = control_points(side);
     ring.insert(ring.end(), points.begin(), points.end());
-    side.closed ? add_closed(around, side.breaks) : add_open(around, side.breaks, true);
+    add(around, side.breaks, side.closed, !side.closed);
   }
   wall.space = product(along, around);
   wall.n_along = along.n, wall.n_around = around.n;
@@ -161,7 +149,7 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
   for (int i = 0; i < along.n; ++i) {
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // the control points of x1 itself
     for (int k = 0; k < around.n; ++k)
-      wall.net.row(i * around.n + k) << place, ring[static_cast<std::size_t>(k)][0], ring[static_cast<std::size_t>(k)][1];
+      wall.net.row(i * around.n + k) << place, ring[k][0], ring[k][1];
   }
   const int middle = options.axial_elements / 2;
   wall.widest = std::max(knot(middle + 1) - knot(middle), wall.outline.length() / options.azimuthal_elements);

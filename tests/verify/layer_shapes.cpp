@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "spline/extraction.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"

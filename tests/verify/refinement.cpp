@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "spline/coarsening.hpp"
+#include "spline/refinement.hpp"
 #include "spline/polar.hpp"
-#include "spline/projection.hpp"
+#include "spline/transfer.hpp"
 #include "tests/unit/spline/sequences.hpp"
 
 namespace tanktread::spline {

@@ -9,7 +9,7 @@
 #include "coupling/capsule.hpp"
 #include "coupling/rigid_body.hpp"
 #include "spline/extraction.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "coupling/capsule.hpp"
 #include "spline/extraction.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"

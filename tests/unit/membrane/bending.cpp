@@ -1,4 +1,4 @@
-#include "membrane/material.hpp"
+#include "membrane/laws.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-#include "spline/catmull_clark.hpp"
+#include "spline/extraordinary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 
 #include "samples.hpp"
 #include "spline/extraction.hpp"
-#include "spline/extraordinary_g1.hpp"
 #include "spline/locate.hpp"
 
 namespace tanktread::spline {

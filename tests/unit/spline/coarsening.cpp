@@ -1,4 +1,4 @@
-#include "spline/coarsening.hpp"
+#include "spline/refinement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "sequences.hpp"
 #include "spline/locate.hpp"
-#include "spline/projection.hpp"
+#include "spline/transfer.hpp"
 
 namespace tanktread::spline {
 namespace {

@@ -10,7 +10,7 @@
 #include "samples.hpp"
 #include "spline/basis.hpp"
 #include "spline/bernstein.hpp"
-#include "spline/extraordinary_g1.hpp"
+#include "spline/extraordinary.hpp"
 #include "spline/locate.hpp"
 
 namespace tanktread::spline {

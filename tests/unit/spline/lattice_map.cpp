@@ -1,11 +1,10 @@
 // Maps of a lattice onto itself, and meshes that keep them.
 
-#include "spline/lattice_map.hpp"
+#include "spline/refinement.hpp"
 
 #include <gtest/gtest.h>
 
 #include "sequences.hpp"
-#include "spline/coarsening.hpp"
 #include "spline/polar.hpp"
 
 namespace tanktread::spline {

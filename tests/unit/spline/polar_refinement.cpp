@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "sequences.hpp"
-#include "spline/coarsening.hpp"
+#include "spline/refinement.hpp"
 #include "spline/polar.hpp"
-#include "spline/projection.hpp"
+#include "spline/transfer.hpp"
 
 namespace tanktread::spline {
 namespace {

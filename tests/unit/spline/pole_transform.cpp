@@ -1,4 +1,4 @@
-#include "spline/pole_transform.hpp"
+#include "spline/polar.hpp"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "sequences.hpp"
-#include "spline/knots.hpp"
+#include "spline/tile_functions.hpp"
 #include "spline/locate.hpp"
 
 namespace tanktread::spline {

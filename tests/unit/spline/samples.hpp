@@ -26,6 +26,13 @@ inline Eigen::MatrixXd net_of(const Element& e, const Net& net) {
   return out;
 }
 
+/// Lattice vertices at the corners of a rectangle, outward orientation.
+inline std::array<int, 4> corners(const Lattice& lattice, const Rectangle& r) {
+  std::array<int, 4> out;
+  for (int k = 0; k < 4; ++k) out[k] = sides(lattice, r)[k].vertex;
+  return out;
+}
+
 inline Vec3 value_at(const Space& s, const Net& net, const Site& site) {
   const Element& e = s.elements[site.element];
   return (basis(e, site.s, site.t, 0).value.transpose() * net_of(e, net)).transpose();

@@ -10,10 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "samples.hpp"
-#include "spline/coarsening.hpp"
+#include "spline/refinement.hpp"
 #include "spline/extended_mesh.hpp"
 #include "spline/extraction.hpp"
-#include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
 #include "suitability.hpp"
 

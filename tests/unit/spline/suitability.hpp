@@ -2,7 +2,6 @@
 // What makes the splines of a T-mesh linearly independent and nested, counted afresh.
 
 #include "spline/extended_mesh.hpp"
-#include "spline/extraordinary_zone.hpp"
 
 namespace tanktread::spline {
 

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
-#include "spline/extension.hpp"
-#include "spline/knots.hpp"
+#include "spline/bernstein.hpp"
+#include "spline/tile_functions.hpp"
 
 namespace tanktread::spline {
 namespace {

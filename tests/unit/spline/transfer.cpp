@@ -5,7 +5,6 @@
 #include "samples.hpp"
 #include "spline/extraction.hpp"
 #include "spline/locate.hpp"
-#include "spline/projection.hpp"
 #include "spline/refinement.hpp"
 
 namespace tanktread::spline {

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "spline/extraction.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 #include "tests/layers.hpp"

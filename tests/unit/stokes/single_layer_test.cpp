@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "spline/extraction.hpp"
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 #include "tests/layers.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include "surface/extremes.hpp"
 #include "surface/geometry.hpp"
 #include "surfaces.hpp"
 

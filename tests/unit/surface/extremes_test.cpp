@@ -1,4 +1,4 @@
-#include "surface/extremes.hpp"
+#include "surface/geometry.hpp"
 
 #include <numbers>
 #include <numeric>
@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
-#include "surface/geometry.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {

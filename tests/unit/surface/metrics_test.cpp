@@ -7,7 +7,7 @@
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
-#include "surface/polar_sphere.hpp"
+#include "surface/shapes.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {

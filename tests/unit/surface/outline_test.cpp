@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "base/errors.hpp"
-#include "spline/knots.hpp"
+#include "spline/bernstein.hpp"
 #include "tests/outlines.hpp"
 
 namespace tanktread::surface {

@@ -1,4 +1,4 @@
-#include "surface/polar_sphere.hpp"
+#include "surface/shapes.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,6 @@
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
 #include "surface/patch.hpp"
-#include "surface/shapes.hpp"
 
 namespace tanktread::surface {
 namespace {

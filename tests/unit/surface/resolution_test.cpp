@@ -1,4 +1,4 @@
-#include "surface/resolution.hpp"
+#include "surface/metrics.hpp"
 
 #include <cmath>
 
@@ -10,7 +10,6 @@
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
-#include "surface/polar_sphere.hpp"
 #include "surface/shapes.hpp"
 #include "surfaces.hpp"
 

@@ -1,6 +1,6 @@
 // The speed of a change of shape.
 
-#include "surface/shape_velocity.hpp"
+#include "surface/transport.hpp"
 
 #include <cmath>
 #include <numeric>

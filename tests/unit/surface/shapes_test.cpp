@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "quadrature/gauss.hpp"
-#include "surface/cube_sphere.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 #include "surfaces.hpp"

@@ -7,9 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "spline/refinement.hpp"
-#include "surface/fundamental.hpp"
 #include "surface/geometry.hpp"
-#include "surface/polar_sphere.hpp"
+#include "surface/shapes.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {

@@ -1,4 +1,4 @@
-#include "spline/stacked.hpp"
+#include "spline/space.hpp"
 
 namespace tanktread::spline {
 

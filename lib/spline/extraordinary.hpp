@@ -1,5 +1,8 @@
 #pragma once
-// Constrained Bezier extraction at an extraordinary point of valence 3: bi-quartic one-ring elements, G1 across the spokes.
+// The surface around an extraordinary point of valence 3: bi-quartic one-ring elements, G1 across the spokes, by constrained Bezier extraction; or
+// the limit surface of Catmull and Clark's subdivision in bicubic pieces.
+
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -26,5 +29,22 @@ Eigen::MatrixXd averaged_bicubic();
 /// This is the full least-squares form of the extraction of the paper's reference [70]; the published data leave out the inner point (2, 2)
 /// for the outer points of the ring and so lose the partition of unity.
 Eigen::MatrixXd constrained_biquartic();
+
+/// One bicubic piece of face 0 of a one-ring (the point at u = v = 0, the face the unit square).
+struct Piece {
+  double u, v, size;           ///< lower left corner, side
+  Eigen::MatrixXd extraction;  ///< shape (19, 16): points in the order of OneRing, column 4 j + i with i along u
+};
+
+/// `depth` rings of three pieces of sides 1/2, 1/4, ... 2^-depth, which are exactly the limit surface, and one averaged bicubic on the
+/// square of side 2^-depth at the point: 3 depth + 1 pieces. Coefficients are >= 0 and columns sum to 1.
+///
+/// Masks (Catmull and Clark 1978): face = mean; edge = (two ends + two face points) / 4; vertex = (Q + 2 R + (N - 3) P) / N with Q the mean
+/// of the face points and R that of the edge midpoints around it. C1 at the point, C2 elsewhere. Spaces are nested when the averaged square
+/// has the same side in both (a *depth* counted from the face would not be: it changes the surface by 0.41^depth).
+std::vector<Piece> catmull_clark_pieces(int depth);
+
+/// One subdivision of the 19 points of the ring: the ring of half the spacing. Shape (19, 19).
+Eigen::MatrixXd catmull_clark_subdivision();
 
 }  // namespace tanktread::spline

@@ -1,0 +1,37 @@
+#pragma once
+// Places in space, to be found again.
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace tanktread::spline {
+
+class Places {
+ public:
+  Places(std::vector<Vec3> places, double tolerance) : places_(std::move(places)), tolerance_(tolerance) {
+    for (std::size_t i = 0; i < places_.size(); ++i) order_.emplace_back(along(places_[i]), static_cast<int>(i));
+    std::ranges::sort(order_);
+  }
+
+  const std::vector<Vec3>& all() const { return places_; }
+
+  /// The number of the first one within the tolerance of x, or -1.
+  int at(const Vec3& x) const {
+    const double from = along(x) - 2 * tolerance_;
+    for (auto i = std::ranges::lower_bound(order_, std::pair(from, 0)); i != order_.end() && i->first <= from + 4 * tolerance_; ++i)
+      if ((places_[i->second] - x).norm() <= tolerance_) return i->second;
+    return -1;
+  }
+
+ private:
+  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // no direction of a mesh
+
+  std::vector<Vec3> places_;
+  double tolerance_;
+  std::vector<std::pair<double, int>> order_;
+};
+
+}  // namespace tanktread::spline

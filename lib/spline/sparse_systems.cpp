@@ -1,0 +1,74 @@
+#include "spline/sparse_systems.hpp"
+
+#include <algorithm>
+
+#include <Eigen/IterativeLinearSolvers>
+
+namespace tanktread::spline {
+
+namespace {
+
+// Measured with the mass matrices of spheres of 3,458 and 13,826 control points: entries below 1e-2 of a row dropped take 7 iterations, below 1e-4
+// 3, in a shorter time; more than twice as many entries as the matrix has gain nothing.
+constexpr double dropped = 1e-4;
+constexpr int fill = 2;
+
+}  // namespace
+
+/// Column by column: the elements around an unknown, then a dense accumulator.
+Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local) {
+  struct Place {
+    std::size_t element;
+    Eigen::Index row;
+  };
+  std::vector<std::vector<Place>> around(n);
+  for (std::size_t k = 0; k < local.size(); ++k)
+    for (std::size_t i = 0; i < local[k].unknowns.size(); ++i) around[local[k].unknowns[i]].push_back({k, Eigen::Index(i)});
+
+  Eigen::SparseMatrix<double> out(n, n);
+  out.reserve(Eigen::VectorXi::Constant(n, 50));
+  std::vector<double> sum(n, 0.0);
+  std::vector<int> rows, last(n, -1);  // last: the column that a row was met in
+  for (int j = 0; j < n; ++j) {
+    rows.clear();
+    for (const auto& [element, row] : around[j]) {
+      const auto& [unknowns, values, factor] = local[element];
+      const double* column = values->col(row).data();
+      for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        const int r = unknowns[i];
+        if (last[r] != j) rows.push_back(r), sum[r] = 0;
+        last[r] = j;
+        sum[r] += factor * column[i];
+      }
+    }
+    std::sort(rows.begin(), rows.end());
+    for (int r : rows) out.insert(r, j) = sum[r];
+  }
+  out.makeCompressed();
+  return out;
+}
+
+struct IncompleteSolver::Impl {
+  Eigen::BiCGSTAB<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::IncompleteLUT<double>> solver;
+};
+
+IncompleteSolver::IncompleteSolver() : impl_(std::make_unique<Impl>()) {
+  impl_->solver.preconditioner().setDroptol(dropped);
+  impl_->solver.preconditioner().setFillfactor(fill);
+  impl_->solver.setTolerance(1e-14);
+  impl_->solver.setMaxIterations(30);
+}
+IncompleteSolver::~IncompleteSolver() = default;
+IncompleteSolver::IncompleteSolver(IncompleteSolver&&) noexcept = default;
+
+bool IncompleteSolver::factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a) {
+  impl_->solver.compute(a);
+  return impl_->solver.info() == Eigen::Success;
+}
+
+Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b) const { return impl_->solver.solve(b); }
+Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const {
+  return impl_->solver.solveWithGuess(b, start);
+}
+
+}  // namespace tanktread::spline
