@@ -13,9 +13,9 @@ import numpy
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.cm import ScalarMappable
 
-import read
 import shape
 import style
+import tanktread
 from deformation import unbroken
 from style import plt
 
@@ -34,7 +34,7 @@ def main():
     parser.add_argument("--frame", type=float, metavar="TIME", help="one picture of this time instead, a PNG")
     arguments = parser.parse_args()
 
-    run = read.run(arguments.results)
+    run = tanktread.run(arguments.results)
     every = [shot.scaled(run) for shot in run.snapshots()]
     shots = every if arguments.frame is None else [run.snapshot_at(arguments.frame).scaled(run)]
     field = arguments.field

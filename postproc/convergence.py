@@ -14,8 +14,8 @@ import needs  # before what it looks for
 import numpy
 
 import literature
-import read
 import style
+import tanktread
 from style import plt
 
 
@@ -48,7 +48,7 @@ def main():
     if not pathlib.Path(arguments.curve).is_file():
         sys.exit(f"{arguments.curve} is no file: give a table with named columns")
     curve = numpy.genfromtxt(arguments.curve, delimiter=",", names=True)
-    runs = sorted((Errors(read.run(directory), curve, arguments.series) for directory in arguments.results), key=lambda one: one.points)
+    runs = sorted((Errors(tanktread.run(directory), curve, arguments.series) for directory in arguments.results), key=lambda one: one.points)
     families = sorted({one.family for one in runs})
     color = dict(zip(families, style.RUNS * len(families)))
 
@@ -71,7 +71,7 @@ def draw_times(axis, runs):
     for one, shade in zip(runs, shades):
         axis.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
     axis.set_ylim(0.1 * min(numpy.median(one.errors) for one in runs), 30 * runs[0].largest)  # room for the legend
-    axis.set_xlabel(read.time_label([one.run for one in runs]))
+    axis.set_xlabel(tanktread.time_label([one.run for one in runs]))
     axis.set_ylabel("error")
     axis.legend(loc="upper left", ncols=2)
 

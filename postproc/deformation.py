@@ -8,8 +8,8 @@ import needs  # before what it looks for
 import numpy
 
 import literature
-import read
 import style
+import tanktread
 from style import plt
 
 EXPECTED = "expected by the deck"
@@ -23,7 +23,7 @@ def main():
     parser.add_argument("--deformation", default="taylor_inertia", choices=["taylor_inertia", "taylor_surface"], help="which Taylor parameter")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in arguments.results]
+    runs = [tanktread.run(directory) for directory in arguments.results]
     for run in runs:
         if not run.particles:
             run.require("taylor_inertia", "taylor_surface", "inclination")
@@ -44,7 +44,7 @@ def main():
     upper.set_title(title(runs))
     upper.legend(loc="lower right") if len(runs) == 1 else upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     lower.set_ylabel("inclination, degrees")
-    lower.set_xlabel(read.time_label(runs))
+    lower.set_xlabel(tanktread.time_label(runs))
     lower.set_xlim(left=0)
     style.save(figure, arguments.output)
 

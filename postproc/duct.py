@@ -8,8 +8,8 @@ import needs  # before what it looks for
 import h5py
 import numpy
 
-import read
 import style
+import tanktread
 from style import plt
 
 STEP = 0.2  # between contours, in mean velocities
@@ -22,7 +22,7 @@ def main():
     parser.add_argument("--no-path", action="store_true", help="without the path of the centroid")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in arguments.results]
+    runs = [tanktread.run(directory) for directory in arguments.results]
     ducts = [duct(run.directory) for run in runs]
     top = max(d["maximum"][2] / d["mean_velocity"] for d in ducts)
     places = numpy.concatenate([d["outline"] for d in ducts])

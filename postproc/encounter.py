@@ -11,8 +11,8 @@ import sys
 import needs  # before what it looks for
 import numpy
 
-import read
 import style
+import tanktread
 from style import plt
 
 
@@ -26,7 +26,7 @@ def main():
     arguments = parser.parse_args()
 
     figure, (path, gap, deformation) = plt.subplots(3, 1, figsize=(6.4, 8), sharex=True)
-    for run, color in zip([read.run(where) for where in arguments.results], style.RUNS * len(arguments.results)):
+    for run, color in zip([tanktread.run(where) for where in arguments.results], style.RUNS * len(arguments.results)):
         first, second = arguments.pair or pair(run)
         run.require(f"{first}/centroid_x1", f"{second}/centroid_x1")
         dx, dz = ((run.series[f"{first}/centroid_x{k}"] - run.series[f"{second}/centroid_x{k}"]) / run.radius for k in (1, 3))

@@ -12,9 +12,9 @@ import numpy
 from matplotlib.collections import LineCollection
 
 import meshes
-import read
 import shape
 import style
+import tanktread
 from style import plt
 
 
@@ -26,7 +26,7 @@ def main():
     parser.add_argument("--field", default="traction", help="field along the section (default: %(default)s)")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in ([arguments.refined, *arguments.fixed] if arguments.refined else made())]
+    runs = [tanktread.run(directory) for directory in ([arguments.refined, *arguments.fixed] if arguments.refined else made())]
     end = min(run.series["time"][-1] for run in runs)
     shots = [run.snapshot_at(end).scaled(run) for run in runs]
     names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
@@ -41,7 +41,7 @@ def main():
         shape.draw_surface(axis, shot, arguments.field, norm, colours, *shape.VIEW)
         axis.set_title(name)
     vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
-    words = read.field_label(runs, arguments.field, "|{}|" if vector else "{}")
+    words = tanktread.field_label(runs, arguments.field, "|{}|" if vector else "{}")
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal", label=words)
 
     outline, tip, along = (figure.add_subplot(grid[2, k]) for k in range(3))
@@ -77,9 +77,9 @@ def main():
 
 
 def made():
-    deck = read.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml"
+    deck = tanktread.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml"
     fixed = {"Adaptation/enabled": "false", "Surface/elements per side": 10}
-    return [read.results_of(deck), read.results_of(deck, "fixed_against_refined/fixed", fixed)]
+    return [tanktread.results_of(deck), tanktread.results_of(deck, "fixed_against_refined/fixed", fixed)]
 
 
 def profile(shot, field):

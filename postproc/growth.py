@@ -16,8 +16,8 @@ import sys
 import needs  # before what it looks for
 import numpy
 
-import read
 import style
+import tanktread
 from style import plt
 
 PARTS = [("evaluation s", "whole evaluation"), ("layer far s", "far sum"), ("layer near s", "near elements"), ("layer self s", "own elements"),
@@ -60,7 +60,7 @@ def draw(axis, chosen, key, label, color, least, line="o-"):
 
 def measured():
     """The file that the benchmark writes, which is run when there is none."""
-    path, program = pathlib.Path("results") / "growth.json", read.SOURCE / "build" / "release" / "tests" / "benchmark" / "benchmark"
+    path, program = pathlib.Path("results") / "growth.json", tanktread.SOURCE / "build" / "release" / "tests" / "benchmark" / "benchmark"
     if not path.exists():
         if not program.exists():
             sys.exit(f"{program} does not exist: build it (tests/run does)")

@@ -9,9 +9,9 @@ import argparse
 import needs  # before what it looks for
 import numpy
 
-import read
 import shape
 import style
+import tanktread
 from style import plt
 
 GRID = 12  # facets along a side of a cell where the section is cut
@@ -27,7 +27,7 @@ def main():
     parser.add_argument("--view", type=float, nargs=2, default=shape.VIEW, metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in arguments.results]
+    runs = [tanktread.run(directory) for directory in arguments.results]
     end = runs[0].series["time"][-1]
     times = arguments.times or ([None] if len(runs) > 1 else [0, end / 2, end])
     pairs = [(run, times[-1]) for run in runs] if len(runs) > 1 else [(runs[0], time) for time in times]
@@ -45,7 +45,7 @@ def main():
         points = run.series["n_control_points"][numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1]
         surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
         polar = figure.add_subplot(grid[2, k], projection="polar")
-        unit = run.scale(read.DIMENSIONS.get(arguments.field))[0] / run.scale("length")[0]
+        unit = run.scale(tanktread.DIMENSIONS.get(arguments.field))[0] / run.scale("length")[0]
         reference = arguments.reference and arguments.reference[min(k, len(arguments.reference) - 1)] / unit
         tops.append((draw_variation(polar, shot, arguments.field, reference), polar))
         if reference and (k == 0 or len(set(arguments.reference)) > 1):
@@ -55,7 +55,7 @@ def main():
         polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
     vector = numpy.ndim(shots[0][1].fields[arguments.field]) > 1
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]), orientation="horizontal",
-                    label=read.field_label(runs, arguments.field, "|{}|" if vector else "{}"))
+                    label=tanktread.field_label(runs, arguments.field, "|{}|" if vector else "{}"))
     style.save(figure, arguments.output)
 
 

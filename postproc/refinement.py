@@ -9,8 +9,8 @@ import argparse
 import needs  # before what it looks for
 import numpy
 
-import read
 import style
+import tanktread
 from style import plt
 
 
@@ -22,7 +22,7 @@ def main():
     parser.add_argument("--deformation", default="taylor_inertia", choices=["taylor_inertia", "taylor_surface"], help="which Taylor parameter")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in arguments.results]
+    runs = [tanktread.run(directory) for directory in arguments.results]
     for run in runs:
         run.require("taylor_inertia", "taylor_surface")
     compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
@@ -52,7 +52,7 @@ def main():
     upper.legend(loc="lower right")
     lower.set_ylabel("control points")
     lower.set_ylim(bottom=0)
-    lower.set_xlabel(read.time_label(runs))
+    lower.set_xlabel(tanktread.time_label(runs))
     style.save(figure, arguments.output)
 
 

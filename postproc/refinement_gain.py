@@ -15,9 +15,9 @@ import needs  # before what it looks for
 import numpy
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-import read
 import shape
 import style
+import tanktread
 from style import plt
 
 COSTS = {"points": "control points", "kernel": "kernel evaluations", "seconds": "seconds"}
@@ -63,16 +63,16 @@ def main():
 
 def made():
     """Uniform and refined runs."""
-    deck, short = read.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml", {"Time/final time": 2}
-    uniform = [read.results_of(deck, f"refinement_gain/n{n}", short | {"Adaptation/enabled": "false", "Surface/elements per side": n})
+    deck, short = tanktread.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml", {"Time/final time": 2}
+    uniform = [tanktread.results_of(deck, f"refinement_gain/n{n}", short | {"Adaptation/enabled": "false", "Surface/elements per side": n})
                for n in (6, 8, 11, 15)]
-    refined = [read.results_of(deck, f"refinement_gain/tolerance_{tolerance:g}", short | {"Adaptation/surface tolerance": tolerance})
+    refined = [tanktread.results_of(deck, f"refinement_gain/tolerance_{tolerance:g}", short | {"Adaptation/surface tolerance": tolerance})
                for tolerance in (8e-4, 4e-4, 2e-4)]
     return uniform, refined
 
 
 def result(directory):
-    run = read.run(directory)
+    run = tanktread.run(directory)
     shot = run.snapshot_at(None)
     traction = shape.magnitude(shot.sampled(shot.fields["traction"], 12).reshape(-1, 3)).max()
     return {"name": run.name, "points": run.series["n_control_points"][-1], "seconds": run.series["wall_seconds"][-1],

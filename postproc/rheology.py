@@ -12,8 +12,8 @@ import sys
 import needs  # before what it looks for
 import numpy
 
-import read
 import style
+import tanktread
 from style import plt
 
 
@@ -23,7 +23,7 @@ def main():
     parser.add_argument("-o", "--output", default="rheology.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    runs = [read.run(where) for where in arguments.results]
+    runs = [tanktread.run(where) for where in arguments.results]
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 6.4), sharex=True)
     for run, color in zip(runs, style.RUNS * len(runs)):
         viscosity, n1, n2 = rheology(run)
@@ -35,7 +35,7 @@ def main():
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     lower.set_ylabel("normal stress differences / (μ γ̇ φ)")
-    lower.set_xlabel(read.time_label(runs))
+    lower.set_xlabel(tanktread.time_label(runs))
     lower.legend()
     style.save(figure, arguments.output)
 

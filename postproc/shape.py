@@ -10,9 +10,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 
-import read
 import render
 import style
+import tanktread
 from style import plt
 
 VIEW = [-85, 18]   # azimuth and elevation of the eye, degrees: x1 to the right and x3 up, with hardly a tilt, and a little from above
@@ -28,7 +28,7 @@ def main():
     parser.add_argument("--view", type=float, nargs=2, default=VIEW, metavar=("AZIMUTH", "ELEVATION"), help="where from, in degrees")
     arguments = parser.parse_args()
 
-    runs = [read.run(directory) for directory in arguments.results]
+    runs = [tanktread.run(directory) for directory in arguments.results]
     shots = [run.snapshot_at(arguments.time).scaled(run) for run in runs]
     for shot in shots:
         if arguments.field not in shot.fields:
@@ -42,7 +42,7 @@ def main():
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
     figure.colorbar(ScalarMappable(norm, colours), cax=axes[0][0].inset_axes([0.3, -0.08, 0.5, 0.03]), orientation="horizontal",
-                    label=read.field_label(runs, arguments.field, "magnitude of the {}" if vector else "{}"))
+                    label=tanktread.field_label(runs, arguments.field, "magnitude of the {}" if vector else "{}"))
     draw_sections(axes[0][n], runs, shots)
     style.save(figure, arguments.output)
 

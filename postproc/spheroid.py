@@ -8,17 +8,15 @@ that has been made already is not made again. The largest meshes take minutes; `
 import argparse
 import math
 import pathlib
-import subprocess
 import sys
 
 import needs  # before what it looks for
 import numpy
 
-import read
 import style
+import tanktread
 from style import plt
 
-SOURCE = pathlib.Path(__file__).resolve().parents[1]
 SIZES = [0, 1, 2, 3]  # 56, 218, 866, 3458 control points on the cube; 42, 146, 546, 2114 on the structured mesh
 
 PAPER_TABLE = [(1.332e-3, 6.499e-4, 1.735e-6), (3.494e-4, 2.362e-4, 1.682e-6), (8.947e-5, 1.825e-4, 1.679e-6), (8.947e-5, 1.781e-4, 1.679e-6)]
@@ -54,31 +52,26 @@ class Study:
     """Runs of the two decks, made where they are missing."""
 
     def __init__(self, program, directory, makes):
-        self.program, self.directory, self.makes = program, pathlib.Path(directory), makes
+        self.runs, self.makes = tanktread.Study(program, directory), makes
 
-    def run(self, name, mesh, settings):
+    def run(self, mesh, settings):
         """The final values of a run, with its directory; None where it is missing and may not be made, or failed."""
-        where = self.directory / name
-        if not (where / "summary.yaml").exists():
-            if not self.makes:
-                return None
-            command = [str(self.program), str(SOURCE / "inputs" / f"spheroid_{mesh}.yaml"), "--quiet", "--overwrite", "--output", str(where)]
-            for key, value in settings.items():
-                command += ["--set", f"{key}={value}"]
-            print("running", name, flush=True)
-            done = subprocess.run(command, capture_output=True, text=True)
-            if done.returncode not in (0, 1):  # 1: errors beyond what the deck as it stands expects
-                print(f"  {done.stderr.strip()}", file=sys.stderr)
-                return None
-        result = read.run(where)
-        return dict(result.summary["final"], directory=where)
+        deck = f"inputs/spheroid_{mesh}.yaml"
+        where = self.runs.directory / self.runs.name([deck], settings)
+        if not (self.makes or (where / "summary.yaml").exists()):
+            return None
+        outcome = self.runs.run(deck, settings)
+        if not outcome.done:  # errors beyond what the deck as it stands expects are its end too
+            print(f"  {outcome.message}", file=sys.stderr)
+            return None
+        return dict(outcome.final, directory=where)
 
     def at_size(self, option, size, largest):
         if size > largest:
             return None
         extent = {"Surface/elements per side": 3 * 2**size} if option.mesh == "cube" else {
             "Surface/azimuthal elements": 8 * 2**size, "Surface/meridional elements": 4 * 2**size}
-        return self.run(f"{option.name}_{size}", option.mesh, option.settings | extent)
+        return self.run(option.mesh, option.settings | extent)
 
 
 def slope(points, errors):
@@ -116,7 +109,7 @@ def draw_guide(axes, points, start, order, text):
 
 def normal_far_from_extraordinary_points(run):
     """L2 error of the normal over what is at least 0.5 away, on the unit sphere, from the images of the cube's corners."""
-    result = read.run(run["directory"])
+    result = tanktread.run(run["directory"])
     axes = numpy.array(result.value("Particle/semi-axes"))
     snapshot = result.snapshots()[-1]
     exact = snapshot.points / axes**2
@@ -187,7 +180,7 @@ def figure_10(study, found, path):
 
 def draw_pressure_error(axes, run, title):
     """The half x2 < 0 of the surface, seen along x2, coloured by the error of the pressure."""
-    snapshot = read.run(run["directory"]).snapshots()[-1]
+    snapshot = tanktread.run(run["directory"]).snapshots()[-1]
     k = 6
     points = snapshot.sampled(snapshot.points, k)
     exact = numpy.abs(snapshot.fields["pressure"] - snapshot.fields["pressure error"]).max()
@@ -214,8 +207,8 @@ def table_1(study):
     print("\nTable 1: structured mesh of 546 control points, Bezier transformation, n azimuthal subdivisions; drag in per cent")
     print(f"{'':30}{'normal':>11}{'pressure':>11}{'drag %':>11}   paper: normal, pressure, drag %")
     for level, paper in enumerate(PAPER_TABLE):
-        for label, name, settings in (("8 x 8 Gauss", "fixed", FIXED), ("rules by tolerance", "adaptive", {})):
-            run = study.run(f"table_{name}_{level}", "polar", TRANSFORM | settings | {"Surface/pole subdivisions": level})
+        for label, settings in (("8 x 8 Gauss", FIXED), ("rules by tolerance", {})):
+            run = study.run("polar", TRANSFORM | settings | {"Surface/pole subdivisions": level})
             if run:
                 print(f"n = {level}, {label:23} {run['normal_l2_error']:10.3e} {run['pressure_l2_error']:10.3e} {100 * run['drag_error']:10.3e}"
                       f"   {paper[0]:.3e}  {paper[1]:.3e}  {paper[2]:.3e}")
@@ -256,7 +249,7 @@ def work(study, path):
     figure, grid = plt.subplots(2, 2, figsize=(10.5, 7.6), sharey="row")
     for i, (name, label, mesh, settings, key) in enumerate(sweeps):
         values = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10] if key == "tolerance" else [4, 6, 8, 12, 16]
-        runs = [study.run(f"work_{name}_{value:g}", mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value}) for value in values]
+        runs = [study.run(mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value}) for value in values]
         runs = [one for one in runs if one]
         pen = {"color": style.RUNS[i % 4], "linestyle": "-" if key == "tolerance" else "--", "marker": style.MARKS[i // 4], "ms": 4, "label": label}
         for row, error in enumerate(("pressure_l2_error", "drag_error")):
@@ -277,16 +270,13 @@ def work(study, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=SOURCE / "build" / "release" / "app" / "tanktread", type=pathlib.Path, help="default: %(default)s")
+    parser.add_argument("--program", default=tanktread.PROGRAM, type=pathlib.Path, help="default: %(default)s")
     parser.add_argument("--results", default="results/spheroid", metavar="DIR", help="where runs are kept (default: %(default)s)")
     parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR", help="of the pictures (default: %(default)s)")
     parser.add_argument("--largest", type=int, default=3, choices=SIZES, help="largest mesh of the four (default: %(default)s)")
     parser.add_argument("--read-only", action="store_true", help="draw what is there, run nothing")
     parser.add_argument("--no-work", action="store_true", help="leave out error against work")
     arguments = parser.parse_args()
-    if not arguments.read_only and not arguments.program.exists():
-        sys.exit(f"{arguments.program} does not exist: build it, or give --program")
-
     arguments.output.mkdir(parents=True, exist_ok=True)
     study = Study(arguments.program, arguments.results, not arguments.read_only)
     found = converge(study, arguments.largest)

@@ -9,19 +9,17 @@ by their logarithms), in evaluations and in seconds, over the best scheme. Secon
 """
 
 import argparse
-import os
 import pathlib
-import subprocess
 import sys
 
 import needs  # before what it looks for
 import numpy
-import yaml
 
-import read
 import style
+import tanktread
 from style import plt
 
+DECK = "inputs/shear_neo_hookean.yaml"  # of which every scene changes what it has otherwise
 SHEAR, HYPERBOLIC = {"Flow/type": "simple shear"}, {"Flow/type": "planar hyperbolic"}
 
 
@@ -55,38 +53,9 @@ TOLERANCES = [1e-3, 3e-4, 1e-4, 3e-5]
 LEVELS = [1e-3, 2e-4, 5e-5]
 
 
-def nested(settings):
-    """{"A/b": 1} as {"A": {"b": 1}}."""
-    deck = {}
-    for path, value in settings.items():
-        *lists, key = path.split("/")
-        inner = deck
-        for name in lists:
-            inner = inner.setdefault(name, {})
-        inner[key] = value
-    return deck
-
-
-def run(program, directory, settings):
-    """The results in `directory`, made if they are not there; None where the run failed or took too long (`failed` says so to the next call)."""
-    failed = directory / "failed"
-    if not (directory / "summary.yaml").exists() and not failed.exists():
-        deck = directory.with_suffix(".yaml")
-        deck.parent.mkdir(parents=True, exist_ok=True)
-        deck.write_text(yaml.safe_dump({"Tanktread": nested(settings)}), encoding="utf-8")
-        try:
-            done = subprocess.run([program, str(deck), "--quiet", "--overwrite", "--output", str(directory)], capture_output=True, text=True, timeout=900, check=False)
-            if done.returncode != 0:
-                directory.mkdir(exist_ok=True)
-                failed.write_text(done.stderr, encoding="utf-8")
-        except subprocess.TimeoutExpired:
-            failed.write_text("took more than 900 seconds\n", encoding="utf-8")
-    return None if failed.exists() else read.run(directory)
-
-
 def settings_of(scene, elements, time):
-    deck = {"Particle/shape": "sphere", "Surface/elements per side": elements, "Output/interval": 1000.0, "Time/final time": SCENES[scene][2]}
-    return deck | SCENES[scene][1] | time
+    end = SCENES[scene][2]
+    return {"Surface/elements per side": elements, "Output/interval": end, "Time/final time": end} | SCENES[scene][1] | time
 
 
 def error(result, reference):
@@ -104,20 +73,20 @@ def error(result, reference):
 
 
 def seconds(result):
-    return sum(value for name, value in result.summary["seconds"].items() if name not in ("diagnostics", "output"))
+    return sum(value for name, value in result.phases.items() if name not in ("diagnostics", "output"))
 
 
-def points(scene, scheme, program, results, elements, reference):
+def points(scene, scheme, study, elements, reference):
     """(error, evaluations, seconds, steps) of every run of a scheme, loose to tight."""
     found = []
     for tolerance in TOLERANCES if not scheme.startswith("CN") else [1e-4] if scheme == "CN, paper" else [1e-3, 1e-4]:
         time = SCHEMES[scheme] | {"Time/tolerance": tolerance}
         if scheme == "CN, paper":
             time |= {"Time/initial step": 0.01 * SCENES[scene][1]["Membrane/capillary number"]}
-        result = run(program, results / f"{scene}_{scheme.replace(', ', '_')}_{tolerance:g}_n{elements}", settings_of(scene, elements, time))
-        if result is None:
+        result = study.run(DECK, settings_of(scene, elements, time))
+        if not result.done:
             continue
-        counts = result.summary["counts"]
+        counts = result.counts
         found.append((error(result, reference), counts["evaluations"], seconds(result), counts["steps"]))
         print(f"  {scheme:18s} {tolerance:8.0e}  error {found[-1][0]:.2e}  steps {counts['steps']:5d}  evaluations {counts['evaluations']:6d}  "
               f"assemblies {counts['assemblies']:2d}  solves {counts['linear_solves']:5d}  iterations {counts['solver_iterations']:6d}  "
@@ -175,16 +144,16 @@ def main():
     parser.add_argument("--schemes", default=None, help="names, separated by semicolons (default: all)")
     parser.add_argument("-o", "--output", default="stiff", metavar="NAME", help="pictures NAME_evaluations.png and NAME_seconds.png (default: %(default)s)")
     arguments = parser.parse_args()
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    study = tanktread.Study(arguments.program, arguments.results, limit=900)
     schemes = arguments.schemes.split(";") if arguments.schemes else list(SCHEMES)
     panels = {}
     for scene in arguments.scenes.split(","):
         print(f"{scene}: {SCENES[scene][0]}, {6 * arguments.elements ** 2 + 2} control points", flush=True)
         best = {"Time/scheme": "tr-bdf2", "Time/tolerance": 1e-7}
-        reference = run(arguments.program, arguments.results / f"{scene}_reference_n{arguments.elements}", settings_of(scene, arguments.elements, best))
-        if reference is None:
+        reference = study.run(DECK, settings_of(scene, arguments.elements, best))
+        if not reference.done:
             sys.exit(f"stiff.py: there is no reference for {scene}")
-        panels[scene] = {scheme: points(scene, scheme, arguments.program, arguments.results, arguments.elements, reference) for scheme in schemes}
+        panels[scene] = {scheme: points(scene, scheme, study, arguments.elements, reference) for scheme in schemes}
         table(scene, panels[scene])
     draw(panels, 1, "velocity evaluations", f"{arguments.output}_evaluations.png")
     draw(panels, 2, "seconds", f"{arguments.output}_seconds.png")

@@ -10,8 +10,8 @@ import argparse
 import needs  # before what it looks for
 from matplotlib.collections import LineCollection
 
-import read
 import style
+import tanktread
 from shape import section
 from style import plt
 
@@ -23,7 +23,7 @@ def main():
     parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    weak, strong = (read.run(given or made(load)) for load, given in (("weak", arguments.weak), ("strong", arguments.strong)))
+    weak, strong = (tanktread.run(given or made(load)) for load, given in (("weak", arguments.weak), ("strong", arguments.strong)))
     runs = [("weak form", weak, style.RUNS[0]), ("strong form", strong, style.RUNS[1])]
     end = runs[1][1].series["time"][-1]
     figure = plt.figure(figsize=(9.6, 4.6))
@@ -36,9 +36,9 @@ def main():
 
 
 def made(load):
-    deck = read.SOURCE / "inputs" / "shear_neo_hookean.yaml"
+    deck = tanktread.SOURCE / "inputs" / "shear_neo_hookean.yaml"
     settings = {"Membrane/load": load, "Surface/elements per side": 6, "Time/final time": 2, "Output/interval": 0.05}
-    return read.results_of(deck, f"strong_form/{load}", settings, accepted=(0, 1, 3))  # 3: the strong form fails, which is what is shown
+    return tanktread.results_of(deck, f"strong_form/{load}", settings, accepted=(0, 1, 3))  # 3: the strong form fails, which is what is shown
 
 
 def draw_series(upper, lower, runs, end):

@@ -15,9 +15,9 @@ from matplotlib.colors import Normalize
 
 import duct
 import meshes
-import read
 import shape
 import style
+import tanktread
 from style import plt
 
 FLOOR = 1e-4  # of the distance from the largest velocity: what the tolerances of a run let through is none
@@ -33,7 +33,7 @@ def main():
     parser.add_argument("--motion", metavar="FILE", help="a second picture: how the runs move")
     parser.add_argument("--times", type=float, nargs="+", default=TIMES, help="simulated times of the shapes (default: %(default)s)")
     arguments = parser.parse_args()
-    runs = [read.run(directory) for directory in arguments.results]
+    runs = [tanktread.run(directory) for directory in arguments.results]
     for run in runs:
         run.require("centroid_x1")
     ducts = [duct.duct(run.directory) for run in runs]

@@ -2,7 +2,7 @@
 
 import numpy
 
-import read
+import tanktread
 
 SMOOTH = 8  # the flow and its answer live in degrees up to this one
 
@@ -85,5 +85,5 @@ def _tables(p, grid):
         polynomial = numpy.polynomial.Polynomial.fromroots(numpy.delete(nodes, i))
         polynomial = polynomial / polynomial(nodes[i])
         value[:, i], slope[:, i] = polynomial(grid), polynomial.deriv()(grid)
-    order = read.node_order(p)
+    order = tanktread.node_order(p)
     return tuple(numpy.array([numpy.outer(b[:, j], a[:, i]).ravel() for i, j in order]).T for a, b in ((value, value), (slope, value), (value, slope)))

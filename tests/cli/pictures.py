@@ -15,11 +15,11 @@ sys.path.append(str(SOURCE / "postproc"))
 import animation
 import deformation
 import meshes
-import read
 import refinement
 import render
 import shape
 import style
+import tanktread
 
 DECK = """
 Tanktread:
@@ -66,7 +66,7 @@ def _drawn_by(module, *arguments):
 def axis_and_label_of_time_agree():
     deck(DECK.replace("simple shear", "simple shear, shear rate: 500").replace("final time: 0.2", "final time: 0.0004").replace("interval: 0.1", "interval: 0.0002"))
     run("deck.yaml", "--output", "fast", "--quiet")
-    close(read.run("fast").time[-1], 0.2, 1e-12, "time times rate at the end")
+    close(tanktread.run("fast").time[-1], 0.2, 1e-12, "time times rate at the end")
     for module in deformation, refinement:
         lowest = _drawn_by(module, "fast").axes[-1]
         check(lowest.get_xlabel() == "time · shear rate", module.__name__, lowest.get_xlabel())
@@ -77,7 +77,7 @@ def pictures_are_without_units():
     run(deck(DECK), "--output", "plain", "--quiet")
     micrometres = DECK.replace("simple shear", "simple shear, shear rate: 40, viscosity: 2.0e-2").replace("sphere", "sphere, radius: 3.0e-6")
     run(deck(micrometres.replace("final time: 0.2", "final time: 5.0e-3").replace("interval: 0.1", "interval: 2.5e-3")), "--output", "si", "--quiet")
-    plain, si = (read.run(name) for name in ("plain", "si"))
+    plain, si = (tanktread.run(name) for name in ("plain", "si"))
     for field in "traction", "load", "displacement", "velocity", "smallest tension", "mean curvature":
         one, other = (run.snapshots()[-1].scaled(run).fields[field] for run in (plain, si))
         close(abs(one - other).max() / abs(one).max(), 0, 1e-4, field)
@@ -93,7 +93,7 @@ def pictures_are_without_units():
     for name, text, label in (("drop", quiet % ("radius: 2", "  Membrane: {law: surface tension, surface tension: 5}\n"), "traction / (σ / R$_C$)"),
                               ("body", quiet % ("radius: 2, motion: prescribed, velocity: [7, 0, 0]", ""), "traction / (μ · speed / R$_C$)")):
         run(deck(text), "--output", name, "--quiet")
-        found = read.run(name)
+        found = tanktread.run(name)
         close(found.snapshots()[0].volume(), 32 * numpy.pi / 3, 0.05, "volume")
         check(found.label("traction") == label, found.label("traction"))
         traction = numpy.linalg.norm(found.snapshots()[0].scaled(found).fields["traction"], axis=1)
@@ -103,7 +103,7 @@ def pictures_are_without_units():
 def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
     deck(DECK.replace("shape: sphere", "shape: red cell").replace("final time: 0.2", "final time: 0.001"))
     run("deck.yaml", "--output", "cell", "--quiet")
-    shot = read.run("cell").snapshot_at(0)
+    shot = tanktread.run("cell").snapshot_at(0)
     view = shape.view_axes(-85, 15)  # the rim hides a part of the dimple
     depth, found, corner, size = render.seen(shot, shot.points @ view[2], view, 100)
     hit = numpy.isfinite(depth)
@@ -127,10 +127,10 @@ def an_axis_that_turns_over_is_no_vertical_line():
 
 def a_deck_is_run_when_it_has_no_results():
     deck(DECK)
-    with mock.patch.object(read, "PROGRAM", PROGRAM):
-        check(read.run("deck.yaml").directory == pathlib.Path("results/deck"), "another place")
+    with mock.patch.object(tanktread, "PROGRAM", PROGRAM):
+        check(tanktread.run("deck.yaml").directory == pathlib.Path("results/deck"), "another place")
         before = pathlib.Path("results/deck/run.h5").stat().st_mtime_ns
-        read.run("deck.yaml")
+        tanktread.run("deck.yaml")
         check(pathlib.Path("results/deck/run.h5").stat().st_mtime_ns == before, "a run that is there is made again")
 
 

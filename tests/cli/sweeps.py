@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+# ranks: 2
+# The module tanktread runs decks and evaluates surfaces; a sweep makes its table whatever fails, and goes on where it was broken off.
+import csv
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy
+
+from harness import PROGRAM, SOURCE, check, close, deck, main, run
+
+os.environ["TANKTREAD"] = str(PROGRAM)
+sys.path.append(str(SOURCE / "postproc"))
+import tanktread
+
+DECK = """
+Tanktread:
+  Flow: { type: simple shear }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { elements per side: 3 }
+  Time: { final time: 0.5 }
+  Output: { interval: 0.5 }
+"""
+STUDY = """
+deck: deck.yaml
+grid: {Membrane/capillary number: {from: 0.1, to: 0.4, number: 3}, Time/scheme: [bs3, tr-bdf2]}
+record: {D: taylor_inertia, top: {series: area, take: largest}, D(t): {series: taylor_inertia, take: all}}
+"""
+
+
+def _sweep(*arguments, code=0):
+    result = subprocess.run([SOURCE / "postproc/sweep.py", *arguments], capture_output=True, text=True)
+    check(result.returncode == code and "Traceback" not in result.stderr, result.stdout, result.stderr)
+    return result.stdout + result.stderr
+
+
+def _rows(path="results/study/table.csv"):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
+    path = deck(DECK).resolve()
+    found = tanktread.run(path, {"Particle/semi-axes": [1.0, 1.0, 0.8], "Particle/shape": "spheroid"})
+    check(found.value("Particle/shape") == "spheroid" and found.series["time"][-1] == 0.5, "another run")
+    made = (found.directory / "run.h5").stat().st_mtime_ns
+    check((tanktread.run(path, {"Particle/shape": "spheroid", "Particle/semi-axes": [1.0, 1.0, 0.8]}).directory / "run.h5").stat().st_mtime_ns == made, "again")
+    shot = found.snapshots()[-1]
+    grid = shot.sampled(shot.points, 4)
+    cells = numpy.arange(len(grid))
+    at = shot.evaluate(shot.points, cells, numpy.full(len(cells), 0.75), numpy.full(len(cells), 0.25))
+    close(abs(at - grid[:, 1, 3]).max(), 0, 1e-13, "a place")
+    h, s, t = 1e-4, numpy.full(len(cells), 0.3), numpy.full(len(cells), 0.6)
+    slope = (shot.evaluate(shot.points, cells, s + h, t) - shot.evaluate(shot.points, cells, s - h, t)) / (2 * h)
+    close(abs(shot.evaluate(shot.points, cells, s, t, ds=1) - slope).max(), 0, 1e-7, "a derivative")
+
+
+def a_sweep_has_a_row_for_every_combination_and_draws_a_column():
+    deck(DECK)
+    deck(STUDY, "study.yaml")
+    _sweep("study.yaml", "--jobs", "2", "--plot", "D", "Membrane/capillary number")
+    rows = _rows()
+    check(len(rows) == 6 and all(row["status"] == "done" for row in rows), rows)
+    check([float(row["Membrane/capillary number"]) for row in rows] == [0.1, 0.1, 0.25, 0.25, 0.4, 0.4], rows)
+    run("deck.yaml", "--set", "Membrane/capillary number=0.25", "--set", "Time/scheme=bs3", "--output", "one", "--quiet")
+    alone = tanktread.run("one").series
+    close(float(rows[2]["D"]), alone["taylor_inertia"][-1], 1e-12, "D")
+    close(float(rows[2]["top"]), alone["area"].max(), 1e-12, "largest area")
+    with h5py.File("results/study/table.h5") as file:
+        series = file["columns/D(t)"][2]
+        check(abs(series[numpy.isfinite(series)] - alone["taylor_inertia"]).max() < 1e-12, "the whole series")
+    check(pathlib.Path("results/study/D.png").read_bytes()[:4] == b"\x89PNG", "no picture")
+
+
+def random_values_come_again_and_lists_go_together():
+    deck(DECK)
+    deck("deck: deck.yaml\nrecord: [taylor_inertia]\ntogether: {A/x: [1, 2], A/y: [3, 4]}\n"
+         "random: {number: 3, seed: 7, keys: {B/z: {from: 0.01, to: 100.0, spacing: logarithmic}}}\n", "study.yaml")
+    said = _sweep("study.yaml", "--list")
+    check(said == _sweep("study.yaml", "--list") and said.count("\n") == 6, said)
+    check("A/x=1, A/y=3" in said and "A/x=2, A/y=4" in said and "A/x=1, A/y=4" not in said, said)
+
+
+def one_that_fails_does_not_stop_the_others_and_none_at_all_is_said():
+    deck(DECK)
+    deck(STUDY.replace("[bs3, tr-bdf2]", "[bs3, nonsense]"), "study.yaml")
+    _sweep("study.yaml")
+    ends = [row["status"] for row in _rows()]
+    check(ends == ["done", "refused"] * 3 and "nonsense" in _rows()[1]["message"], _rows())
+    deck(STUDY.replace("[bs3, tr-bdf2]", "[nonsense]"), "study.yaml")
+    check("none of the runs" in _sweep("study.yaml", code=1), "a sweep of failures")
+
+
+def a_sweep_that_is_killed_goes_on():
+    deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
+    deck(STUDY, "study.yaml")
+    for number in signal.SIGTERM, signal.SIGKILL:
+        process = subprocess.Popen([SOURCE / "postproc/sweep.py", "study.yaml", "--jobs", "2"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        before = len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) if pathlib.Path("results").exists() else 0
+        while process.poll() is None and len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) < before + 1:
+            time.sleep(0.02)
+        process.send_signal(number)
+        process.wait()
+    kept = {path: path.stat().st_mtime_ns for path in pathlib.Path("results/study/runs").glob("*/outcome.json") if '"code": 0' in path.read_text()}
+    check(kept, "nothing was done before")
+    _sweep("study.yaml", "--jobs", "2")
+    check(all(row["status"] == "done" for row in _rows()), _rows())
+    check(all(path.stat().st_mtime_ns == when for path, when in kept.items()), "a run that was there is made again")
+
+
+def mistakes_are_one_sentence():
+    deck(DECK)
+    for text, words in (("deck: nowhere.yaml\nrecord: [a]", "no deck nowhere.yaml"), ("deck: deck.yaml", "records nothing"),
+                        ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML")):
+        deck(text, "study.yaml")
+        said = _sweep("study.yaml", code=2)
+        check(words in said and said.count("\n") == 1, said)
+    check("absent.yaml" in _sweep("absent.yaml", code=2), "a file that is not there")
+    deck(STUDY.replace("D: taylor_inertia", "D: tailor"), "study.yaml")
+    check("no series tailor" in _sweep("study.yaml", code=2), "an unknown series")
+
+
+main()
