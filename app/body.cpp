@@ -72,7 +72,12 @@ Body body(const Scene& scene) {
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   if (scene.particle.rigid() || body.wall) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force());
+  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force(), patch_forces(scene, body));
+}
+
+Net patch_forces(const Scene& scene, const Body& body) {
+  if (scene.particle.rigid() || scene.membrane.forces.all.empty()) return {};
+  return scene.membrane.forces.virtual_work(body.space, body.unstressed);
 }
 
 stokes::Measure load_measure(const Scene& scene) {

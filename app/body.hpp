@@ -47,6 +47,9 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 /// The symmetry of the scene, as far as the deck wants it to be used, and of the shape x that the particle has by now.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
+/// Virtual work of the forces on patches of its membrane, on its present mesh; of no rows where there are none.
+Net patch_forces(const Scene& scene, const Body& body);
+
 /// What the load is measured on: that of a drop, which has no unstressed state, and the strong one are always per current area.
 stokes::Measure load_measure(const Scene& scene);
 

@@ -99,6 +99,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.material = material(own, body);
     particle.radius = body.radius;
     particle.body_force = own.body_force();
+    particle.patch_forces = patch_forces(own, body);
     if (own.particle.rigid()) particle.rigid = rigid(own, body);
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);

@@ -58,7 +58,9 @@ std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
 }
 
 std::string membrane_line(const Scene& scene) {
-  const std::string load = scene.membrane.law + ", load " + scene.membrane.load;
+  const std::size_t forces = scene.membrane.forces.all.size();
+  const std::string pulled = forces > 0 ? formatted(", pulled at %d patch%s", static_cast<int>(forces), forces > 1 ? "es" : "") : "";
+  const std::string load = scene.membrane.law + pulled + ", load " + scene.membrane.load;
   if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
   if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
   if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";

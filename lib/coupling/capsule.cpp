@@ -143,6 +143,8 @@ const Net& Capsule::energy_gradient(const Net& x) {
   membrane_.load(x, own_elements_, gradient_);
   add_weight(x, gradient_);
   replicate_sums(gradient_);
+  for (const Particle& particle : particles())
+    if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
   gradient_at_ = x;
   return gradient_;
 }
@@ -463,8 +465,8 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const Particle& particle = particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
   Mat3 moment = rigid_.holds(p) ? rigid_.load_moment(p) : Mat3(own(energy_gradient(x)).transpose() * own(x));  // int df x dG, x = sum N_A x_A
-  if (!particle.body_force.isZero(0) && !rigid_.holds(p))  // about the centroid
-    moment += volume0_[p] * particle.body_force * surface::measures(*particle.space, own(x)).centroid.transpose();
+  if ((!particle.body_force.isZero(0) || pulled(particle)) && !rigid_.holds(p))  // about the centroid
+    moment -= own(energy_gradient(x)).colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
     moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(geometry_.volume_gradient(x));

@@ -164,6 +164,7 @@ class Capsule : public Dynamics {
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
   void add_weight(const Net& x, Net& gradient) const;
+  bool pulled(const Particle& particle) const { return particle.patch_forces.rows() > 0; }
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tanktread::coupling {
 
@@ -62,7 +63,7 @@ FilmInverses::FilmInverses(std::span<const Particle> particles, const OneBodyInv
       Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + m, n + m);
       all.topRightCorner(n, m) = coupling(rows.topRows(n), *other, there, alone, placed);
       all.bottomLeftCorner(m, n) = coupling(rows.bottomRows(m), *one, here, alone, placed);
-      film.one_and_coupling.compute(all);
+      film.one_and_coupling = DenseFactors(std::move(all));
       films_.push_back(std::move(film));
     }
 }

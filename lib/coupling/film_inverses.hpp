@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/LU>
-
+#include "base/dense_factors.hpp"
 #include "base/types.hpp"
 #include "coupling/one_body.hpp"
 #include "stokes/layer.hpp"
@@ -33,8 +32,8 @@ class FilmInverses {
 
  private:
   struct Film {
-    std::vector<int> sites;  // of the one body, then of the other
-    Eigen::PartialPivLU<Eigen::MatrixXd> one_and_coupling;  // 1 + C
+    std::vector<int> sites;         // of the one body, then of the other
+    DenseFactors one_and_coupling;  // 1 + C
   };
   std::vector<Film> films_;
 };

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <Eigen/LU>
-
+#include "base/dense_factors.hpp"
 #include "coupling/collocation.hpp"
 #include "stokes/layer.hpp"
 
@@ -46,7 +45,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
     }
     matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * bodies.mean_functional(p, k).transpose();
   }
-  factors->inverse = matrix.partialPivLu().inverse();
+  factors->inverse = DenseFactors(matrix).inverse();
   return factors;
 }
 

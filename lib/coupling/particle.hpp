@@ -32,6 +32,7 @@ struct Particle {
   std::optional<double> kept_volume;          ///< V0 to be kept, where it is not that of the initial net: on another mesh
 
   Vec3 body_force = Vec3::Zero();             ///< on each unit of volume of what deforms: density difference x gravity
+  Net patch_forces;                           ///< virtual work F_A of forces on its membrane, in its own rows; of no rows: none
   std::optional<Rigid> rigid;                 ///< of a body that does not deform; it has no fluid, no membrane and no interface
 
   bool slides() const { return interface_motion != "material"; }

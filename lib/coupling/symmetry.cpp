@@ -28,12 +28,20 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
   return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
 }
 
+/// Whether the forces of images are the images of forces.
+static bool keeps(const Net& forces, const surface::Image& image) {
+  double defect = 0;
+  for (Eigen::Index a = 0; a < forces.rows(); ++a)
+    defect = std::max(defect, (forces.row(image.point[static_cast<size_t>(a)]) - forces.row(a).cwiseProduct(image.signs.transpose())).norm());
+  return defect <= 1e-10 * forces.norm();
+}
+
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const Vec3& body_force) {
+                           const stokes::AmbientFlow& flow, const Vec3& body_force, const Net& patch_forces) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return image.signs.cwiseProduct(body_force) == body_force &&
+    return image.signs.cwiseProduct(body_force) == body_force && keeps(patch_forces, image) &&
            std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }

@@ -66,8 +66,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   own_layer.place(wall.net);
   own_layer.assemble(own_, rows_);
   assembly_ = own_layer.evaluations();
-  matrix_ = everybodys(rows_, own_, n, phases);
-  factors_.emplace(matrix_);
+  factors_ = DenseFactors(everybodys(rows_, own_, n, phases));
 
   inlet_column_ = inlet_.integral(sites_);
   pumped_ = solve(inlet_column_);
@@ -82,7 +81,7 @@ Net Wall::apply(const Net& f) const {
 }
 
 Net Wall::solve(const Net& rhs) const {
-  const Eigen::VectorXd f = factors_->solve(flat(rhs));
+  const Eigen::VectorXd f = factors_.solve(flat(rhs));
   return Eigen::Map<const Net>(f.data(), rhs.rows(), 3);
 }
 

@@ -2,11 +2,9 @@
 // What depends on a tube's wall alone, made once a run.
 
 #include <functional>
-#include <optional>
 #include <vector>
 
-#include <Eigen/LU>
-
+#include "base/dense_factors.hpp"
 #include "base/types.hpp"
 #include "coupling/ranks.hpp"
 #include "quadrature/options.hpp"
@@ -52,8 +50,7 @@ class Wall {
   stokes::Cap inlet_;
   Net sites_, inlet_column_, pumped_;
   stokes::Rows<double> rows_;
-  Eigen::MatrixXd matrix_;  // A; its factors, once there
-  std::optional<Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>>> factors_;
+  DenseFactors factors_;  // of A
   stokes::Evaluations assembly_;
 };
 

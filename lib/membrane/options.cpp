@@ -29,6 +29,10 @@ void Options::declare(deck::Section& section) {
               "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
   section.key("bending reference", bending_reference, deck::Choice{"unstressed", "flat"},
               "curvature at which no bending moment acts: that of the unstressed surface, or none");
+  if (section.given("forces") || section.documenting())
+    section.section("forces", forces, "forces on patches of the membrane, none without this list");
+  else
+    section.mention("forces");
 }
 
 void Options::check() const {
@@ -50,6 +54,11 @@ void Options::check() const {
   if (law == "surface tension" && pre_inflation != 0.0)
     throw UserError(
         "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
+  forces.check();
+  if (!forces.all.empty() && law == "surface tension")
+    throw UserError("Membrane/forces and Membrane/law `surface tension` contradict each other: nothing holds on to a fluid interface.");
+  if (!forces.all.empty() && load == "strong")
+    throw UserError("Membrane/forces and Membrane/load `strong` contradict each other: the forces are part of the weak load.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }

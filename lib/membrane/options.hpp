@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "membrane/patch_forces.hpp"
+
 namespace Teuchos {
 class ParameterList;
 }
@@ -26,6 +28,7 @@ struct Options {
   std::optional<double> bending_modulus;   ///< E_b, force x length; 0 if neither is given: none
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or over sigma R_C^2
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
+  PatchForces forces;                            ///< by which it is held or pulled
 
   void declare(deck::Section& section);
 

@@ -1,0 +1,23 @@
+#include "base/dense_factors.hpp"
+
+#include <cassert>
+#include <utility>
+
+#include "base/dense_kernel.hpp"
+
+namespace tanktread {
+
+DenseFactors::DenseFactors(Eigen::MatrixXd a) : factors_(std::move(a)), row_of_(static_cast<std::size_t>(factors_.rows())) {
+  assert(factors_.rows() == factors_.cols());
+  factor(static_cast<int>(factors_.rows()), factors_.data(), row_of_.data());
+}
+
+Eigen::MatrixXd DenseFactors::solve(const Eigen::Ref<const Eigen::MatrixXd>& b) const {
+  assert(b.rows() == factors_.rows());
+  Eigen::MatrixXd x(b.rows(), b.cols());
+  for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(row_of_[static_cast<std::size_t>(i)]) = b.row(i);
+  solve_triangles(static_cast<int>(x.rows()), factors_.data(), static_cast<int>(x.cols()), x.data());
+  return x;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,92 @@
+#include "membrane/patch_forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/section.hpp"
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::membrane {
+
+void PatchForce::declare(deck::Section& section) {
+  if (!section.documenting())
+    for (const char* key : {"direction", "radius", "force"})
+      if (!section.given(key)) throw UserError(section.path(key) + " is missing: a force on a membrane needs `direction`, `radius` and `force`.");
+  section.key("direction", direction, deck::any(), "1", "from the centroid of the unstressed shape to the middle of the patch, of any length (required)");
+  section.key("radius", radius, deck::positive(), "length", "of the patch of the unstressed surface, seen along the direction (required)");
+  section.key("force", force, deck::any(), "force",
+              "on the patch, three numbers; spread like (1 - d^2/radius^2)^2 over the distance d from its middle (required)");
+}
+
+void PatchForces::declare(deck::Section& section) {
+  section.each("a force on a patch of the membrane, as of a bead in tweezers: it stays on its material points and keeps its direction",
+               [this](const std::string& name, deck::Section& inner) {
+                 all.emplace_back().name = name;
+                 all.back().declare(inner);
+               });
+  if (section.documenting()) all.clear();
+}
+
+void PatchForces::check() const {
+  for (auto one = all.begin(); one != all.end(); ++one) {
+    if (one->direction.norm() == 0) throw UserError("Membrane/forces/" + one->name + "/direction must not be zero.");
+    for (auto other = one + 1; other != all.end(); ++other)
+      if ((one->direction.normalized() - other->direction.normalized()).norm() < 1e-6)
+        throw UserError("Membrane/forces: `" + one->name + "` and `" + other->name + "` pull at one place; give the sum of their forces once.");
+  }
+}
+
+namespace {
+
+/// Rules of a patch on elements are of this order, on parts of elements no longer than half its radius.
+constexpr int order = 6, most_parts = 32;
+
+/// Parts of an element, a direction, for a patch that it is about as near to as it is long; none where it is farther away.
+int parts(const std::array<Vec3, 9>& places, const Vec3& ray, double radius) {
+  double longest = 0, nearest = INFINITY;
+  for (const Vec3& x : places) {
+    longest = std::max(longest, (x - places[4]).norm());
+    if (x.dot(ray) > -longest) nearest = std::min(nearest, x.cross(ray).norm());
+  }
+  if (nearest > radius + longest) return 0;
+  return std::clamp(static_cast<int>(std::ceil(4 * longest / radius)), 1, most_parts);
+}
+
+}  // namespace
+
+Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed) const {
+  const Vec3 centroid = surface::measures(space, unstressed).centroid;
+  const quadrature::GaussRule& rule = quadrature::gauss(order);
+  Net work = Net::Zero(space.n_points, 3);
+  for (const PatchForce& one : all) {
+    const Vec3 ray = one.direction.normalized();
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0, w not scaled yet
+    for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+      const auto place = [&](double s, double t) { return surface::point(space, unstressed, {e, s, t}); };
+      std::array<Vec3, 9> places;
+      for (int k = 0; k < 9; ++k) places[static_cast<std::size_t>(k)] = place(k % 3 / 2., k / 3 / 2.).x - centroid;
+      const int n = parts(places, ray, one.radius);
+      for (int i = 0; i < n * order; ++i)
+        for (int j = 0; j < n * order; ++j) {
+          const double s = (i / order + rule.nodes[i % order]) / n, t = (j / order + rule.nodes[j % order]) / n;
+          const surface::Point at = place(s, t);
+          const Vec3 from_centroid = at.x - centroid;
+          const double inside = 1 - (from_centroid.cross(ray) / one.radius).squaredNorm();
+          if (inside <= 0 || from_centroid.dot(ray) < 0) continue;
+          const double weight = inside * inside * at.jacobian * rule.weights[i % order] * rule.weights[j % order] / (n * n);
+          const Eigen::VectorXd basis = spline::basis(space.elements[e], s, t, 0).value;
+          for (Eigen::Index a = 0; a < basis.size(); ++a) shares[space.elements[e].points[static_cast<std::size_t>(a)]] += weight * basis[a];
+        }
+    }
+    if (shares.sum() <= 0)
+      throw UserError("Membrane/forces/" + one.name + formatted(": there is no membrane within %g of its ray; give a larger radius.", one.radius));
+    work += shares / shares.sum() * one.force.transpose();
+  }
+  return work;
+}
+
+}  // namespace tanktread::membrane

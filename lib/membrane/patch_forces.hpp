@@ -1,0 +1,43 @@
+#pragma once
+// Forces by which a membrane is held or pulled, as by beads in optical tweezers.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::deck {
+class Section;
+}
+
+namespace tanktread::membrane {
+
+/// A force on the patch of a membrane that a cylinder cuts out of its unstressed surface, about the ray from the centroid in a direction:
+/// `Membrane/forces/<name>`. It stays on the same material points and keeps its direction. Per unstressed area it is, up to a factor,
+/// (1 - d^2/radius^2)^2 at the distance d from the ray.
+struct PatchForce {
+  std::string name;
+  Vec3 direction = Vec3::Zero();  ///< of the ray, of any length
+  double radius = 0;              ///< of the patch
+  Vec3 force = Vec3::Zero();
+
+  void declare(deck::Section& section);
+};
+
+/// `Membrane/forces`.
+struct PatchForces {
+  std::vector<PatchForce> all;
+
+  void declare(deck::Section& section);
+
+  /// One sentence (UserError) for a patch without direction, or two on one place.
+  void check() const;
+
+  /// Their virtual work for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force, shape (N, 3), where int w dGamma_0 = 1 by the
+  /// rule that is used: the rows add up to the forces to rounding. Throws UserError for a patch on which there is no membrane.
+  Net virtual_work(const spline::Space& space, const Net& unstressed) const;
+};
+
+}  // namespace tanktread::membrane

@@ -1,0 +1,58 @@
+#include "membrane/patch_forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+struct Sphere {
+  spline::TMesh mesh;
+  spline::Space space;
+  Net net;
+
+  explicit Sphere(int elements_per_side)
+      : mesh(spline::cube(elements_per_side)),
+        space(spline::space(mesh, spline::ExtraordinaryRule::catmull_clark)),
+        net(surface::initial_shape(space, mesh, {})) {}
+
+  Net work(std::vector<PatchForce> forces) const { return PatchForces{std::move(forces)}.virtual_work(space, net); }
+};
+
+TEST(PatchForces, AddUpToTheForcesAndTheirTorque) {
+  const Sphere sphere(4);
+  const Vec3 direction(1, 2, -1), force(0.3, -1, 2);
+  for (const double radius : {0.05, 0.4}) {
+    const Net work = sphere.work({{"one", direction, radius, force}});
+    EXPECT_LT((work.colwise().sum().transpose() - force).norm(), 1e-14);
+    Vec3 torque = Vec3::Zero();
+    for (Eigen::Index a = 0; a < work.rows(); ++a) torque += Vec3(sphere.net.row(a)).cross(Vec3(work.row(a)));
+    // Round about the ray; the mean of cos = sqrt(1 - radius^2 u) over (1 - u)^2 du, where u is 1/4 in the mean.
+    const Vec3 lever = (1 - radius * radius / 8) * direction.normalized();
+    EXPECT_LT((torque - lever.cross(force)).norm(), 2e-3 * torque.norm()) << radius;
+  }
+}
+
+/// In a fine patch a coarse mesh has, and on a fine mesh a coarse patch, the same moments: the rule resolves both.
+TEST(PatchForces, HaveTheSameMomentsOnEveryMesh) {
+  std::vector<Mat3> moments;
+  for (const int n : {4, 8}) {
+    const Sphere sphere(n);
+    const Net work = sphere.work({{"one", {1, 0.3, 0.2}, 0.3, {0, 0, 1}}, {"other", {-1, 0, 0}, 0.1, {1, 0, 0}}});
+    moments.push_back(work.transpose() * sphere.net);
+  }
+  EXPECT_LT((moments[0] - moments[1]).norm(), 2e-4 * moments[0].norm());
+}
+
+TEST(PatchForces, NeedAPlaceOfTheirOwn) {
+  EXPECT_THROW(PatchForces({{{"one", {1, 0, 0}, 0.1, {}}, {"other", {2, 0, 0}, 0.3, {}}}}).check(), UserError);
+  EXPECT_THROW(PatchForces({{{"one", {0, 0, 0}, 0.1, {}}}}).check(), UserError);
+  EXPECT_NO_THROW(PatchForces({{{"one", {1, 0, 0}, 0.1, {}}, {"other", {-2, 0, 0}, 0.3, {}}}}).check());
+}
+
+}  // namespace
+}  // namespace tanktread::membrane
