@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/new_deck.hpp"
 #include "app/plan.hpp"
 #include "app/provenance.hpp"
 #include "app/results.hpp"
@@ -33,8 +34,8 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 
 
 struct Arguments {
   std::vector<std::string> decks, settings;
-  std::string output, resume;
-  bool overwrite = false, check = false, reference = false, reference_series = false, quiet = false, no_expect = false;
+  std::string output, resume, new_deck;
+  bool overwrite = false, check = false, reference = false, reference_series = false, schema = false, quiet = false, no_expect = false;
 };
 
 void state(CLI::App& app, Arguments& arguments) {
@@ -58,6 +59,9 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
   app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
+  app.add_flag("--schema", arguments.schema, "print a JSON schema of decks, by which editors complete keys and show their meaning");
+  app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
+      ->check(CLI::IsMember(kinds_of_decks()), "");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
@@ -142,6 +146,10 @@ int run(const Arguments& arguments, bool speaks) {
     if (speaks) std::cout << series_manual();
     return done;
   }
+  if (arguments.schema || !arguments.new_deck.empty()) {
+    if (speaks) std::cout << (arguments.schema ? deck::schema(Scene{}) : new_deck(arguments.new_deck));
+    return done;
+  }
   const bool resume = !arguments.resume.empty();
   if (arguments.decks.empty() && !resume)
     throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
@@ -218,7 +226,7 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
       return done;
     }
     const int code = run(arguments, speaks);
-    const bool prints = arguments.check || arguments.reference || arguments.reference_series;  // and nothing else: a run has its files
+    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema || !arguments.new_deck.empty();  // and nothing else: a run has its files
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

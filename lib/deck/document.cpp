@@ -111,6 +111,13 @@ std::map<std::string, std::string> Document::values() const {
 
 std::string Document::reference() const { return markdown_text(held_->root); }
 
+std::string Document::schema() const {
+  return R"({"$schema": "http://json-schema.org/draft-07/schema#", "type": "object", "properties": {)" + in_quotes(root_name) + ": " +
+         schema_text(held_->root, 0) + R"(}, "required": [)" + in_quotes(root_name) + "]}\n";
+}
+
+std::string Document::commented() const { return std::string(root_name) + ":\n" + commented_text(held_->root, 1); }
+
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored,
               const std::string& excuse) {
   Layers layers;

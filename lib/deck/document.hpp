@@ -38,6 +38,12 @@ class Document {
   /// The manual of every key as Markdown.
   std::string reference() const;
 
+  /// A JSON schema (draft 7) of decks, for editors: types, choices, bounds and meanings.
+  std::string schema() const;
+
+  /// The deck as it was given, each key under its meaning.
+  std::string commented() const;
+
  private:
   Section begin();
   void finish() const;
@@ -63,6 +69,14 @@ std::string manual(Options options) {
   Document document(nullptr, true);
   document.declare(options);
   return document.reference();
+}
+
+/// The schema of everything that `options` states.
+template <class Options>
+std::string schema(Options options) {
+  Document document(nullptr, true);
+  document.declare(options);
+  return document.schema();
 }
 
 }  // namespace tanktread::deck

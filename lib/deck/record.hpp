@@ -49,4 +49,10 @@ std::string yaml_text(const List& list, int depth);
 /// The statements of a list and all below as Markdown.
 std::string markdown_text(const List& list);
 
+/// The same as a JSON schema, of which the lines after the first are indented by `depth` steps.
+std::string schema_text(const List& list, int depth);
+
+/// The keys of a list and all below that are given, in YAML, each under its meaning, and the names of those that are not.
+std::string commented_text(const List& list, int depth);
+
 }  // namespace tanktread::deck

@@ -1,0 +1,101 @@
+#include <array>
+#include <sstream>
+#include <string_view>
+
+#include <Teuchos_ParameterList.hpp>
+
+#include "deck/record.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+/// The words of `text` between the marks that a list of choices has.
+std::vector<std::string> quoted_words(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = text.find('`'); begin != text.npos; begin = text.find('`', begin)) {
+    const std::size_t end = text.find('`', begin + 1);
+    words.push_back(text.substr(begin + 1, end - begin - 1));
+    begin = end + 1;
+  }
+  return words;
+}
+
+/// `, "minimum": 3, "maximum": 200` of a rule's wording, that of `positive()` and its kind.
+std::string bounds(const std::string& rule) {
+  if (rule.find("positive") != rule.npos) return R"(, "exclusiveMinimum": 0)";
+  if (rule.find("not negative") != rule.npos) return R"(, "minimum": 0)";
+  std::istringstream words(rule);
+  std::string low, high;
+  for (std::string word; words >> word;) {
+    if (word == "least" || word == "between") words >> low;
+    if (word == "and") words >> high;
+  }
+  return (low.empty() ? "" : ", \"minimum\": " + low) + (high.empty() ? "" : ", \"maximum\": " + high);
+}
+
+/// The type of a key's value, as its wording in the manual has it.
+std::string type(const std::string& values) {
+  if (values == "text") return R"("type": "string")";
+  if (values == "true or false") return R"("type": "boolean")";
+  if (values.starts_with('`')) {
+    std::string words;
+    for (const std::string& word : quoted_words(values)) words += (words.empty() ? "" : ", ") + in_quotes(word);
+    return "\"enum\": [" + words + "]";
+  }
+  if (values.starts_with("whole")) return R"("type": "integer")" + bounds(values);
+  constexpr std::array<std::pair<std::string_view, int>, 4> rows{{{"one number or more", 0}, {"two", 2}, {"three", 3}, {"nine", 9}}};
+  for (const auto& [word, count] : rows)
+    if (values.starts_with(word)) {
+      const std::string size = std::to_string(count);
+      return R"("type": "array", "items": {"type": "number")" + bounds(values) + "}" +
+             (count ? ", \"minItems\": " + size + ", \"maxItems\": " + size : R"(, "minItems": 1)");
+    }
+  return R"("type": "number")" + bounds(values);
+}
+
+std::string key_text(const Entry& entry) {
+  const std::string unit = entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
+  const std::string otherwise = entry.fallback.empty() ? "" : "; default " + entry.fallback;
+  return in_quotes(entry.key) + ": {" + type(entry.values) + ", \"description\": " + in_quotes(entry.meaning + unit + otherwise) + "}";
+}
+
+}  // namespace
+
+std::string schema_text(const List& list, int depth) {
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  std::string properties, others = list.foreign ? "true" : "false";
+  const auto add = [&](const std::string& text) { properties += (properties.empty() ? "\n" : ",\n") + indent + "  " + text; };
+  for (const Entry& entry : list.entries) add(key_text(entry));
+  const bool shared = !list.mentioned.empty();  // its lists take keys of others, too, and may be called `defaults`
+  for (const auto& inner : list.lists) {
+    if (shared)
+      others = R"({"type": "object"})";
+    else if (inner->name == "<name>")
+      others = schema_text(*inner, depth + 1);
+    else
+      add(in_quotes(inner->name) + ": " + schema_text(*inner, depth + 1));
+  }
+  return R"({"type": "object", "description": )" + in_quotes(list.meaning) + ", \"properties\": {" + properties + "}, \"additionalProperties\": " + others +
+         "}";
+}
+
+std::string commented_text(const List& list, int depth) {
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  std::string out, others;
+  for (const Entry& entry : list.entries) {
+    if (!list.given || !list.given->getEntryPtr(entry.key)) {
+      others += (others.empty() ? "" : ", ") + entry.key + (entry.fallback.empty() ? "" : " (" + entry.fallback + ")");
+      continue;
+    }
+    const std::string unit = entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
+    out += indent + "# " + entry.meaning + unit + "\n" + indent + entry.key + ": " + entry.value + "\n";
+  }
+  if (!others.empty()) out += indent + "# and, with their defaults: " + others + "\n";
+  for (const auto& inner : list.lists)
+    if (inner->given && !inner->foreign) out += indent + inner->name + ":\n" + commented_text(*inner, depth + 1);
+  return out;
+}
+
+}  // namespace tanktread::deck

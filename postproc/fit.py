@@ -1,0 +1,523 @@
+#!/usr/bin/python3
+"""From an experiment to moduli with error bars: unknown keys of a deck by weighted least squares from outlines, lengths, velocities or curves.
+
+    postproc/fit.py inputs/studies/experiment.yaml                  # results/experiment/fit.txt, fit.yaml, fit.png
+    postproc/fit.py inputs/studies/experiment.yaml --samples 100    # and whether the stated errors are right, from synthetic noise
+
+An experiment is a YAML file: `deck` (one, or several laid over each other), `set` (keys of all runs), `unknown`, `laws` and `experiments`;
+inputs/studies/experiment.yaml is an example.
+    unknown: {Membrane/shear modulus: {start: 1}}        # from, to: bounds; known, error: a value known beforehand; spacing: linear for what may be negative
+    laws: {skalak: {Membrane/law: Skalak}}               # each is fitted, and compared with the others
+    experiments: {slow: {set: {…}, unknown: {…}, data: [datum, …]}}    # each is a run; what is unknown here is its own
+    datum: {outline: points.csv, error: 0.5, scale: 0.01}   # the edge as seen along x2, columns x1, x3 in the picture's unit, its error in that unit;
+           # plane: [x1, x3]; scale: the deck's length a unit; scale error: its relative error, or free; at: time of the snapshot (default: the last)
+    datum: {series: velocity_x1, value: 1.2, error: 0.01}   # a series' last value, or at: time
+    datum: {series: taylor_inertia, curve: relaxation.csv}  # columns time, value and, if it is not given by `error`, error
+    next: {Flow/mean velocity: [1, 2, 4]}                # settings of a further experiment with data like the first one's: which would tell most
+
+The place of an outline in its picture is free. Derivatives are differences of runs, made side by side. Runs are kept and found again.
+"""
+
+import argparse
+import copy
+import itertools
+import os
+import pathlib
+import sys
+
+import needs  # before what it looks for
+import numpy
+import scipy.optimize
+import scipy.stats
+import yaml
+
+import literature
+import silhouette
+import tanktread
+from sweep import Mistake, answer, decks_of, expect, yaml_of
+
+KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
+STEP = 0.01     # of a logarithm, for derivatives on the way
+TELLS = 0.02    # and for those that errors come from, to both sides
+FAILED = 1e6    # a residual where a run failed
+GAP = 0.1       # of an outline's length, from its last point to the first, at which it does not close
+
+
+def numbers_of(path, least):
+    """A CSV file with `least` columns or more, below a row of names or none."""
+    try:
+        values = numpy.genfromtxt(path, delimiter=",", comments="#")
+    except (OSError, ValueError) as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
+    values = values[1:] if values.ndim == 2 and not numpy.isfinite(values[0]).any() else values
+    expect(values.ndim == 2 and values.shape[1] >= least and numpy.isfinite(values[:, :least]).all(), f"{path} must have {least} columns of numbers")
+    return values
+
+
+class Unknown:
+    """A key whose value is sought, as the number that the fit varies: the logarithm of what is positive."""
+
+    def __init__(self, key, given, owner=None):
+        given = given if isinstance(given, dict) else {"start": given}
+        self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
+        expect(isinstance(given.get("start", given.get("known")), (int, float)), f"{self.name} needs a number to start from")
+        expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
+        self.start_value = float(given.get("start", given.get("known")))
+        self.logarithmic = given.get("spacing") != "linear"
+        expect(not self.logarithmic or self.start_value > 0, f"{self.name} starts from a positive number, or has `spacing: linear`")
+        self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
+        self.bounds = tuple(self.number(given[word]) if word in given else default for word, default in (("from", -numpy.inf), ("to", numpy.inf)))
+        self.known, self.error = given.get("known"), given.get("error")
+
+    def number(self, value):
+        return numpy.log(value) if self.logarithmic else value / self.unit
+
+    def value(self, number):
+        return float(numpy.exp(number) if self.logarithmic else number * self.unit)
+
+    def error_of(self, value, error):
+        """The standard error of the value from that of the number."""
+        return value * error if self.logarithmic else self.unit * error
+
+
+class OutlineData:
+    """Points of an edge in a plane. Unknown with it: where it lies, and its scale where that has an error."""
+
+    def __init__(self, given, name, folder):
+        known = {"outline", "plane", "error", "scale", "scale error", "at", "open"}
+        expect(set(given) <= known, f"{name}: an outline has {', '.join(sorted(known))}")
+        expect(isinstance(given.get("scale"), (int, float)), f"{name} has no scale: the deck's length for a unit of its picture (1 if they are the same)")
+        self.name, self.at, self.scale, self.error = name, given.get("at"), float(given["scale"]), given.get("error")
+        plane = given.get("plane", ["x1", "x3"])
+        expect(len(set(plane)) == 2 and set(plane) <= {"x1", "x2", "x3"}, f"{name}: the plane is two of x1, x2, x3")
+        self.axis = 6 - sum(int(one[1]) for one in plane) - 1
+        self.points = numbers_of(folder / given["outline"], 2)[:, numpy.argsort(plane)]
+        steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
+        expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
+               f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length from the first (`open: true` takes it as it is)")
+        self.free_scale, self.scale_error = given.get("scale error") == "free", given.get("scale error", 0)
+        self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
+        self.count = len(self.points)
+
+    def start(self, prediction):
+        """Its place, from the middles of both."""
+        low, high = self.points.min(0), self.points.max(0)
+        middle = (prediction.points.min(0) + prediction.points.max(0)) / 2
+        return numpy.concatenate([middle - self.scale * (low + high) / 2, numpy.zeros(self.places - 2)])
+
+    def prediction(self, run):
+        shot = run.snapshot_at(self.at)
+        expect(self.at is None or abs(shot.time - self.at) < 1e-6 * max(1, abs(self.at)), f"{self.name}: there is no snapshot at {self.at}: set Output/interval")
+        return silhouette.seen(shot, self.axis).centred()  # where a run carries its particle is not in the picture
+
+    def placed(self, place):
+        return self.points * self.scale * numpy.exp(place[2] if self.places > 2 else 0) + place[:2]
+
+    def residuals(self, prediction, place):
+        found = prediction.distances(self.placed(place)) / self.scale / (self.error or 1)
+        return numpy.append(found, place[2] / self.scale_error) if self.places > 2 and not self.free_scale else found
+
+
+class SeriesData:
+    """Values of a series, at times."""
+
+    places = 0
+
+    def __init__(self, given, name, folder):
+        known = {"series", "value", "curve", "error", "at"}
+        expect(set(given) <= known and ("value" in given) != ("curve" in given), f"{name}: a series has value or curve, and error, at")
+        self.name, self.series, self.error = name, given["series"], given.get("error")
+        if "curve" in given:
+            table = numbers_of(folder / given["curve"], 2)
+            self.times, self.values = table[:, 0], table[:, 1]
+            self.error = table[:, 2] if self.error is None and table.shape[1] > 2 else self.error
+        else:
+            self.times, self.values = given.get("at"), numpy.array([float(given["value"])])
+        self.count = len(self.values)
+
+    def start(self, prediction):
+        return numpy.array([])
+
+    def prediction(self, run):
+        expect(self.series in run.series, f"{self.name}: there is no series {self.series}; there are: {', '.join(sorted(run.series))}")
+        values, times = run.series[self.series], run.series["time"]
+        if self.times is None:
+            return values[-1:]
+        wanted = numpy.atleast_1d(self.times)
+        expect(wanted.max() <= times[-1] * (1 + 1e-9), f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
+        return literature.interpolated(times, values, wanted)
+
+    def residuals(self, prediction, place):
+        return (self.values - prediction) / (1 if self.error is None else self.error)
+
+
+class Experiment:
+    def __init__(self, name, given, folder):
+        expect(isinstance(given, dict) and given.get("data"), f"the experiment {name} has no data")
+        expect(set(given) <= {"set", "unknown", "data"}, f"the experiment {name} has set, unknown and data")
+        self.name, self.settings = name, given.get("set") or {}
+        self.unknowns = [Unknown(key, one, name) for key, one in (given.get("unknown") or {}).items()]
+        kinds = {"outline": OutlineData, "series": SeriesData}
+        self.data = []
+        for k, one in enumerate(given["data"]):
+            kind = next((kind for word, kind in kinds.items() if word in one), None)
+            expect(kind, f"{name}: a datum is an outline or a series")
+            self.data.append(kind(one, f"{name}: {one.get('outline') or one['series']}" if k or len(given["data"]) > 1 else f"{name}: data", folder))
+
+
+class Runs:
+    """What runs of the program predict. `settings` of an experiment's run to predictions of its data, or None where it failed."""
+
+    def __init__(self, study, decks):
+        self.study, self.decks, self._found, self.messages = study, decks, {}, []
+
+    count = property(lambda self: len(self._found))
+
+    def all(self, jobs):
+        """Predictions of many (experiment, settings)."""
+        texts = [experiment.name + str(sorted(settings.items())) for experiment, settings in jobs]
+        new = {text: job for text, job in zip(texts, jobs) if text not in self._found}
+        outcomes = self.study.all([(self.decks, settings) for _, settings in new.values()])
+        for (text, (experiment, _)), outcome in zip(new.items(), outcomes):
+            if outcome.refused:
+                raise Mistake(f"the deck is refused: {outcome.message}")
+            self.messages += [] if outcome.done else [outcome.message]
+            self._found[text] = [datum.prediction(outcome.run) for datum in experiment.data] if outcome.done else None
+        return [self._found[text] for text in texts]
+
+
+class Fit:
+    """One law: what is unknown, its best values and their errors. The numbers that are varied are those of the unknowns, then of the outlines' places."""
+
+    def __init__(self, law, settings, unknowns, experiments, runs):
+        self.law, self.settings, self.experiments, self.runs = law, settings, experiments, runs
+        self.unknowns = [*unknowns, *(one for experiment in experiments for one in experiment.unknowns)]
+        self.data = [datum for experiment in experiments for datum in experiment.data]
+        self.count = sum(datum.count for datum in self.data)
+        self.stated = all(datum.error is not None for datum in self.data)
+
+    def jobs(self, numbers):
+        """(experiment, settings) of all runs at these numbers of the unknowns."""
+        found = []
+        for experiment in self.experiments:
+            values = {one.key: one.value(x) for one, x in zip(self.unknowns, numbers) if one.owner in (None, experiment.name)}
+            found.append((experiment, self.settings | experiment.settings | values))
+        return found
+
+    def predictions(self, numbers):
+        """Of all data, or None."""
+        return self.flat(self.runs.all(self.jobs(numbers)))
+
+    @staticmethod
+    def flat(found):
+        return None if any(one is None for one in found) else list(itertools.chain.from_iterable(found))
+
+    def residuals(self, predictions, numbers, places):
+        """Weighted, of all data and of what is known beforehand."""
+        if predictions is None:
+            return numpy.full(self.length(), FAILED)
+        parts, start = [], 0
+        for datum, prediction in zip(self.data, predictions):
+            parts.append(datum.residuals(prediction, places[start:start + datum.places]))
+            start += datum.places
+        known = [(one.value(x) - one.known) / one.error for one, x in zip(self.unknowns, numbers) if one.known is not None]
+        return numpy.concatenate([*parts, known])
+
+    def length(self):
+        scales = sum(datum.places > 2 and not datum.free_scale for datum in self.data)
+        return self.count + scales + sum(one.known is not None for one in self.unknowns)
+
+    def split(self, x):
+        return x[:len(self.unknowns)], x[len(self.unknowns):]
+
+    def jacobian(self, x, step, sides=(1,)):
+        """Differences: columns of the unknowns by runs (a matrix a side), and of the places."""
+        numbers, places = self.split(x)
+        shifted = [numbers + side * step * unit for side in sides for unit in numpy.eye(len(numbers))]
+        jobs = [self.jobs(one) for one in [numbers, *shifted]]
+        made = self.runs.all([job for one in jobs for job in one])
+        n = len(self.experiments)
+        found = [self.flat(made[k:k + n]) for k in range(0, len(made), n)]
+        base = self.residuals(found[0], numbers, places)
+        columns = [(self.residuals(one, at, places) - base) / (side * step) if one is not None else numpy.full(len(base), numpy.nan)
+                   for one, at, side in zip(found[1:], shifted, numpy.repeat(sides, len(numbers)))]
+        tiny = 1e-6
+        of_places = [(self.residuals(found[0], numbers, places + tiny * unit) - base) / tiny for unit in numpy.eye(len(places))]
+        k = len(numbers)
+        each = [numpy.array(columns[k * i:k * (i + 1)]).reshape(k, len(base)).T for i in range(len(sides))]
+        return each, numpy.array(of_places).reshape(len(places), len(base)).T
+
+    def begin(self):
+        """Numbers to start from, at which all runs come to their end: where they do not at the user's, one of the unknowns times 3, 1/3, 10 or 1/10."""
+        start = numpy.array([one.number(one.start_value) for one in self.unknowns])
+        tries = [start] + [start + shift * unit * numpy.array([one.logarithmic for one in self.unknowns])
+                           for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in numpy.eye(len(start))]
+        for numbers in tries:
+            predictions = self.predictions(numbers)
+            if predictions is not None:
+                return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, predictions))])
+        raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
+
+    def solve(self, start=None):
+        x = self.begin() if start is None else start
+        places = len(x) - len(self.unknowns)
+        free = len(x) - sum(one.known is not None for one in self.unknowns) - sum(datum.places > 2 and not datum.free_scale for datum in self.data)
+        expect(free < self.count, f"{self.law}: {free} numbers are unknown, places of outlines among them, and there are {self.count} data")
+        bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
+
+        def function(x):
+            numbers, places = self.split(x)
+            return self.residuals(self.predictions(numbers), numbers, places)
+
+        def derivative(x):
+            (columns,), of_places = self.jacobian(x, STEP)
+            return numpy.column_stack([numpy.nan_to_num(columns), of_places])
+
+        found = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-7, gtol=1e-15, max_nfev=40, verbose=2*bool(os.environ.get("FITV")))
+        self.x, self.residual = found.x, found.fun
+        self.square = float(found.fun @ found.fun)
+        self.errors()
+        return self
+
+    def errors(self):
+        """Covariance of the unknowns' numbers, places taken into account; `told`: which of them the data determine at all."""
+        (up, down), of_places = self.jacobian(self.x, TELLS, (1, -1))
+        up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
+        self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
+        strength = numpy.linalg.norm(self.derivative, axis=0)
+        self.told = numpy.isfinite(strength) & (strength > 2 * disagreement) & (strength > 0)
+        self.of_places = of_places
+        full = numpy.column_stack([self.derivative[:, self.told], of_places])
+        scale = numpy.linalg.norm(full, axis=0)
+        _, sizes, right = numpy.linalg.svd(full / scale)
+        k = self.told.sum()
+        with numpy.errstate(divide="ignore"):
+            spread = right.T / sizes
+        covariance = (spread @ spread.T / numpy.outer(scale, scale))[:k, :k]
+        self.freedom = self.length() - full.shape[1]
+        self.covariance = covariance * (1 if self.stated else self.square / self.freedom)
+        errors = numpy.full(len(self.unknowns), numpy.inf)
+        errors[self.told] = numpy.sqrt(numpy.diag(self.covariance))
+        self.number_errors = errors
+        self.determined = errors < 1  # a factor of e, or of a linear one its own start
+        self.probability = float(scipy.stats.chi2.sf(self.square, self.freedom))
+
+    @property
+    def values(self):
+        """{name: (value, standard error or inf)}"""
+        found = {}
+        for one, x, error, known in zip(self.unknowns, self.x, self.number_errors, self.determined):
+            value = one.value(x)
+            found[one.name] = value, one.error_of(value, error) if known else numpy.inf
+        return found
+
+    @property
+    def aic(self):
+        parameters = len(self.x)
+        return self.square + 2 * parameters if self.stated else self.count * numpy.log(self.square / self.count) + 2 * (parameters + 1)
+
+    def runs_test(self):
+        """Wald and Wolfowitz, of the signs along all outlines and curves together: how many deviations fewer runs of one sign than by chance; z."""
+        runs = mean = variance = start = 0
+        for datum in self.data:
+            signs = self.residual[start:start + datum.count] > 0
+            start += datum.count + (datum.places > 2 and not datum.free_scale)
+            plus, minus, n = signs.sum(), (~signs).sum(), datum.count
+            if n < 8 or not plus or not minus:
+                continue
+            runs += 1 + (signs[1:] != signs[:-1]).sum()
+            mean += 1 + 2 * plus * minus / n
+            variance += 2 * plus * minus * (2 * plus * minus - n) / (n * n * (n - 1))
+        return float((runs - mean) / numpy.sqrt(variance)) if variance else 0.0
+
+    def information(self):
+        """Of the unknowns' numbers, places taken out."""
+        a, b = self.derivative[:, self.told], self.of_places
+        return a.T @ a - (a.T @ b) @ numpy.linalg.pinv(b.T @ b) @ (b.T @ a) if b.size else a.T @ a
+
+
+def load(path, study):
+    """The fits of all laws, not yet solved, and the file's text."""
+    text = yaml_of(path, KEYS)
+    folder = pathlib.Path(path).parent
+    decks = decks_of(text, path)
+    study.limit = text.get("limit")
+    expect(text.get("experiments"), f"{path} has no experiments")
+    expect(text.get("unknown") or any(one.get("unknown") for one in text["experiments"].values()), f"{path}: nothing is unknown")
+    unknowns = [Unknown(key, given) for key, given in (text.get("unknown") or {}).items()]
+    experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
+    laws = text.get("laws") or {"the deck's law": {}}
+    fixed = text.get("set") or {}
+    return [Fit(law, fixed | settings, unknowns, experiments, Runs(study, decks)) for law, settings in laws.items()], text
+
+
+def further(fits, settings):
+    """What further experiments would tell: (settings, {unknown: error with it}, {other law: expected rise of chi square}). Each has data like the first
+    experiment's, on the best law's prediction."""
+    best, first = fits[0], fits[0].experiments[0]
+    rows = []
+    for key, value in [(key, value) for key, values in settings.items() for value in values]:
+        candidate = copy.copy(first)
+        candidate.settings, candidate.data = first.settings | {key: value}, []
+        truth = best.runs.all([(first, best.settings | candidate.settings | dict(_values(best, first)))])[0]
+        if truth is None:
+            rows.append(({key: value}, None, None))
+            continue
+        for datum, prediction in zip(first.data, truth):
+            one = copy.copy(datum)
+            if isinstance(datum, OutlineData):
+                one.points, one.scale = prediction.even(datum.count), 1.0
+                one.error = (datum.error or _scatter(best)) * datum.scale
+            else:
+                one.values, one.error = numpy.asarray(prediction), datum.error if datum.error is not None else _scatter(best)
+            candidate.data.append(one)
+        rows.append(({key: value}, _errors_with(best, candidate), {other.law: _rise(other, candidate) for other in fits[1:]}))
+    return rows
+
+
+def _scatter(fit):
+    return numpy.sqrt(fit.square / fit.freedom)
+
+
+def _values(fit, experiment):
+    return [(one.key, one.value(x)) for one, x in zip(fit.unknowns, fit.x) if one.owner in (None, experiment.name)]
+
+
+def _alone(fit, candidate):
+    """A fit of the candidate only, at the values of `fit`."""
+    one = Fit(fit.law, fit.settings, [], [candidate], fit.runs)
+    one.index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
+    one.unknowns = [copy.copy(fit.unknowns[k]) for k in one.index]
+    for unknown in one.unknowns:
+        unknown.known = None  # what is known beforehand counts once
+    one.x = fit.x[one.index]
+    predictions = one.predictions(one.x)
+    if predictions is None:
+        return None
+    one.x = numpy.concatenate([one.x, *(datum.start(prediction) for datum, prediction in zip(candidate.data, predictions))])
+    numbers, places = one.split(one.x)
+    if len(places):
+        placed = scipy.optimize.least_squares(lambda p: one.residuals(predictions, numbers, p), places)
+        one.x = numpy.concatenate([numbers, placed.x])
+    one.residual = one.residuals(predictions, *one.split(one.x))
+    one.square = float(one.residual @ one.residual)
+    return one
+
+
+def _errors_with(fit, candidate):
+    one = _alone(fit, candidate)
+    one.errors()
+    both = numpy.zeros((len(fit.unknowns),) * 2)
+    both[numpy.ix_(fit.told, fit.told)] += fit.information() / (1 if fit.stated else _scatter(fit) ** 2)
+    index = numpy.array(one.index)[one.told]
+    both[numpy.ix_(index, index)] += one.information()
+    errors = numpy.sqrt(numpy.diag(numpy.linalg.pinv(both)))
+    return {unknown.name: unknown.error_of(unknown.value(x), error) for unknown, x, error in zip(fit.unknowns, fit.x, errors)}
+
+
+def _rise(fit, candidate):
+    one = _alone(fit, candidate)
+    return one.square if one else numpy.inf
+
+
+def told(fits, rows):
+    """The report as text."""
+    lines = []
+    for fit in fits:
+        said = f"chi square {fit.square:.4g} for {fit.freedom} degrees of freedom" + (f" (probability {fit.probability:.2g})" if fit.stated else "")
+        lines += [f"{fit.law}: {said}, AIC {fit.aic:.2f}, {fit.runs.count} runs"]
+        if not fit.stated:
+            lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing about the law"]
+        for name, (value, error) in fit.values.items():
+            if numpy.isfinite(error):
+                lines.append(f"  {name} = {value:.8g} ± {error:.2g} ({error / abs(value):.2%})")
+            else:
+                lines.append(f"  {name}: not determined by these data (they are as well met by values far from {value:.3g})")
+        shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
+        if len(shown) > 1:
+            size = numpy.sqrt(numpy.diag(fit.covariance))
+            correlation = fit.covariance / numpy.outer(size, size)
+            lines += [f"  correlation of {a} and {b}: {correlation[i, j]:.3f}" for (i, a), (j, b) in itertools.combinations(enumerate(shown), 2)]
+        z = fit.runs_test()
+        lines.append(f"  signs of the residuals along the data: {'change as by chance' if z > -2 else 'stay the same too long: the model is not the data’s'} "
+                     f"({z:.1f} standard deviations)")
+    if len(fits) > 1:
+        gap = [fit.aic - fits[0].aic for fit in fits]
+        total = sum(numpy.exp(-one / 2) for one in gap)
+        lines.append("laws, best first: " + ", ".join(f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit, one in zip(fits, gap)))
+        lines.append("the data " + (f"tell {fits[0].law} from the others" if gap[1] > 10 else "do not tell these laws apart (a difference in AIC below 10)"))
+    for settings, errors, rises in rows:
+        name = ", ".join(f"{key} {value}" for key, value in settings.items())
+        if errors is None:
+            lines.append(f"a further experiment, {name}: its run fails")
+            continue
+        said = [f"± {error:.2g} of {key}" for key, error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
+        lines.append(f"a further experiment, {name}: " + ", ".join(said))
+    return "\n".join(lines)
+
+
+def draw(fits, path):
+    """Outlines and curves with the fit, residuals, and the ellipses of pairs of unknowns."""
+    import style
+    from style import plt
+
+    best = fits[0]
+    predictions, places = best.predictions(best.x[:len(best.unknowns)]), best.split(best.x)[1]
+    pairs = list(itertools.combinations(range(int(best.told.sum())), 2))[:3]
+    figure, axes = plt.subplots(1, 2 + len(pairs), figsize=(4.6 * (2 + len(pairs)), 4.4), squeeze=False)
+    data, residual, start, row = axes[0][0], axes[0][1], 0, 0
+    for k, (datum, prediction) in enumerate(zip(best.data, predictions)):
+        color = style.RUNS[k % len(style.RUNS)]
+        if isinstance(datum, OutlineData):
+            data.plot(*numpy.vstack([prediction.even(400), prediction.even(1)]).T, color=color, linewidth=1)
+            data.plot(*datum.placed(places[start:start + datum.places]).T, ".", color=color, ms=2.5, label=datum.name)
+            data.set_aspect("equal")
+        elif numpy.size(datum.times) > 1:
+            data.plot(datum.times, prediction, color=color, linewidth=1)
+            data.plot(datum.times, datum.values, ".", color=color, ms=4, label=datum.name)
+        start += datum.places
+        residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".", ms=2.5, color=color)
+        row += datum.count + (datum.places > 2 and not getattr(datum, "free_scale", True))
+    data.legend(fontsize=7)
+    data.set_title(f"data and {best.law}")
+    residual.set_title("residuals over their errors")
+    names = [one for one, yes in zip(best.unknowns, best.told) if yes]
+    for axis, (i, j) in zip(axes[0][2:], pairs):
+        angle = numpy.linspace(0, 2 * numpy.pi, 200)
+        values, vectors = numpy.linalg.eigh(best.covariance[numpy.ix_([i, j], [i, j])])
+        for share, line in (0.683, "-"), (0.954, "--"):
+            circle = numpy.sqrt(scipy.stats.chi2.ppf(share, 2)) * (vectors * numpy.sqrt(values)) @ [numpy.cos(angle), numpy.sin(angle)]
+            index = [best.unknowns.index(names[k]) for k in (i, j)]
+            x, y = ([names[k].value(best.x[at] + one) for one in circle[m]] for m, (k, at) in enumerate(zip((i, j), index)))
+            axis.plot(x, y, line, color=style.RUNS[0], label=f"{share:.1%}")
+        axis.plot(*(names[k].value(best.x[best.unknowns.index(names[k])]) for k in (i, j)), "+", color=style.INK)
+        axis.set_xlabel(names[i].name)
+        axis.set_ylabel(names[j].name)
+        axis.legend()
+    style.save(figure, path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("experiment", help="the experiment, a YAML file")
+    parser.add_argument("--output", type=pathlib.Path, metavar="DIR", help="where results go (default: results/<experiment>)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time (default: the number of cores)")
+    parser.add_argument("--law", nargs="+", metavar="NAME", help="fit these laws only")
+    arguments = parser.parse_args()
+    directory = arguments.output or pathlib.Path("results") / pathlib.Path(arguments.experiment).stem
+    fits, text = load(arguments.experiment, tanktread.Study(directory=directory / "runs", jobs=arguments.jobs))
+    laws = arguments.law or [fit.law for fit in fits]
+    expect(set(laws) <= {fit.law for fit in fits}, f"there is no such law; there are: {', '.join(fit.law for fit in fits)}")
+    fits = sorted((fit.solve() for fit in fits if fit.law in laws), key=lambda fit: fit.aic)
+    said = told(fits, further(fits, text.get("next") or {}))
+    print(said)
+    (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
+    record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,
+                        "unknown": {name: {"value": value, "error": float(error)} for name, (value, error) in fit.values.items()}} for fit in fits}
+    (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
+    draw(fits, directory / "fit.png")
+    return 0
+
+
+if __name__ == "__main__":
+    answer(main)
