@@ -17,9 +17,6 @@ double resting_volume(const Body& body) { return surface::volume(body.space, bod
 double resting_area(const Body& body) { return surface::measures(body.space, body.rest).area; }
 bool elastic(const Scene& scene) { return !scene.particle.rigid() && scene.membrane.law != "surface tension"; }
 
-/// K_s = dT/d(ln A) of an unstressed membrane.
-double area_modulus(const Scene& scene) { return scene.modulus() * (1 + 2 * scene.membrane.area_dilatation.value_or(1)); }
-
 constexpr Number table[] = {
     {"radius", "length", "R_C: of the sphere of equal volume", [](const Scene&, const Body& b) { return b.radius; }},
     {"volume", "length^3", "of the resting shape", [](const Scene&, const Body& b) { return resting_volume(b); }},
@@ -33,8 +30,8 @@ constexpr Number table[] = {
     {"capillary_number", "1", "Ca = mu speed/G_s, of a drop mu speed/sigma",
      [](const Scene& s, const Body&) { return !s.particle.rigid() && s.speed() > 0 ? s.flow.viscosity * s.speed() / s.modulus() : none; }},
     {"shear_modulus", "force/length", "G_s", [](const Scene& s, const Body&) { return elastic(s) ? s.modulus() : none; }},
-    {"area_modulus", "force/length", "K_s of small strains: (1 + 2 C) G_s of Skalak's law, 3 G_s of the neo-Hookean one",
-     [](const Scene& s, const Body&) { return elastic(s) ? area_modulus(s) : none; }},
+    {"area_modulus", "force/length", "K_s of small strains: (1 + 2 C) G_s of Skalak's law and of Evans and Skalak's, 3 G_s of rubber",
+     [](const Scene& s, const Body& b) { return elastic(s) ? area_modulus(b.law) : none; }},
     {"surface_tension", "force/length", "sigma",
      [](const Scene& s, const Body&) { return s.particle.rigid() || elastic(s) ? none : s.modulus(); }},
     {"bending_modulus", "force length", "E_b",

@@ -14,6 +14,10 @@ double modulus(const Law& law) {
   return std::visit([](const auto& l) { return l.modulus(); }, law);
 }
 
+double area_modulus(const Law& law) {
+  return std::visit([](const auto& l) { return l.area_modulus(); }, law);
+}
+
 double energy(const Law& law, double stretch1, double stretch2) {
   return std::visit([&](const auto& l) { return l.energy(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); },
                     law);

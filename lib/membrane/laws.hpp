@@ -36,6 +36,7 @@ struct NeoHookean {
             shear_modulus * inverse * inverse * inverse};
   }
   double modulus() const { return shear_modulus; }
+  double area_modulus() const { return 3 * shear_modulus; }
 };
 
 /// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening, C resists a change of area. (3.3)  P-8
@@ -54,6 +55,49 @@ struct Skalak {
             zero + 0.5 * shear_modulus * area_dilatation};
   }
   double modulus() const { return shear_modulus; }
+  double area_modulus() const { return (1 + 2 * area_dilatation) * shear_modulus; }
+};
+
+/// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)): a sheet of Mooney's rubber that keeps its volume, for m = 1 the
+/// neo-Hookean one. Barthes-Biesel, Diaz & Dhenin 2002, eq. 2.16.
+struct MooneyRivlin {
+  double shear_modulus = 1;
+  double share = 1;  ///< m
+
+  template <class Number>
+  Number energy(const Number& i1, const Number& i2) const {
+    return (0.5 * shear_modulus) * (share * (i1 - 1.0 + 1.0 / (i2 + 1.0)) + (1 - share) * ((i1 + 2.0) / (i2 + 1.0) + i2 - 2.0));
+  }
+  template <class Number>
+  Response<Number> response(const Number& i1, const Number& i2) const {
+    const double first = 0.5 * shear_modulus * share, second = 0.5 * shear_modulus * (1 - share);
+    const Number inverse = 1.0 / (i2 + 1.0), square = inverse * inverse, trace = i1 + 2.0;
+    return {second * inverse + first, (-1.0) * (second * trace + first) * square + second, 0.0 * i2, -second * square,
+            ((2.0 * second) * trace + 2.0 * first) * square * inverse};
+  }
+  double modulus() const { return shear_modulus; }
+  double area_modulus() const { return 3 * shear_modulus; }
+};
+
+/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area apart from dilatation. Evans & Skalak 1980.
+struct EvansSkalak {
+  double shear_modulus = 1;
+  double area_dilatation = 1;  ///< C: K_s = (1 + 2 C) G_s, as Skalak's law has it for small strains
+
+  template <class Number>
+  Number energy(const Number& i1, const Number& i2) const {
+    const Number js = sqrt(i2 + 1.0);
+    return (0.5 * shear_modulus) * ((i1 + 2.0) / js - 2.0) + (0.5 * area_modulus()) * (js - 1.0) * (js - 1.0);
+  }
+  template <class Number>
+  Response<Number> response(const Number& i1, const Number& i2) const {
+    const Number square = 1.0 / (i2 + 1.0), inverse = sqrt(square), cube = square * inverse, trace = i1 + 2.0;
+    const double g = shear_modulus, k = area_modulus();
+    return {(0.5 * g) * inverse, (-0.25 * g) * trace * cube + (-0.5 * k) * (inverse - 1.0), 0.0 * i2, (-0.25 * g) * cube,
+            (0.375 * g) * trace * cube * square + (0.25 * k) * cube};
+  }
+  double modulus() const { return shear_modulus; }
+  double area_modulus() const { return (1 + 2 * area_dilatation) * shear_modulus; }
 };
 
 /// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
@@ -72,6 +116,7 @@ struct SurfaceTension {
     return {zero, first, zero, zero, -0.5 * first * inverse};
   }
   double modulus() const { return tension; }
+  double area_modulus() const { return 0; }
 };
 
 /// x_,s.x_,s, x_,s.x_,t and x_,t.x_,t of a surface.
@@ -92,10 +137,13 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 }
 
 /// A law of the deck's choice; visited once outside the hot loops.
-using Law = std::variant<NeoHookean, Skalak, SurfaceTension>;
+using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, SurfaceTension>;
 
 /// The modulus that tensions are reported over: G_s, or sigma of an interface. Force per length.
 double modulus(const Law& law);
+
+/// K_s = dT/d(ln A) of an unstressed membrane, 0 of an interface. Force per length.
+double area_modulus(const Law& law);
 
 /// Psi at principal stretches l1, l2.
 double energy(const Law& law, double stretch1, double stretch2);

@@ -6,16 +6,20 @@
 namespace tanktread::membrane {
 
 void Options::declare(deck::Section& section) {
-  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "surface tension"},
-              "constitutive law: (P-7), (P-8), or a fluid interface (3.4)");
+  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "surface tension"},
+              "constitutive law (3.3): rubber of constant volume, `neo-Hookean` (P-7) or `Mooney-Rivlin`; resistance to a change of area, `Skalak` (P-8) "
+              "or `Evans-Skalak`; or a fluid interface (3.4)");
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
               "Ca = viscosity x rate x R_C / G_s (over the surface tension for a drop); R_C: radius of the sphere of equal volume, rate: "
               "Flow/shear rate, or the largest singular value of Flow/gradient. 0.3 if no alternative is given");
   section.key("shear modulus", shear_modulus, deck::positive(), "force/length", "G_s, instead of `capillary number`");
   section.key("surface tension", surface_tension, deck::positive(), "force/length", "of a drop, instead of `capillary number`");
-  if (law == "Skalak") area_dilatation = 1.0;
-  section.key("area dilatation", area_dilatation, deck::not_negative(), "1", "C of the law `Skalak`; 1 if not given");
+  if (dilates()) area_dilatation = 1.0;
+  section.key("area dilatation", area_dilatation, deck::not_negative(), "1",
+              "C of the laws `Skalak` and `Evans-Skalak`, whose area modulus is (1 + 2 C) G_s for small strains; 1 if not given");
+  section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
+              "m of the law `Mooney-Rivlin`: 1 is the neo-Hookean one; what is left of 1 hardens");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
               "alpha: the resting shape is the unstressed one blown up by 1 + alpha about its centre");
   section.key("load", load, deck::Choice{"weak", "strong"},
@@ -49,8 +53,11 @@ void Options::check() const {
     throw UserError("Membrane/shear modulus and Membrane/law `surface tension` contradict each other: give Membrane/surface tension.");
   if (surface_tension && law != "surface tension")
     throw UserError("Membrane/surface tension and Membrane/law `" + law + "` contradict each other: give Membrane/shear modulus.");
-  if (area_dilatation && law != "Skalak")
-    throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `" + law + "`.");
+  if (area_dilatation && !dilates())
+    throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
+  if (neo_hookean_share && law != "Mooney-Rivlin")
+    throw UserError("Membrane/neo-Hookean share belongs to Membrane/law `Mooney-Rivlin`, but Membrane/law is `" + law + "`.");
+  if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
   if (law == "surface tension" && pre_inflation != 0.0)
     throw UserError(
         "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");

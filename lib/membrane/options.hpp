@@ -17,11 +17,12 @@ namespace tanktread::membrane {
 
 /// The membrane: `Membrane/*` of the deck.
 struct Options {
-  std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), surface tension (3.4)
+  std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), Mooney-Rivlin, Evans-Skalak, surface tension (3.4)
   std::optional<double> capillary_number;  ///< Ca = mu rate R_C / G_s, or over sigma; 0.3 if none of the three is given
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
-  std::optional<double> area_dilatation;   ///< Skalak's C; set for this law, 1 if not given, empty otherwise
+  std::optional<double> area_dilatation;   ///< C of Skalak, Evans-Skalak; set for these laws, 1 if not given, empty otherwise
+  std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin; given for this law alone
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< the weak load per area of the unstressed surface (3.7) or of the current one (3.6)
@@ -34,6 +35,8 @@ struct Options {
 
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
+
+  bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }  ///< whether the law has a C
 
   /// G_s, or sigma of a surface tension, from whichever key was given; `viscosity` mu, `rate` of the flow, `radius` R_C.
   double modulus(double viscosity, double rate, double radius) const;

@@ -7,10 +7,11 @@
 namespace tanktread::membrane {
 namespace {
 
-const Law neo_hookean = NeoHookean{1.3}, skalak = Skalak{1.3, 2.5}, interface = SurfaceTension{1.3};
+const Law neo_hookean = NeoHookean{1.3}, skalak = Skalak{1.3, 2.5}, mooney = MooneyRivlin{1.3, 0.4}, evans = EvansSkalak{1.3, 2.5},
+          interface = SurfaceTension{1.3};
 
 TEST(Laws, AnUnstretchedMembraneStoresNothingAndPullsNowhere) {
-  for (const Law& law : {neo_hookean, skalak}) {
+  for (const Law& law : {neo_hookean, skalak, mooney, evans}) {
     EXPECT_EQ(energy(law, 1, 1), 0);
     EXPECT_EQ(principal_tensions(law, 1, 1)[0], 0);
     EXPECT_EQ(principal_tensions(law, 1, 1)[1], 0);
@@ -19,7 +20,7 @@ TEST(Laws, AnUnstretchedMembraneStoresNothingAndPullsNowhere) {
 
 TEST(Laws, DerivativesAreThoseOfTheEnergy) {
   const double i1 = 0.7, i2 = 0.4, h = 1e-5;  // central differences: 1e-10 of truncation, 1e-11 of round-off
-  for (const Law& law : {neo_hookean, skalak, interface})
+  for (const Law& law : {neo_hookean, skalak, mooney, evans, interface})
     std::visit(
         [&](const auto& l) {
           const auto r = l.response(i1, i2);
@@ -34,7 +35,7 @@ TEST(Laws, DerivativesAreThoseOfTheEnergy) {
 
 TEST(Laws, TensionIsTheWorkOfStretchingAcrossTheOtherStretch) {
   const double l1 = 1.4, l2 = 0.8, h = 1e-5;  // differences as above
-  for (const Law& law : {neo_hookean, skalak, interface}) {
+  for (const Law& law : {neo_hookean, skalak, mooney, evans, interface}) {
     const auto t = principal_tensions(law, l1, l2);
     EXPECT_NEAR(t[0], (energy(law, l1 + h, l2) - energy(law, l1 - h, l2)) / (2 * h) / l2, 1e-9);
     EXPECT_NEAR(t[1], (energy(law, l1, l2 + h) - energy(law, l1, l2 - h)) / (2 * h) / l1, 1e-9);
@@ -46,6 +47,20 @@ TEST(Laws, PrincipalTensionsAreTheTextbookOnes) {
   const double l1 = 1.3, l2 = 0.9, js = l1 * l2;
   EXPECT_NEAR(principal_tensions(neo_hookean, l1, l2)[0], 1.3 / js * (l1 * l1 - 1 / (js * js)), 1e-14);  // round-off
   EXPECT_NEAR(principal_tensions(skalak, l1, l2)[0], 1.3 * l1 / l2 * (l1 * l1 - 1 + 2.5 * l2 * l2 * (js * js - 1)), 1e-14);
+}
+
+/// T1 = G_s (m + (1 - m) l2^2) (l1^2 - 1/(l1 l2)^2)/(l1 l2) and T1 = G_s (l1^2 - l2^2)/(2 (l1 l2)^2) + K_s (l1 l2 - 1); the same, eq. 2.18, and Evans &
+/// Skalak 1980, eqs 4.5.10 and 4.6.5.
+TEST(Laws, RubberThatHardensAndShearApartFromDilatationAreTheTextbookOnes) {
+  const double l1 = 1.3, l2 = 0.9, js = l1 * l2;
+  EXPECT_NEAR(principal_tensions(mooney, l1, l2)[0], 1.3 * (0.4 + 0.6 * l2 * l2) * (l1 * l1 - 1 / (js * js)) / js, 1e-14);  // round-off
+  EXPECT_NEAR(principal_tensions(evans, l1, l2)[0], 1.3 * (l1 * l1 - l2 * l2) / (2 * js * js) + 1.3 * 6 * (js - 1), 1e-14);
+}
+
+TEST(Laws, AreaModulusIsTheTensionOfASmallChangeOfArea) {
+  const double pull = 1e-6;
+  for (const Law& law : {neo_hookean, skalak, mooney, evans, interface})
+    EXPECT_NEAR((principal_tensions(law, 1 + pull, 1 + pull)[0] - principal_tensions(law, 1, 1)[0]) / (2 * pull), area_modulus(law), 1e-4);  // O(pull)
 }
 
 TEST(Laws, AFluidInterfacePullsAlikeEverywhere) {
