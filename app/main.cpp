@@ -226,7 +226,8 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
       return done;
     }
     const int code = run(arguments, speaks);
-    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema || !arguments.new_deck.empty();  // and nothing else: a run has its files
+    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema ||
+                        !arguments.new_deck.empty();  // and nothing else: a run has its files
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

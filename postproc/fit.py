@@ -182,8 +182,15 @@ class Runs:
             if outcome.refused:
                 raise Mistake(f"the deck is refused: {outcome.message}")
             self.messages += [] if outcome.done else [outcome.message]
-            self._found[text] = [datum.prediction(outcome.run) for datum in experiment.data] if outcome.done else None
+            self._found[text] = self._predicted(experiment, outcome) if outcome.done else None
         return [self._found[text] for text in texts]
+
+    def _predicted(self, experiment, outcome):
+        try:
+            return [datum.prediction(outcome.run) for datum in experiment.data]
+        except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
+            self.messages.append(str(error))
+            return None
 
 
 class Fit:

@@ -120,4 +120,10 @@ def _outermost(points):
             kept.append(i)
     if numpy.linalg.norm(points[kept[-1]] - points[0]) < 0.3 * spacing:
         kept.pop()
-    return Outline(points[kept])
+    points = points[kept]
+    before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
+    chord = before + after
+    off = (chord[:, 0] * before[:, 1] - chord[:, 1] * before[:, 0]) / numpy.linalg.norm(chord, axis=1)
+    if abs(off).max() > 0.3 * spacing:
+        raise ValueError("the outline is met more than once in a direction from its middle: the shape is hollow as it is seen")
+    return Outline(points)

@@ -77,8 +77,8 @@ std::string schema_text(const List& list, int depth) {
     else
       add(in_quotes(inner->name) + ": " + schema_text(*inner, depth + 1));
   }
-  return R"({"type": "object", "description": )" + in_quotes(list.meaning) + ", \"properties\": {" + properties + "}, \"additionalProperties\": " + others +
-         "}";
+  return R"({"type": "object", "description": )" + in_quotes(list.meaning) + R"(, "properties": {)" + properties +
+         R"(}, "additionalProperties": )" + others + "}";
 }
 
 std::string commented_text(const List& list, int depth) {
