@@ -40,7 +40,7 @@ function(room name)
     add_library(tanktread_${name} INTERFACE)
     set(visibility INTERFACE)
   endif()
-  target_include_directories(tanktread_${name} ${visibility} ${CMAKE_CURRENT_SOURCE_DIR})
+  target_include_directories(tanktread_${name} ${visibility} $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/tanktread>)
   target_link_libraries(tanktread_${name} ${visibility} ${rooms} Eigen3::Eigen)
   set_property(GLOBAL PROPERTY externals_of_${name} ${externals}) # for the room's unit tests
   set_property(GLOBAL APPEND PROPERTY rooms ${name})

@@ -134,7 +134,7 @@ def main():
     colours = plt.get_cmap(FIELD)(numpy.linspace(0, 1, 256))[:, :3]
     content["colours"] = packed(numpy.round(255 * colours).astype("u1"))
     data = base64.b64encode(gzip.compress(json.dumps(content, allow_nan=False, default=str).encode())).decode()
-    page = (pathlib.Path(__file__).parent / "report_page.html").read_text(encoding="utf-8")
+    page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
     path = arguments.output or directory / "report.html"
     title = content["title"].replace("&", "&amp;").replace("<", "&lt;")
     path.write_text(page.replace("%TITLE%", title).replace("%DATA%", data), encoding="utf-8")

@@ -39,6 +39,8 @@ import yaml
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(os.environ.get("TANKTREAD") or SOURCE / "build" / "release" / "app" / "tanktread")
+if not PROGRAM.exists():
+    PROGRAM = pathlib.Path(shutil.which("tanktread") or PROGRAM)  # the one that is installed
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress", "displacement": "length", "velocity": "velocity",

@@ -1,0 +1,5 @@
+# find_package(tanktread): the rooms of the library, tanktread::base to tanktread::output. tanktread::output has all of them.
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 NO_MODULE)
+find_dependency(MPI COMPONENTS CXX)
+include(${CMAKE_CURRENT_LIST_DIR}/tanktread-targets.cmake)
