@@ -40,6 +40,8 @@ KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
 STEP = 0.01     # of a logarithm, for derivatives on the way
 TELLS = 0.02    # and for those that errors come from, to both sides
 FAILED = 1e6    # a residual where a run failed
+FAR = numpy.log(1000)  # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
+FAINT = 1e-4    # what does not change chi by more, times e, is left where it is
 GAP = 0.1       # of an outline's length, from its last point to the first, at which it does not close
 
 
@@ -66,7 +68,8 @@ class Unknown:
         self.logarithmic = given.get("spacing") != "linear"
         expect(not self.logarithmic or self.start_value > 0, f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
-        self.bounds = tuple(self.number(given[word]) if word in given else default for word, default in (("from", -numpy.inf), ("to", numpy.inf)))
+        start = self.number(self.start_value)
+        self.bounds = tuple(self.number(given[word]) if word in given else start + far for word, far in (("from", -FAR), ("to", FAR)))
         self.known, self.error = given.get("known"), given.get("error")
 
     def number(self, value):
@@ -248,11 +251,21 @@ class Fit:
         base = self.residuals(found[0], numbers, places)
         columns = [(self.residuals(one, at, places) - base) / (side * step) if one is not None else numpy.full(len(base), numpy.nan)
                    for one, at, side in zip(found[1:], shifted, numpy.repeat(sides, len(numbers)))]
-        tiny = 1e-6
-        of_places = [(self.residuals(found[0], numbers, places + tiny * unit) - base) / tiny for unit in numpy.eye(len(places))]
         k = len(numbers)
         each = [numpy.array(columns[k * i:k * (i + 1)]).reshape(k, len(base)).T for i in range(len(sides))]
-        return each, numpy.array(of_places).reshape(len(places), len(base)).T
+        return each, self.of_places(found[0], places, len(base))
+
+    def of_places(self, predictions, places, rows, tiny=1e-6):
+        """Derivatives by the places of outlines, each of which moves its own residuals only: shape (rows, places)."""
+        derivative, row, column = numpy.zeros((rows, len(places))), 0, 0
+        for datum, prediction in zip(self.data, predictions):
+            own = places[column:column + datum.places]
+            base = datum.residuals(prediction, own)
+            for k in range(datum.places):
+                shifted = datum.residuals(prediction, own + tiny * (numpy.arange(datum.places) == k))
+                derivative[row:row + len(base), column + k] = (shifted - base) / tiny
+            row, column = row + len(base), column + datum.places
+        return derivative
 
     def begin(self):
         """Numbers to start from, at which all runs come to their end: where they do not at the user's, one of the unknowns times 3, 1/3, 10 or 1/10."""
@@ -278,9 +291,10 @@ class Fit:
 
         def derivative(x):
             (columns,), of_places = self.jacobian(x, STEP)
-            return numpy.column_stack([numpy.nan_to_num(columns), of_places])
+            columns = numpy.nan_to_num(columns)
+            return numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), of_places])
 
-        found = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-7, gtol=1e-15, max_nfev=40, verbose=2*bool(os.environ.get("FITV")))
+        found = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-7, gtol=1e-15, max_nfev=40)
         self.x, self.residual = found.x, found.fun
         self.square = float(found.fun @ found.fun)
         self.errors()
@@ -293,7 +307,7 @@ class Fit:
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
         strength = numpy.linalg.norm(self.derivative, axis=0)
         self.told = numpy.isfinite(strength) & (strength > 2 * disagreement) & (strength > 0)
-        self.of_places = of_places
+        self.moved = of_places
         full = numpy.column_stack([self.derivative[:, self.told], of_places])
         scale = numpy.linalg.norm(full, axis=0)
         _, sizes, right = numpy.linalg.svd(full / scale)
@@ -339,7 +353,7 @@ class Fit:
 
     def information(self):
         """Of the unknowns' numbers, places taken out."""
-        a, b = self.derivative[:, self.told], self.of_places
+        a, b = self.derivative[:, self.told], self.moved
         return a.T @ a - (a.T @ b) @ numpy.linalg.pinv(b.T @ b) @ (b.T @ a) if b.size else a.T @ a
 
 

@@ -37,7 +37,7 @@ class Outline:
 
     def distances(self, points):
         """Of points (m, 2) from the curve, along its normal, positive outside: shape (m,)."""
-        u = numpy.linspace(0, self.length, 8 * len(self.points), endpoint=False)
+        u = numpy.linspace(0, self.length, 2 * len(self.points), endpoint=False)
         known = self._curve(u)
         u = u[((points[:, None] - known) ** 2).sum(2).argmin(1)]
         for _ in range(6):

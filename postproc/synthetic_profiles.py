@@ -31,7 +31,7 @@ LAWS = {"neo-Hookean": {"Membrane/law": "neo-Hookean"}, "Skalak, C = 1": {"Membr
 SPEEDS = [0.3, 0.5, 0.8, 1.1, 1.5]
 MODULUS, RADIUS, POINTS = 20.0, 0.8, 60
 NODES = 11
-SPAN = 0.008, 0.09  # capillary numbers viscosity x speed / modulus of the emulator
+SPANS = {"neo-Hookean": (0.006, 0.09), "Skalak, C = 1": (0.008, 0.17)}  # capillary numbers viscosity x speed / modulus, below which the rear is not hollow
 ANGLES = 2 * numpy.pi * numpy.arange(160) / 160
 
 
@@ -57,18 +57,21 @@ class Emulator:
     messages, count = ["beyond the emulator"], 0
 
     def __init__(self, study, law):
-        low, high = numpy.log(SPAN)
+        low, high = numpy.log(SPANS[law])
         nodes = (low + high) / 2 + (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(NODES) + 0.5) / NODES)
         jobs = [LAWS[law] | FINE | {"Membrane/shear modulus": float(numpy.exp(-node))} for node in nodes]
         study.all([(DECK, job) for job in jobs])
-        self._law, self._radii = law, scipy.interpolate.BarycentricInterpolator(nodes, numpy.array([radii(profile(study, job)) for job in jobs]))
+        self._span, self._known, self._radii = SPANS[law], {}, scipy.interpolate.BarycentricInterpolator(nodes, numpy.array([radii(profile(study, job)) for job in jobs]))
 
     def curve(self, capillary_number):
         return silhouette.Outline(self._radii(numpy.log(capillary_number))[:, None] * numpy.column_stack([numpy.cos(ANGLES), numpy.sin(ANGLES)])).centred()
 
     def all(self, jobs):
         numbers = [settings["Flow/mean velocity"] / settings["Membrane/shear modulus"] for _, settings in jobs]
-        return [[self.curve(number)] if SPAN[0] < number < SPAN[1] else None for number in numbers]
+        for number in numbers:
+            if number not in self._known:
+                self._known[number] = [self.curve(number)] if self._span[0] < number < self._span[1] else None
+        return [self._known[number] for number in numbers]
 
 
 def experiments(curves, errors):

@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+# Fits give back what made their data, say what the data do not determine, and refuse in one sentence; outlines and edges are exact.
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy
+import yaml
+
+from harness import PROGRAM, SOURCE, check, close, deck, main
+
+os.environ["TANKTREAD"] = str(PROGRAM)
+sys.path.append(str(SOURCE / "postproc"))
+import fit
+import outline
+import silhouette
+import tanktread
+
+SHEAR = """
+Tanktread:
+  Flow: { type: simple shear }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { elements per side: 3 }
+  Time: { final time: 1.0, tolerance: 1.0e-6 }
+  Output: { interval: 0.5 }
+"""
+STILL = """
+Tanktread:
+  Flow: { type: quiescent }
+  Particle: { shape: sphere, radius: 1.0, initial shape: { stretch: [1.2, 1.0, 0.9], volume: own } }
+  Membrane: { law: neo-Hookean, shear modulus: 1.0 }
+  Surface: { elements per side: 8 }
+  Time: { final time: 1.0e-6 }
+"""
+
+
+def _fit(text, code=0):
+    pathlib.Path("experiment.yaml").write_text(text if isinstance(text, str) else yaml.safe_dump(text, sort_keys=False))
+    result = subprocess.run([SOURCE / "postproc/fit.py", "experiment.yaml", "--jobs", "1"], capture_output=True, text=True)
+    check(result.returncode == code and "Traceback" not in result.stderr, result.stdout, result.stderr)
+    return result.stdout if code == 0 else result.stderr
+
+
+def _found(law="the deck's law"):
+    return {name: (one["value"], one["error"]) for name, one in yaml.safe_load(open("results/experiment/fit.yaml"))[law]["unknown"].items()}
+
+
+def _ellipse(a, b, n=60):
+    angle = 2 * numpy.pi * numpy.arange(n) / n
+    return numpy.column_stack([a * numpy.cos(angle), b * numpy.sin(angle)])
+
+
+def curves_give_back_two_unknowns_and_tell_the_law():
+    deck(SHEAR)
+    truth = tanktread.run(pathlib.Path("deck.yaml").resolve(), {"Membrane/capillary number": 0.2, "Particle/viscosity ratio": 2.0})
+    for name in "taylor_inertia", "inclination":
+        rows = numpy.column_stack([truth.series["time"], truth.series[name]])[3:]
+        numpy.savetxt(f"{name}.csv", rows, delimiter=",", header="time,value", comments="")
+    data = [{"series": "taylor_inertia", "curve": "taylor_inertia.csv", "error": 1e-3}, {"series": "inclination", "curve": "inclination.csv", "error": 0.1}]
+    said = _fit({"deck": "deck.yaml", "unknown": {"Membrane/capillary number": {"start": 0.6}, "Particle/viscosity ratio": {"start": 0.5}},
+                 "laws": {"neo-Hookean": {"Membrane/law": "neo-Hookean"}, "stiff": {"Membrane/law": "Skalak", "Membrane/area dilatation": 50.0}},
+                 "experiments": {"shear": {"data": data}}, "next": {"Flow/shear rate": [1.0, 2.0]}})
+    found = _found("neo-Hookean")
+    close(found["Membrane/capillary number"][0], 0.2, 2e-5, "Ca")
+    close(found["Particle/viscosity ratio"][0], 2.0, 2e-3, "viscosity ratio")
+    check(0 < found["Membrane/capillary number"][1] < 0.05, found)
+    check("laws, best first: neo-Hookean" in said and "tell neo-Hookean from the others" in said, said)
+    check(said.count("a further experiment, Flow/shear rate") == 2 and "correlation of" in said, said)
+
+
+def what_data_do_not_determine_is_said():
+    deck(STILL)
+    numpy.savetxt("circle.csv", _ellipse(1.2, 0.9), delimiter=",")
+    one = {"deck": "deck.yaml", "unknown": {"Particle/radius": 1.3, "Membrane/shear modulus": 1.0},
+           "experiments": {"still": {"data": [{"outline": "circle.csv", "scale": 1.0, "error": 0.01}]}}}
+    said = _fit(one)
+    check("Membrane/shear modulus: not determined" in said, said)
+    found = _found()
+    close(found["Particle/radius"][0], 1.0, 1e-3, "radius")
+    one["experiments"]["still"]["data"][0]["scale error"] = "free"
+    del one["unknown"]["Membrane/shear modulus"]
+    check("Particle/radius: not determined" in _fit(one), "a size from a picture without a scale")
+    one["experiments"]["still"]["data"][0]["scale error"] = 0.02
+    _fit(one)
+    close(_found()["Particle/radius"][1], 0.02, 4e-4, "error of the radius, which is that of the scale")
+
+
+def a_value_known_beforehand_counts():
+    deck(STILL)
+    numpy.savetxt("circle.csv", _ellipse(1.2, 0.9), delimiter=",")
+    said = _fit({"deck": "deck.yaml", "unknown": {"Particle/radius": {"start": 1.1, "known": 1.2, "error": 1e-4}},
+                 "experiments": {"still": {"data": [{"outline": "circle.csv", "scale": 1.0, "error": 0.05}]}}})
+    close(_found()["Particle/radius"][0], 1.2, 1e-3, said)
+
+
+def an_outline_is_that_of_the_shape():
+    deck(STILL.replace("initial shape:", "orientation: [0.0, 30.0, 0.0], initial shape:"))
+    shot = tanktread.run("deck.yaml").snapshots()[0]
+    turn = numpy.radians(30)
+    turned = _ellipse(1.2, 0.9) @ [[numpy.cos(turn), -numpy.sin(turn)], [numpy.sin(turn), numpy.cos(turn)]]
+    for curve in silhouette.seen(shot), silhouette.cut(shot):
+        check(abs(curve.distances(turned)).max() < 2e-4, abs(curve.distances(turned)).max())  # what the mesh is worth
+    close(abs(silhouette.seen(shot).distances(1.01 * turned)).max(), 0.012, 3e-4, "a distance outside")
+    check(silhouette.seen(shot).distances(0.9 * turned).max() < 0, "a point inside is outside")
+
+
+def _picture(noise, generator, pixels=256, finer=8):
+    """An ellipse with semi-axes 90 and 70 pixels, turned and off the middle, blurred, with noise; and its edge."""
+    x = (numpy.arange(pixels * finer) + 0.5) / finer - 0.5
+    column, row = numpy.meshgrid(x, x)
+    along, across = (0.8 * (column - 130.3) + 0.6 * (row - 124.6)) / 90, (-0.6 * (column - 130.3) + 0.8 * (row - 124.6)) / 70
+    inside = (along**2 + across**2 < 1).reshape(pixels, finer, pixels, finer).mean((1, 3))
+    image = outline.scipy.ndimage.gaussian_filter(0.8 - 0.5 * inside, 1.5) + 0.5 * noise * generator.standard_normal((pixels, pixels))
+    edge = _ellipse(90, 70, 400) @ [[0.8, 0.6], [-0.6, 0.8]] + [130.3, 124.6]
+    return image, silhouette.Outline(edge)
+
+
+def an_edge_is_found_to_a_twentieth_of_a_pixel():
+    generator = numpy.random.default_rng(1)
+    for noise, bound in (0.0, 0.05), (0.02, 0.05):
+        image, edge = _picture(noise, generator)
+        points, error = outline.edge(image, outline.body(image, "picture"), 60)
+        off = edge.distances(points)
+        check(numpy.sqrt((off**2).mean()) < bound, f"noise {noise}: {numpy.sqrt((off ** 2).mean()):.3f} pixels")
+        check(noise == 0 or 0.6 < off.std() / error < 1.6, f"stated {error:.3f}, found {off.std():.3f}")
+    from matplotlib.image import imsave
+    imsave("picture.png", image, cmap="gray", vmin=0, vmax=1)
+    imsave("cut.png", image[:, 100:], cmap="gray", vmin=0, vmax=1)
+    script = SOURCE / "postproc/outline.py"
+    said = subprocess.run([script, "picture.png", "-o", "edge.csv", "--overlay", "check.png"], capture_output=True, text=True)
+    check(said.returncode == 0 and "60 points" in said.stdout, said)
+    found = numpy.loadtxt("edge.csv", delimiter=",", skiprows=1) * [1, -1]
+    check(abs(edge.distances(found)).max() < 0.2, "the points in the file")
+    said = subprocess.run([script, "cut.png"], capture_output=True, text=True)
+    check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
+
+
+def mistakes_are_one_sentence():
+    deck(SHEAR)
+    numpy.savetxt("arc.csv", _ellipse(1, 1)[:40], delimiter=",")
+    numpy.savetxt("circle.csv", _ellipse(1, 1), delimiter=",")
+    datum = {"series": "taylor_inertia", "value": 0.3, "error": 0.01}
+    for change, words in (({"unknown": {}}, "nothing is unknown"), ({"deck": "other.yaml"}, "no deck other.yaml"), ({"models": 1}, "models is not known"),
+                          ({"unknown": {"Membrane/capillary number": 0.3, "Particle/viscosity ratio": 1.0}}, "2 numbers are unknown"),
+                          ({"experiments": {"a": {"data": [{"outline": "arc.csv", "scale": 1, "error": 0.1}]}}}, "does not close"),
+                          ({"experiments": {"a": {"data": [{"outline": "circle.csv", "error": 0.1}]}}}, "has no scale"),
+                          ({"experiments": {"a": {"data": [{"outline": "circle.csv", "scale": 1, "errors": 0.1}]}}}, "an outline has"),
+                          ({"experiments": {"a": {"data": [datum | {"series": "tailor"}]}}}, "no series tailor"),
+                          ({"experiments": {"a": {"data": [datum | {"at": 9.0}]}}}, "before its data"),
+                          ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),
+                          ({"set": {"Time/minimum step": 0.9, "Time/initial step": 0.95, "Membrane/capillary number": 1e-3}, "unknown": {"Particle/radius": 1.0}},
+                           "all runs fail")):
+        one = {"deck": "deck.yaml", "unknown": {"Membrane/capillary number": 0.3}, "experiments": {"a": {"data": [datum]}}} | change
+        said = _fit(one, code=2)
+        check(words in said and said.count("\n") == 1, words, said)
+
+
+main()
