@@ -441,6 +441,11 @@ def _rise(fit, candidate):
     return one.square if one else numpy.inf
 
 
+def rounded(value, error):
+    """A value with a digit more than its error tells."""
+    return f"{value:.{int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10))}g}" if value and error else f"{value:.6g}"
+
+
 def told(fits, rows):
     """The report as text."""
     lines = []
@@ -451,7 +456,7 @@ def told(fits, rows):
             lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing about the law"]
         for name, (value, error) in fit.values.items():
             if numpy.isfinite(error):
-                lines.append(f"  {name} = {value:.8g} ± {error:.2g} ({error / abs(value):.2%})")
+                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g} ({error / abs(value):.2%})")
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from {value:.3g})")
         shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
