@@ -47,7 +47,7 @@ def shapes(run, field):
     shots = [shots[i] for i in numpy.unique(numpy.linspace(0, len(shots) - 1, min(most, len(shots))).round().astype(int))]
     low, high = (numpy.array([edge(shot.points, axis=0) for shot in shots]) for edge in (numpy.min, numpy.max))
     middles = (low + high) / 2 if run.value("Flow/type") == "duct" or not run.particles else numpy.repeat(((low.min(0) + high.max(0)) / 2)[None], len(shots), 0)
-    size = max(abs(numpy.concatenate([low - middles, high - middles])).max(), 1e-300)
+    size = 1.05 * max(abs(numpy.concatenate([low - middles, high - middles])).max(), 1e-300)  # between nodes a surface may bulge
     values = [magnitude(shot.sampled(shot.fields[field], k)[..., None] if shot.fields[field].ndim == 1 else shot.sampled(shot.fields[field], k)) for shot in shots]
     bottom, top = min(v.min() for v in values), max(v.max() for v in values)
     frames = []

@@ -84,6 +84,9 @@ def a_run_is_one_page_with_its_shapes_and_curves():
     check(len(shapes["frames"]) == 5 and shapes["frames"][-1]["time"] == 1.0, "frames")
     places = numpy.frombuffer(base64.b64decode(shapes["frames"][0]["places"]), "<i2").reshape(-1, 3) / 32767 * shapes["size"]
     close(numpy.linalg.norm(places, axis=1).max(), 1, 2e-3, "radius of the sphere at the start")
+    for frame in shapes["frames"]:
+        grid = numpy.frombuffer(base64.b64decode(frame["places"]), "<i2").reshape(frame["cells"], shapes["k"] + 1, shapes["k"] + 1, 3) / 32767 * shapes["size"]
+        close(abs(numpy.diff(grid, axis=1)).max(), 0, 0.5, "a step between neighbours")
     close(content["curves"]["y"]["taylor_inertia"][0], 0, 1e-6, "D at the start")
     expected = next(body for title, _, body in content["sections"] if title == "Expectations")
     check([row[0] for row in expected[1:]] == ["✓", "✗"], expected)
