@@ -77,8 +77,9 @@ def edge(picture, mask, points):
         ends = scipy.ndimage.gaussian_filter1d(ends, len(angle) / 40, axis=1, mode="wrap")[:, :, None]
         return (values - ends[1]) / (ends[0] - ends[1])
 
-    for _ in range(3):
-        found = found + reach * (2 * profiles().mean(1) - 1)
+    for _ in range(3):  # blur keeps the area of a disc, not its diameter: rings count by their radius
+        rings = (profiles() * (found[:, None] + off)).mean(1)
+        found = numpy.sqrt((found - reach) ** 2 + 4 * reach * rings)
     for _ in range(3):
         values = profiles()
         typical = values.mean(0)

@@ -59,9 +59,9 @@ class Run:
             self.descriptions = {name: _text(data.attrs["description"]) for name, data in found.items()}
             self.deck_text = _text(file["deck"][()])
             self.provenance = {key: _text(value) for key, value in file["provenance"].attrs.items()}
-        self.deck = (yaml.safe_load(self.deck_text) or {}).get("Tanktread", {})
+        self.deck = (_loaded(self.deck_text) or {}).get("Tanktread", {})
         summary = self.directory / "summary.yaml"
-        self.summary = yaml.safe_load(summary.read_text(encoding="utf-8")) if summary.exists() else None
+        self.summary = _loaded(summary.read_text(encoding="utf-8")) if summary.exists() else None
 
     @property
     def name(self):
@@ -279,6 +279,10 @@ def time_label(runs):
 def field_label(runs, field, pattern="{}"):
     """What is on the axis of a field of several runs, without units."""
     return " or ".join(dict.fromkeys(one.label(field, pattern) for one in runs))
+
+
+def _loaded(text):
+    return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # the former is ten times as fast
 
 
 def _datasets(group):
