@@ -72,7 +72,7 @@ Body body(const Scene& scene) {
 }
 
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
-  if (scene.particle.rigid() || body.wall) return surface::Symmetry(body.space.n_points);
+  if (scene.particle.rigid() || body.wall || scene.domain.present) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force(), patch_forces(scene, body));
 }

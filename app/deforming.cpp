@@ -29,7 +29,7 @@ class Deforming : public ParticleSystem {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)) {
-    check_apart(members_);
+    check_apart(members_, scene.domain.cell());
     set_up();
     for (Member& member : members_) {
       const Body& body = *member.body;
@@ -114,7 +114,9 @@ class Deforming : public ParticleSystem {
       if (all_) check_spread(*body().wall, capsule_->geometry(), state.x);
       add_tube(*capsule_, state.x, whole);
     }
-    if (all_) whole.nearest = smallest_gap(members_, state.x, ranks_);
+    if (const auto& cell = capsule_->cell(); cell && cell->n() == 3)
+      add_bulk_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), force_on_fluid(state.x), whole);
+    if (all_ || capsule_->cell()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
     std::vector<double> row = tanktread::row(series(scene_, of_run), whole);
     row.insert(row.end(), of_particles.begin(), of_particles.end());
     return row;
@@ -149,6 +151,15 @@ class Deforming : public ParticleSystem {
   Net material_velocity(const motion::State& state) {
     if (body().wall) return capsule_->fluid_velocity(state.x, state.history.front());
     return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
+  }
+
+  /// Of all particles.
+  Vec3 force_on_fluid(const Net& x) {
+    Vec3 force = Vec3::Zero();
+    for (std::size_t p = 0; p < members_.size(); ++p)
+      force += members_[p].scene.particle.rigid() ? capsule_->rigid_about(x, scene_.time.tolerance).force(p)
+                                                  : Vec3(members_[p].body->volume * members_[p].scene.body_force());
+    return force;
   }
 
   /// What a row is made of for particle p, where the fluids move by v.

@@ -27,25 +27,44 @@ struct Placed {
 struct Pair {
   double bound;  ///< the gap is at least this
   std::size_t first, second;
+  Vec3 beyond;  ///< of the second one
 };
+
+/// Lattice vectors to move particle q by so that it may be close to p; of p itself without the one there and back, of unbounded space 0.
+std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optional<stokes::PeriodicCell>& cell) {
+  if (!cell) return same ? std::vector<Vec3>() : std::vector<Vec3>{Vec3::Zero()};
+  std::vector<Vec3> all = cell->around({2, 2, 2});
+  const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
+  if (same) all.resize(all.size() / 2);  // those after the middle are those before it turned about
+  for (Vec3& image : all) image -= apart;
+  return all;
+}
 
 /// The nearest of all pairs of which `mine` is true, those first that can be nearest.
 template <class Mine>
-Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const Mine& mine) {
+Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell, const Mine& mine) {
   std::vector<std::unique_ptr<Placed>> placed;
   std::vector<Pair> pairs;
   double radius = 0;
   for (std::size_t p = 0; p < members.size(); ++p) {
     placed.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
     radius = std::max(radius, members[p].body->radius);
-    for (std::size_t q = 0; q < p; ++q) pairs.push_back({distance(placed[q]->boxes.boxes()[0], placed[p]->boxes.boxes()[0]), q, p});
+    for (std::size_t q = 0; q <= p; ++q)
+      for (const Vec3& beyond : images(x[q], x[p], q == p, cell)) {
+        surface::ElementBoxes::Box moved = placed[p]->boxes.boxes()[0];
+        moved.low += beyond.array(), moved.high += beyond.array();
+        pairs.push_back({distance(placed[q]->boxes.boxes()[0], moved), q, p, beyond});
+      }
   }
   std::ranges::stable_sort(pairs, {}, &Pair::bound);
   Nearest found;
   for (std::size_t k = 0; k < pairs.size() && pairs[k].bound < found.gap; ++k) {
     if (!mine(k)) continue;
-    const auto& [bound, p, q] = pairs[k];
-    const surface::ClosestPoints closest = surface::closest_points(placed[p]->boxes, placed[q]->boxes, accuracy * radius, found.gap);
+    const auto& [bound, p, q, beyond] = pairs[k];
+    std::unique_ptr<Placed> moved;
+    if (!beyond.isZero(0)) moved = std::make_unique<Placed>(surface::BezierMap(members[q].body->space), x[q].rowwise() + beyond.transpose());
+    const surface::ClosestPoints closest =
+        surface::closest_points(placed[p]->boxes, moved ? moved->boxes : placed[q]->boxes, accuracy * radius, found.gap);
     if (closest.gap < found.gap) found = {closest.gap, static_cast<int>(p) + 1, static_cast<int>(q) + 1, (closest.first + closest.second) / 2};
   }
   return found;
@@ -80,22 +99,25 @@ void check_not_nested(const std::vector<Member>& members, const std::vector<Net>
 
 }  // namespace
 
-void check_apart(const std::vector<Member>& members) {
-  if (members.size() == 1) return;
+void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell) {
+  if (members.size() == 1 && !cell) return;
   std::vector<Net> x;
   for (const Member& member : members) x.push_back(member.body->initial);
-  const Nearest found = nearest(members, x, [](std::size_t) { return true; });
+  const Nearest found = nearest(members, x, cell, [](std::size_t) { return true; });
   if (found.gap > 10 * accuracy * members.front().body->radius) return check_not_nested(members, x);
   const auto name = [&](int number) { return "Particles/" + members[static_cast<std::size_t>(number) - 1].name; };
+  if (found.first == found.second)
+    throw UserError("Domain is smaller than " + name(found.first) +
+                    formatted(", which overlaps its own image about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
   throw UserError(name(found.first) + " and " + name(found.second) +
                   formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
 }
 
-Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks) {
+Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> own;
   for (const Member& member : members) own.push_back(member.own(x));
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
-  const Nearest of_rank = nearest(members, own, mine);
+  const Nearest of_rank = nearest(members, own, cell, mine);
   const std::array<double, 6> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
                                    of_rank.place[0], of_rank.place[1], of_rank.place[2]};
   Nearest found;

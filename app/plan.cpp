@@ -35,6 +35,13 @@ std::string wall_solver(const Scene& scene) {
 void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   if (!body.wall) {
     const std::string history = scene.flow.history ? ", changing in time" : "";
+    if (const auto cell = scene.domain.cell()) {
+      constexpr const char* of[] = {"length", "area", "volume"};
+      lines.emplace_back("flow", scene.flow.type + history + ", in a lattice that repeats along " + scene.domain.periodic +
+                                     formatted(": cell of %s %.6g, near images as sources, the rest between Chebyshev nodes", of[cell->n() - 1],
+                                               cell->volume()));
+      return;
+    }
     lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
     return;
   }
@@ -195,7 +202,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
 
 output::Entries<std::string> plan(const Scene& scene, int ranks) {
   std::vector<Member> all = members(scene);
-  check_apart(all);
+  check_apart(all, scene.domain.cell());
   arrange(all);
   const std::unique_ptr<Body> stacked = stacked_body(all);
   return plan(scene, stacked ? *stacked : *all.front().body, ranks);

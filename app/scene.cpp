@@ -206,6 +206,12 @@ void check_contradictions(const Scene& scene) {
   refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", "Tube", flow,
          "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");
   refuse(tube && desingularised, "Quadrature/rule `desingularised`", "Tube", "the wall is not closed");
+  refuse(scene.domain.present && tube, "Domain", "Tube", "a tube does not repeat");
+  refuse(scene.domain.present && alone, "Domain", "Particle", "what repeats is named in the list Particles");
+  refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
+  refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force), "Domain/periodic `" + scene.domain.periodic + "`",
+         told ? motion : weight ? "Particle/density difference" : "Particle/force",
+         "the velocity of a net force in every cell is known in a lattice of three directions only");
   refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");
   refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
   refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
@@ -263,6 +269,11 @@ void Scene::declare(deck::Section& root) {
     root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
   else
     root.mention("Tube");
+  domain.present = root.given("Domain");
+  if (domain.present || root.documenting())
+    root.section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
+  else
+    root.mention("Domain");
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
@@ -303,6 +314,7 @@ void Scene::check() const {
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
+  if (domain.present) domain.check(flow);
   particle.shape.check();
   surface.check();
   check_viscosity_ratio(*this);
@@ -359,7 +371,7 @@ bool may_change_on_resume(const std::string& path) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
     return of_particle.starts_with("Interface/") || of_particle.starts_with("Adaptation/");
   }
-  for (const char* fixed : {"Flow", "Particle", "Membrane", "Surface", "Volume", "Tube"})
+  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

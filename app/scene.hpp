@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/copies.hpp"
+#include "app/domain.hpp"
 #include "coupling/options.hpp"
 #include "coupling/symmetry.hpp"
 #include "deck/expectation.hpp"
@@ -66,6 +67,7 @@ struct Scene : ParticleKind {
   stokes::FlowOptions flow;
   std::vector<ParticleKind> particles;  ///< Particles/<name>; none: the one particle that the scene itself is of
   ContactOptions contact;
+  DomainOptions domain;
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;

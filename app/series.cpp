@@ -119,6 +119,23 @@ constexpr Statement table[] = {
     {"second_of_gap", "", "1", "number of the second one", of_several, [](const Moment& m, int) { return double(m.nearest.second); }},
     {"gap_", axes, "length", "place between their nearest points, component #", of_several,
      [](const Moment& m, int c) { return m.nearest.place[c]; }},
+    {"volume_fraction", "", "1", "volume of the particles over that of the cell", of_several, [](const Moment& m, int) { return m.volume_fraction; },
+     Needs::cell},
+    {"particle_stress_", "11 22 33 12 13 23", "force/length^2", "what the particles add to the mean stress (6.9), without its trace, component #",
+     of_several,
+     [](const Moment& m, int component) {
+       constexpr int places[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+       return m.particle_stress(places[component][0], places[component][1]);
+     },
+     Needs::cell},
+    {"relative_viscosity", "", "1", "effective viscosity over mu (6.10)", of_several, [](const Moment& m, int) { return m.relative_viscosity; },
+     Needs::cell_strain},
+    {"normal_stress_difference_", "1 2", "force/length^2",
+     "number # of the particle stress, 11 - 33 and 33 - 22 where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane",
+     of_several, [](const Moment& m, int c) { return c == 0 ? m.turned_stress(0, 0) - m.turned_stress(2, 2) : m.turned_stress(2, 2) - m.turned_stress(1, 1); },
+     Needs::cell_strain},
+    {"pressure_gradient_", axes, "force/length^3", "uniform one that balances the force of the particles on the fluid, component #", of_several,
+     [](const Moment& m, int c) { return m.pressure_gradient[c]; }, Needs::cell},
     {"disturbance_flux", "", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", of_run,
      [](const Moment& m, int) { return m.tube.flux; }, Needs::tube},
     {"force_imbalance", "", "1",
@@ -166,6 +183,8 @@ bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::nothing) return true;
   if (needs == Needs::tube) return scene.tube.present;
   if (needs == Needs::strain) return strains(scene);
+  if (needs == Needs::cell || needs == Needs::cell_strain)
+    return scene.domain.present && scene.domain.directions() == 3 && (needs == Needs::cell || strains(scene));
   if (needs == Needs::adaptation) return scene.adaptation.enabled;
   const auto exact = scene.tube.present ? std::nullopt : exact_body(scene);
   if (!exact || needs == Needs::exact) return exact.has_value();
@@ -225,6 +244,16 @@ std::vector<double> entries_of_particles(const std::vector<Series>& series, cons
     if (series[k].name.ends_with("/" + std::string(name))) found.push_back(row.at(k));
   if (found.empty() && std::ranges::count(series, name, &Series::name) > 0) found.push_back(entry(series, row, name));
   return found;
+}
+
+/// (6.9), (6.10)
+void add_bulk_stress(const Scene& scene, const stokes::PeriodicCell& cell, const Mat3& plane, double volume, const Vec3& force, Moment& now) {
+  const Mat3 gradient = stokes::AmbientFlow(scene.flow).gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  now.volume_fraction = volume / cell.volume();
+  now.particle_stress = now.stresslet / cell.volume();
+  now.turned_stress = plane * now.particle_stress * plane.transpose();
+  now.pressure_gradient = force / cell.volume();
+  if (!strain.isZero(0)) now.relative_viscosity = 1 + now.particle_stress.cwiseProduct(strain).sum() / (2 * scene.flow.viscosity * strain.squaredNorm());
 }
 
 bool strains(const Scene& scene) {

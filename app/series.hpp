@@ -43,6 +43,10 @@ struct Moment {
   double phase = 0;
   double pressure_drop = 0, gap = 0;  ///< in a tube
   Nearest nearest;                    ///< among others
+  Mat3 particle_stress = Mat3::Zero();  ///< in a cell: sum of stresslets over its volume; in the axes of the plane of the flow: `turned_stress`
+  Mat3 turned_stress = Mat3::Zero();
+  double relative_viscosity = 1, volume_fraction = 0;
+  Vec3 pressure_gradient = Vec3::Zero();
   coupling::Tube::Checks tube;
   Vec3 drag = Vec3::Zero(), torque = Vec3::Zero();  ///< on a prescribed body; errors against the exact solution
   double drag_error = 0, drag_error_of_traction = 0, torque_error = 0, pressure_error = 0, normal_error = 0, kernel_evaluations = 0;
@@ -52,8 +56,8 @@ struct Moment {
 /// particles; of a free body, in a tube only; of a prescribed one.
 enum Owner : unsigned { of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64 };
 
-/// What a scene must have beside; the last four: an exact solution of a prescribed body, which has a force, a torque, a pressure that is not zero.
-enum class Needs { nothing, tube, strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
+/// What a scene must have beside; `cell`: a lattice of three directions, `cell_strain`: with a strain; the last four: an exact solution of a prescribed body, which has a force, a torque, a pressure that is not zero.
+enum class Needs { nothing, tube, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
 
 /// A column of `/series` and its value.
 struct Series {
@@ -89,6 +93,9 @@ std::vector<double> entries_of_particles(const std::vector<Series>& series, cons
 
 /// Markdown: series and fields of the results, entries of the summary and numbers of a scene, each with its unit.
 std::string series_manual();
+
+/// Of the run's row, on a lattice: from stresslet and volume of all, and the force that they exert on the fluid.
+void add_bulk_stress(const Scene& scene, const stokes::PeriodicCell& cell, const Mat3& plane, double volume, const Vec3& force, Moment& now);
 
 /// Whether the unbounded flow has one rate of strain, which is not zero: what `intrinsic_viscosity` takes.
 bool strains(const Scene& scene);

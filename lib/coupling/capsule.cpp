@@ -23,6 +23,16 @@ CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& spac
 }
 
 bool slides(const Particle& particle) { return particle.slides(); }
+
+/// e^A, by its series for a small share of A, squared as often as that was halved.
+Mat3 exponential(const Mat3& a) {
+  const int halved = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(a.norm(), 1e-300)))) + 2);
+  const Mat3 small = a / std::pow(2., halved);
+  Mat3 sum = Mat3::Identity(), term = sum;
+  for (int k = 1; k < 16; ++k) sum += term = term * small / k;
+  for (int k = 0; k < halved; ++k) sum = sum * sum;
+  return sum;
+}
 bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
@@ -64,6 +74,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
   }
   if (by_sites()) sites_ = collocation_matrix(space);
+  if (parameters_.cell) deform_cell(0);
   if (tube_) {
     inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
@@ -92,7 +103,29 @@ void Capsule::own(const surface::Share& share) {
 
 /// What was evaluated stands as long as the flow is the same.
 void Capsule::at(double time, double start) {
-  if (flow_.at(time, start)) latest_ = {};
+  const bool other_flow = flow_.at(time, start), other_cell = parameters_.cell && deform_cell(time);
+  if (other_flow || other_cell) latest_ = {};
+}
+
+/// dH/dt = L H. Whether the cell is another one then.
+bool Capsule::deform_cell(double time) {
+  const stokes::PeriodicCell now(exponential(time * flow_.gradient(Vec3::Zero())) * parameters_.cell->vectors(), parameters_.cell->n());
+  if (cell_ && *cell_ == now) return false;
+  cell_ = now;
+  layer_.repeat(now);
+  if (double_layer_) double_layer_->repeat(now);
+  return true;
+}
+
+/// What is taken from each particle.
+std::vector<Vec3> Capsule::put_into_cell(Net& x) const {
+  std::vector<Vec3> shifts;
+  for (const Particle& particle : particles()) {
+    auto rows = particle.block.rows(x);
+    shifts.push_back(cell_->shift(rows.colwise().mean().transpose()));
+    rows.rowwise() -= shifts.back().transpose();
+  }
+  return shifts;
 }
 
 /// Control values of an affine v_inf: exact, for the basis sums to one.
@@ -239,10 +272,25 @@ void Capsule::place(const Net& x) {
   placed_ = x;
 }
 
+/// On a lattice where the means of the particles are in the cell.
+Net Capsule::evaluate(Net x, const Net& guess) {
+  if (!cell_ || !x.allFinite()) return evaluate_here(std::move(x), guess);
+  const std::vector<Vec3> shifts = put_into_cell(x);
+  Net v = evaluate_here(std::move(x), {});
+  for (std::size_t p = 0; p < shifts.size(); ++p) {
+    const Vec3 faster = flow_.gradient(Vec3::Zero()) * shifts[p];
+    const spline::Block& block = particles()[p].block;
+    block.rows(v).rowwise() += faster.transpose();
+    if (latest_.fluid.size() > 0) block.rows(latest_.fluid).rowwise() += faster.transpose();
+    rigid_.carry(p, shifts[p], faster);
+  }
+  return v;
+}
+
 /// (4.2), station by station: the load of membranes (membrane_load) and of bodies, what it drives through the layers and the ambient flow
 /// (explicit_velocity), the volumes' conditions (constrain), and where viscosities differ, bodies are rigid or a tube's blocks are asked for, the
 /// system of all (solve_velocity).
-Net Capsule::evaluate(Net x, const Net& guess) {
+Net Capsule::evaluate_here(Net x, const Net& guess) {
   rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x))) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.volume.constraint != "none";
@@ -352,7 +400,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
   const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
-  const bool assembled = double_layer_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
+  const bool assembled = double_layer_ && !cell_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_points_, double_rows_);
   const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall

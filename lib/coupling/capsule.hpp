@@ -57,6 +57,7 @@ struct CapsuleParameters {
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
+  std::optional<stokes::PeriodicCell> cell;  ///< at time zero, of a lattice that the flow carries along; none: unbounded space, or a tube
   surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
 };
 
@@ -72,6 +73,9 @@ struct CapsuleParameters {
 /// Rigid bodies among them move rigidly (RigidParticles): in their rows the unknown is w of (2.23), and in Jacobian and stiff steps they only follow.
 ///
 /// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
+///
+/// On a lattice the layers are those of all images (Layer::repeat), and so are they where viscosities differ. Every particle is evaluated where its mean is in
+/// the cell around the origin, and moves on where it is, with what the flow is faster there. Frozen operators leave images out.
 ///
 /// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the
 /// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
@@ -136,6 +140,7 @@ class Capsule : public Dynamics {
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
   Tube* tube() { return tube_.get(); }      ///< nothing without one
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
+  const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< at the time told last
 
   /// What the tube answers to load and velocity at x; the tube is left placed there.
   const Tube::Response& response(const Net& x);
@@ -152,6 +157,9 @@ class Capsule : public Dynamics {
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   Net evaluate(Net x, const Net& guess);
+  Net evaluate_here(Net x, const Net& guess);
+  bool deform_cell(double time);
+  std::vector<Vec3> put_into_cell(Net& x) const;
   Net single_layer_of(const Net& x, const Net& f);
   Net membrane_load(const Net& x, Net* other);
   void place(const Net& x);
@@ -205,6 +213,7 @@ class Capsule : public Dynamics {
   stokes::Rows<double> double_rows_;
   std::unique_ptr<Tube> tube_;
   Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube
+  std::optional<stokes::PeriodicCell> cell_;  // now
   double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
   std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised
   std::vector<double> volume0_;         // of each particle

@@ -8,7 +8,9 @@
 
 namespace tanktread::coupling {
 
-void Capsule::freeze(const Net& x) {
+void Capsule::freeze(const Net& at) {
+  Net x = at;
+  if (cell_) put_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
   const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer_.assemble(targets, of...); };

@@ -129,6 +129,13 @@ Net RigidParticles::completing_load(const Net& w) const {
   return load;
 }
 
+void RigidParticles::carry(std::size_t p, const Vec3& along, const Vec3& faster) {
+  if (!holds(p)) return;
+  Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
+  body.centre += along;
+  body.motion.velocity += faster;
+}
+
 void RigidParticles::move(Net& v) {
   for (Body& body : bodies_) {
     const RigidMotion mean = body.mean(v);

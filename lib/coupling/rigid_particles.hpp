@@ -40,6 +40,7 @@ class RigidParticles {
   void complete(const Net& w, Net& v) const; ///< rows of v: w out, <w> in where force and torque are given, and what R^-1 D w lacks
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as prescribed, 0 elsewhere
   void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
+  void carry(std::size_t p, const Vec3& along, const Vec3& faster);  ///< moves body p, if it is one, and its velocity on: to another cell
   void clear(Net& net) const;                ///< 0 in all rows of bodies
 
   /// Whether particle p is one, and what it does and feels where velocities were asked for last.

@@ -36,13 +36,13 @@ Mat3 turned(const Mat3& axes, const Vec3& normal) {
 
 }  // namespace
 
-bool Cluster::serves(const ChebyshevBox& other) const {
-  const double r[3] = {other.centre[0] - centre[0], other.centre[1] - centre[1], other.centre[2] - centre[2]};
+bool Cluster::serves(const ChebyshevBox& other, const Vec3& beyond) const {
+  const double r[3] = {other.centre[0] + beyond[0] - centre[0], other.centre[1] + beyond[1] - centre[1], other.centre[2] + beyond[2] - centre[2]};
   double square = 0;
   for (int d = 0; d < 3; ++d) {
     const double* a = other.axes[d];
-    const double beyond = std::max(0., std::abs(r[0] * a[0] + r[1] * a[1] + r[2] * a[2]) - other.half[d]);
-    square += beyond * beyond;
+    const double outside = std::max(0., std::abs(r[0] * a[0] + r[1] * a[1] + r[2] * a[2]) - other.half[d]);
+    square += outside * outside;
   }
   return square >= reach * reach;
 }

@@ -20,8 +20,8 @@ struct Cluster : ChebyshevBox {
   bool leaf() const { return child[0] < 0; }
   int n_points() const { return last - first; }
 
-  /// Whether its nodes stand for its points as seen from the other box, or for targets in it as seen from there.
-  bool serves(const ChebyshevBox& other) const;
+  /// Whether its nodes stand for its points as seen from the other box, moved by `beyond`, or for targets in it as seen from there.
+  bool serves(const ChebyshevBox& other, const Vec3& beyond) const;
 };
 
 /// A binary tree over points that come in groups (the far nodes of a panel, or single points); a group is never split. Boxes of flat clusters

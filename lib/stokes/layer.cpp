@@ -1,7 +1,9 @@
 #include "stokes/layer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -11,6 +13,9 @@
 
 namespace tanktread::stokes {
 namespace {
+
+/// What the rest of a lattice may err by, over the tolerance: loads are in equilibrium, like those of clusters.
+constexpr double share_of_rest = 0.1;
 
 /// Rules are chosen for int G f dG; the double layer, steeper by one order, errs up to five times as much under them (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
@@ -57,6 +62,16 @@ void Layer::set_reference(const Net& unstressed) {
   measure_.reset();
 }
 
+void Layer::repeat(const PeriodicCell& cell) {
+  constexpr int least_images = 27;
+  if (cell_ && *cell_ == cell) return;
+  if (!cell_) surface_.repeat();
+  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance);
+  cell_ = cell;
+  near_images_ = cell.around({2, 2, 2});
+  measure_.reset();
+}
+
 void Layer::share(int part, int parts, std::vector<int> everybody) {
   if (!tree_ || parts == 1) return;
   everybody_ = std::move(everybody);
@@ -74,6 +89,38 @@ void Layer::place(const Net& x, Measure measure) {
   if (single() && measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_);
   if (single() && measure == Measure::reference) weight_ = weight_unstressed_;
   if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
+  if (cell_) place_in_cell();
+}
+
+void Layer::place_in_cell() {
+  std::array<Vec3, 2> extent{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
+  for (int e = 0; e < surface_.panels.size(); ++e) {
+    const int n = surface_.panels[e].table->n_bernstein;
+    const double* x = &surface_.bezier[surface_.panels[e].first_bezier];
+    for (int b = 0; b < n; ++b) {
+      const Vec3 s = cell_->coordinates({x[b], x[n + b], x[2 * n + b]});
+      extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
+    }
+  }
+  if (!periodic_ || !(periodic_->cell() == *cell_) || !periodic_->holds(extent)) {
+    const auto kind = single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
+    periodic_.emplace(kind, *cell_, share_of_rest * surface_.options.tolerance, extent);
+    if (tree_) tree_->repeat(periodic_->images());
+  }
+  rest_at_.clear();
+  for (auto& component : in_cell_) component.resize(static_cast<std::size_t>(n_nodes()));
+  for (std::size_t k = 0; k < in_cell_[0].size(); ++k) {
+    const Vec3 x = periodic_->wrapped({surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]});
+    for (int c = 0; c < 3; ++c) in_cell_[c][k] = x[c];
+  }
+}
+
+/// Where far sums see the targets from.
+std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int> rows) const {
+  std::vector<Vec3> at = rows_of(targets.at, rows);
+  if (cell_)
+    for (Vec3& x : at) x = periodic_->wrapped(x);
+  return at;
 }
 
 /// By the factors of the panels.
@@ -97,13 +144,13 @@ void Layer::set_density(const Net& f) {
     for (int k = 0; k < n_nodes(); ++k) component[k] *= weight_[k];
 }
 
-PointForces Layer::forces() const {
-  const auto &x = surface_.node, &f = density_;
+PointForces Layer::forces(const std::vector<double> (&x)[3]) const {
+  const auto& f = density_;
   return {n_nodes(), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
 }
 
-Stresslets Layer::stresslets() const {
-  const auto &x = surface_.node, &f = density_, &n = normal_;
+Stresslets Layer::stresslets(const std::vector<double> (&x)[3]) const {
+  const auto &f = density_, &n = normal_;
   return {n_nodes(),   x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(),
           f[2].data(), n[0].data(), n[1].data(), n[2].data()};
 }
@@ -135,15 +182,19 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 /// The far sum over all panels, and in its place better rules for those that are close to a target or that it lies on.
 void Layer::integrate(const Targets& targets, Net& u) {
   add_far(targets, u);
+  if (cell_) add_rest(targets, u);
   {
     const auto clock = phases_.time("near");
     if (targets.kept) add_kept(targets, u);
     for (const int i : targets.rows) {
       if (targets.kept) break;
-      const Vec3 at = targets.at.row(i), f0 = targets.f0.row(i);
-      const std::span<SelfPair> own = targets.sites ? surface_.own(i) : std::span<SelfPair>();
-      for (const int e : surface_.near(at, own))
-        u.row(i) += beyond_far_sum(e, surface_.near_field.rule(e, at, own), nullptr, at, f0, evaluations_.near).transpose();
+      const Vec3 f0 = targets.f0.row(i);
+      for (const Vec3& image : near_images_) {
+        const Vec3 at = targets.at.row(i).transpose() - image;
+        const std::span<SelfPair> own = targets.sites && image.isZero(0) ? surface_.own(i) : std::span<SelfPair>();
+        for (const int e : surface_.near(at, own))
+          u.row(i) += beyond_far_sum(e, surface_.near_field.rule(e, at, own), nullptr, at, f0, evaluations_.near).transpose();
+      }
     }
   }
   if (targets.sites) {
@@ -165,10 +216,10 @@ Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const
   Vec3 better, far;
   if (single()) {
     single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data());
-    node_sum(forces().part(panel.first_node, panel.table->n_nodes), at.data(), far.data());
+    node_sum(forces(surface_.node).part(panel.first_node, panel.table->n_nodes), at.data(), far.data());
   } else {
     double_sum(table, x, f, at.data(), f0.data(), better.data());
-    node_sum(stresslets().part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
+    node_sum(stresslets(surface_.node).part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
   }
   count += table.points + panel.table->n_nodes;
   return factor(e) * better - far;
@@ -177,21 +228,93 @@ Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const
 void Layer::add_far(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
   if (tree_) return add_by_clusters(targets, u);
-  const std::vector<Vec3> at = rows_of(targets.at, targets.far_rows);
-  Net sums(targets.far_rows.size(), 3);
-  single() ? far_sums(forces(), at, sums.data()) : far_sums(stresslets(), at, rows_of(targets.f0, targets.far_rows), sums.data());
-  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.far_rows[k]) = sums.row(static_cast<Eigen::Index>(k));
-  evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
+  const std::vector<Vec3> places = far_targets(targets, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
+  const std::vector<Vec3> images = cell_ ? periodic_->images() : std::vector<Vec3>{Vec3::Zero()};
+  Net sums(targets.far_rows.size(), 3), all = Net::Zero(sums.rows(), 3);
+  for (const Vec3& image : images) {
+    std::vector<Vec3> at = places;
+    for (Vec3& x : at) x -= image;
+    single() ? far_sums(forces(far_places()), at, sums.data()) : far_sums(stresslets(far_places()), at, f0, sums.data());
+    all += sums;
+  }
+  for (std::size_t k = 0; k < places.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));
+  evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
+}
+
+/// What images beyond those in the far sum do, and of a double layer the pressure of (2.28).
+void Layer::add_rest(const Targets& targets, Net& u) {
+  const auto clock = phases_.time("rest of the lattice");
+  const std::vector<Vec3> at = far_targets(targets, targets.rows);
+  const auto n = static_cast<Eigen::Index>(at.size());
+  Net sums = Net::Zero(n, 3);
+  if (single()) {
+    add_rest(density_, 3, at, sums);
+  } else {
+    const Vec3 mean = mean_density();
+    if (at != rest_at_) place_rest(at);
+    take_moments(mean);
+    add_rest(moment_, 6, at, sums);
+    if (cell_->n() == 3) sums.rowwise() += pressure_along().transpose();
+    for (Eigen::Index k = 0; k < n; ++k)
+      sums.row(k) -= (rest_stress_[static_cast<std::size_t>(k)] * (targets.f0.row(targets.rows[static_cast<std::size_t>(k)]).transpose() - mean)).transpose();
+  }
+  for (Eigen::Index k = 0; k < n; ++k) u.row(targets.rows[static_cast<std::size_t>(k)]) += sums.row(k);
+}
+
+void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums) {
+  Charges charges{n_nodes(), in_cell_[0].data(), in_cell_[1].data(), in_cell_[2].data(), {}};
+  for (std::size_t c = 0; c < n; ++c) charges.q[c] = carried[c].data();
+  periodic_->add_rest(charges, at, sums.data());
+}
+
+/// What it takes of constant densities at these targets, a column each: images of a surface are partly in the far sum, partly in the rest, so that over
+/// it neither vanishes by itself.
+void Layer::place_rest(const std::vector<Vec3>& at) {
+  rest_at_ = at;
+  rest_stress_.assign(at.size(), Mat3::Zero());
+  std::vector<double> kept[3];
+  for (int c = 0; c < 3; ++c) kept[c] = std::move(density_[c]);
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) density_[d].assign(static_cast<std::size_t>(n_nodes()), c == d ? 1 : 0);
+    take_moments(Vec3::Zero());
+    Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
+    add_rest(moment_, 6, at, sums);
+    if (cell_->n() == 3) sums.rowwise() += pressure_along().transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) rest_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
+  }
+  for (int c = 0; c < 3; ++c) density_[c] = std::move(kept[c]);
+}
+
+/// -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG of the moments taken, x_p the mean node.
+Vec3 Layer::pressure_along() const {
+  const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
+  const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };
+  std::vector<Vec3> middle(static_cast<std::size_t>(surface_.near_field.n_surfaces()), Vec3::Zero());
+  std::vector<int> nodes(middle.size(), 0);
+  for (int e = 0; e < surface_.panels.size(); ++e)
+    for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) middle[number(e)] += place(surface_.panels[e].first_node + k), ++nodes[number(e)];
+  for (std::size_t p = 0; p < middle.size(); ++p) middle[p] /= nodes[p];
+  Vec3 sum = Vec3::Zero();
+  for (int e = 0; e < surface_.panels.size(); ++e)
+    for (int k = surface_.panels[e].first_node; k < surface_.panels[e].first_node + surface_.panels[e].table->n_nodes; ++k)
+      sum += (moment_[0][k] + moment_[1][k] + moment_[2][k]) * (place(k) - middle[number(e)]);
+  return -1 / (over_8_pi * cell_->volume()) * sum;
 }
 
 /// The tree of this shape and these targets, and of a double layer sum_q T_ijk n_k at them: Krylov solvers ask for one shape many times. Row
 /// k + g n of its sums is that of image g of target k of n.
 void Layer::place_tree(const Targets& targets) {
-  std::vector<Vec3> at = rows_of(targets.at, targets.in_tree);
+  std::vector<Vec3> at = far_targets(targets, targets.in_tree);
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
   tree_at_ = std::move(at);
   tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
-  surface_.place(*tree_, tree_at_);
+  if (cell_) {
+    std::vector<int> singles(static_cast<std::size_t>(n_nodes()) + 1);
+    std::iota(singles.begin(), singles.end(), 0);
+    tree_->place(in_cell_[0].data(), in_cell_[1].data(), in_cell_[2].data(), singles, tree_at_);
+  } else {
+    surface_.place(*tree_, tree_at_);
+  }
   std::vector<int> wanted;
   for (std::size_t g = 0; g <= surface_.reflections().size(); ++g)
     for (const int i : tree_rows_) {
@@ -234,19 +357,29 @@ void Layer::add_forces_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives 0 exactly.
-void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
+Vec3 Layer::mean_density() const {
   Vec3 mean;
   for (int c = 0; c < 3; ++c) mean[c] = Eigen::Map<const Eigen::VectorXd>(density_[c].data(), n_nodes()).mean();
+  return mean;
+}
+
+/// Of the density less its mean.
+void Layer::take_moments(const Vec3& mean) {
   constexpr int at[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  std::array<const double*, 6> carried;
   for (int c = 0; c < 6; ++c) {
     const auto [i, j] = at[c];
     moment_[c].resize(n_nodes());
     for (int k = 0; k < n_nodes(); ++k)
       moment_[c][k] = ((density_[i][k] - mean[i]) * normal_[j][k] + (density_[j][k] - mean[j]) * normal_[i][k]) / 2;
-    carried[c] = moment_[c].data();
   }
+}
+
+/// sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives 0 exactly.
+void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
+  const Vec3 mean = mean_density();
+  take_moments(mean);
+  std::array<const double*, 6> carried;
+  for (std::size_t c = 0; c < 6; ++c) carried[c] = moment_[c].data();
   Net there(tree_at_.size(), 3);
   tree_->sum<StressletKernel>(carried, there.data());
   for (const int i : targets.far_rows) {

@@ -12,6 +12,7 @@
 #include "stokes/far_kernel.hpp"
 #include "stokes/kernels.hpp"
 #include "stokes/layer_surface.hpp"
+#include "stokes/periodic_sum.hpp"
 #include "stokes/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
@@ -60,6 +61,14 @@ class Layer {
   ///
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
+
+  /// States that the surfaces repeat as `cell` says, so that G and T are those of PeriodicKernel. A double layer of three periods has the pressure
+  /// that grows along with them beside, by which it leaves the mean velocity over the cell, that inside of the surfaces included, as it is,
+  ///
+  ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p,                                              (2.28)
+  ///
+  /// and int T n is that of (2.3). Again for each cell of one that deforms. What is assembled leaves images out.
+  void repeat(const PeriodicCell& cell);
 
   /// Shares the far sums of the sites `everybody`, where they are taken by clusters, among callers 0 .. parts - 1: from now on `apply` fills these
   /// rows with what adds up to the layer over all callers; near and singular panels are counted by the caller whose targets they concern.
@@ -123,12 +132,21 @@ class Layer {
 
   bool single() const { return kernel_ == Kernel::single_layer; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
-  PointForces forces() const;
-  Stresslets stresslets() const;
+  PointForces forces(const std::vector<double> (&x)[3]) const;
+  Stresslets stresslets(const std::vector<double> (&x)[3]) const;
   void set_density(const Net& f);
   void scale(std::span<std::vector<double>> at_nodes) const;
   void integrate(const Targets& targets, Net& u);
   void add_far(const Targets& targets, Net& u);
+  void place_in_cell();
+  std::vector<Vec3> far_targets(const Targets& targets, std::span<const int> rows) const;
+  const std::vector<double> (&far_places() const)[3] { return cell_ ? in_cell_ : surface_.node; }
+  void add_rest(const Targets& targets, Net& u);
+  void add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums);
+  void place_rest(const std::vector<Vec3>& at);
+  Vec3 pressure_along() const;
+  Vec3 mean_density() const;
+  void take_moments(const Vec3& mean);
   void place_tree(const Targets& targets);
   void add_by_clusters(const Targets& targets, Net& u);
   void add_forces_by_clusters(const Targets& targets, Net& u);
@@ -155,6 +173,12 @@ class Layer {
   std::vector<double> weight_, weight_unstressed_;                 // of the far nodes, areas included
   std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times the weight in a single layer; normal times area and k
   std::optional<TreeSum> tree_;                                    // where clusters are faster
+  std::optional<PeriodicCell> cell_;                               // of a lattice of images
+  std::optional<PeriodicSum> periodic_;                            // the sum over it
+  std::vector<double> in_cell_[3];                                 // far nodes in the cell
+  std::vector<Vec3> near_images_{Vec3::Zero()};                    // of panels that a target may be close to
+  std::vector<Vec3> rest_at_;                                      // targets in the cell
+  std::vector<Mat3> rest_stress_;                                  // what the rest of a lattice takes from values there
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows that far sums are shared of; empty: they are not
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows wanted of it; none: it is to be placed

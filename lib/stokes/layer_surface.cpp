@@ -60,12 +60,16 @@ double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(
 
 }  // namespace
 
-bool sums_by_tree(const spline::Space& space, const quadrature::Options& options) {
+bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
   if (options.rule == "desingularised") return false;  // its identities meet every node anyway
-  double nodes = 0;
-  for (const int order : far_orders(space, options, far_order(options))) nodes += order * order;
   return nodes > nodes_worth_a_tree(options.tolerance);
+}
+
+bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images) {
+  double nodes = 0;
+  for (const int order : far_orders(space, options, far_order(options))) nodes += images * order * order;
+  return sums_by_tree(nodes, options);
 }
 
 LayerSurface::LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& how, bool steep)
@@ -76,6 +80,11 @@ LayerSurface::LayerSurface(const spline::Space& space, const Sites& sites, const
       near_field(panels, how.tolerance, far_order(how, !sites.empty()), steep, sites.empty()),
       self_field(space, sites, how) {
   set_symmetry(surface::Symmetry(space.n_points));
+}
+
+void LayerSurface::repeat() {
+  near_field.repeat();
+  placed_.resize(0, 3);
 }
 
 void LayerSurface::set_symmetry(const surface::Symmetry& symmetry) {

@@ -14,14 +14,18 @@
 
 namespace tanktread::stokes {
 
-/// Whether `far sum` of the options means clusters for this space (TreeSum) or every target against every node.
-bool sums_by_tree(const spline::Space& space, const quadrature::Options& options);
+/// Whether `far sum` of the options means clusters for this space (TreeSum) or every target against every node; with so many images of the nodes.
+bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images = 1);
+bool sums_by_tree(double nodes, const quadrature::Options& options);
 
 /// The present surfaces as a layer integrates over them: panels, far nodes, and which rule each target needs on which panel.
 class LayerSurface {
  public:
   /// `sites`: targets on the surfaces; none: all targets are off them. `steep`: the integrand grows like 1 / r^2 across gaps.
   LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
+
+  /// States that targets see images of the surfaces too.
+  void repeat();
 
   /// States that all shapes to come are of this symmetry.
   void set_symmetry(const surface::Symmetry& symmetry);

@@ -26,6 +26,13 @@ class NearField {
   /// Takes the shape from the Bezier points of panels that are no images. They must outlive the calls below, which ask for those of `panel`, too.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
+  /// States that targets see images of the panels too, as if they were on other surfaces. Before update().
+  void repeat() { across_gaps_ = true; }
+
+  /// Which of the surfaces a panel belongs to, and how many there are.
+  int surface(int panel) const { return surface_[static_cast<std::size_t>(panel)]; }
+  int n_surfaces() const { return n_surfaces_; }
+
   /// Panels whose far rule misses the tolerance at the target, ascending, but for those of `own`, which the target lies on.
   void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
 

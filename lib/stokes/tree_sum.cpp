@@ -93,7 +93,8 @@ int TreeSum::row(std::size_t k) const {
 void TreeSum::want(std::span<const int> rows) {
   mark(rows);
   pairs_.clear();
-  for (int k = 0; k < n_trees_; ++k) meet(targets_[k * target_tree_.all().size()], sources_.all().front());
+  for (int image = 0; image < static_cast<int>(images_.size()); ++image)
+    for (int k = 0; k < n_trees_; ++k) meet(targets_[k * target_tree_.all().size()], sources_.all().front(), image);
   if (parts_ > 1) take_part();
   ask();
 }
@@ -199,24 +200,25 @@ void TreeSum::mark(std::span<const int> wanted) {
   }
 }
 
-/// What the nodes of `source` do to the targets of `target`.
-void TreeSum::meet(const Cluster& target, const Cluster& source) {
+/// What the nodes of `source` do to the targets of `target` from one of their images.
+void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
-  const bool source_far = source.serves(target), target_far = target.serves(source);
+  const Vec3& beyond = images_[static_cast<std::size_t>(image)];
+  const bool source_far = source.serves(target, -beyond), target_far = target.serves(source, beyond);
   const bool many_targets = blocks_of(target.n_points()) > blocks_of(target.n_nodes()), many_nodes = source.n_points() > source.n_nodes();
-  if ((source_far || !many_nodes) && (target_far || !many_targets)) return note(target, many_targets, source, many_nodes);
-  if (target.leaf() && source.leaf()) return note(target, false, source, false);
+  if ((source_far || !many_nodes) && (target_far || !many_targets)) return note(target, many_targets, source, many_nodes, image);
+  if (target.leaf() && source.leaf()) return note(target, false, source, false, image);
   const bool source_to_blame = many_nodes && !source_far, target_to_blame = many_targets && !target_far;
   const bool halve_source = source_to_blame == target_to_blame ? source.radius > target.radius : source_to_blame;
   if (target.leaf() || (halve_source && !source.leaf()))
-    for (const int child : source.child) meet(target, sources_.all()[child]);
+    for (const int child : source.child) meet(target, sources_.all()[child], image);
   else
-    for (const int child : target.child) meet(targets_[child], source);
+    for (const int child : target.child) meet(targets_[child], source, image);
 }
 
-void TreeSum::note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes) {
+void TreeSum::note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image) {
   const auto number = [](const std::vector<Cluster>& all, const Cluster& cluster) { return static_cast<int>(&cluster - all.data()); };
-  pairs_.push_back({number(targets_, target), number(sources_.all(), source), target_nodes, source_nodes});
+  pairs_.push_back({number(targets_, target), number(sources_.all(), source), image, target_nodes, source_nodes});
 }
 
 long long TreeSum::work(const Pair& pair) const {
@@ -233,9 +235,12 @@ void TreeSum::add(const Pair& pair) {
   double* u = (target_nodes ? node_u_ : target_u_).data() + out_ * far_block * block;
   const int n = target_nodes ? target.n_nodes() : target.n_points();
   const Charges from = source_nodes ? nodes().part(source.first_node, source.n_nodes()) : points().part(source.first, source.n_points());
-  double sums[6 * far_block];
+  const Vec3& beyond = images_[static_cast<std::size_t>(pair.image)];
+  double sums[6 * far_block], seen[3 * far_block];
   for (int b = 0; b < blocks_of(n); ++b, at += 3 * far_block, u += out_ * far_block) {
-    kernel_(from, at, sums);
+    for (int c = 0; c < 3; ++c)
+      for (int l = 0; l < far_block; ++l) seen[far_block * c + l] = at[far_block * c + l] - beyond[c];
+    kernel_(from, seen, sums);
     for (int l = 0; l < out_ * far_block; ++l) u[l] += sums[l];
   }
   if (target_nodes) has_nodes_[pair.target] = 1;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -24,6 +25,10 @@ class TreeSum {
   /// the image of target i in reflections[k - 1]; the clusters of images are the images of clusters.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
+
+  /// States that the nodes act from their own places and from these vectors beyond, 0 among them if their own are meant: a lattice's. Before place(),
+  /// and without reflections.
+  void repeat(std::vector<Vec3> images) { images_ = std::move(images); }
 
   /// States which rows are wanted of the sums to come. A row does not depend on which others are wanted.
   void want(std::span<const int> rows);
@@ -61,11 +66,11 @@ class TreeSum {
   void ask();
   /// Clusters that meet, each as its Chebyshev nodes or as its points.
   struct Pair {
-    int target, source;
+    int target, source, image;
     bool target_nodes, source_nodes;
   };
-  void meet(const Cluster& target, const Cluster& source);
-  void note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes);
+  void meet(const Cluster& target, const Cluster& source, int image);
+  void note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image);
   long long work(const Pair& pair) const;
   void add(const Pair& pair);
   void hand_down();
@@ -76,6 +81,7 @@ class TreeSum {
   int in_ = 3, out_ = 3;  // of the kernel
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, target_tree_;              // of the targets without their images
+  std::vector<Vec3> images_{Vec3::Zero()};      // that the sources act from
   int n_trees_ = 1;                             // of targets: one, and its images
   std::vector<Cluster> targets_;                // of all trees, one after the other
   std::vector<double> q_[6], node_q_[6];        // what the sources and their Chebyshev nodes carry
