@@ -61,7 +61,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
   return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
-                   scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
+                   scene.solvers.assembled(tree) && !scene.domain.present ? "assembled" : "matrix-free", 3 * n_points);
 }
 
 std::string membrane_line(const Scene& scene) {
@@ -154,7 +154,7 @@ std::string particle_line(const Scene& one, int n_points, bool tree) {
 }
 
 Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
-  const bool tree = stokes::sums_by_tree(all.space, scene.quadrature);
+  const bool tree = stokes::sums_by_tree(all.space, scene.quadrature, scene.domain.present ? 27 : 1);
   const double n = all.space.n_points;
   Lines lines = {{"particles", formatted("%zu, in one system", scene.particles.size())},
                  {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
