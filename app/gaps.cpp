@@ -113,7 +113,8 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
                   formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
 }
 
-Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell) {
+Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks,
+                     const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> own;
   for (const Member& member : members) own.push_back(member.own(x));
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };

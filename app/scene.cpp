@@ -209,7 +209,8 @@ void check_contradictions(const Scene& scene) {
   refuse(scene.domain.present && tube, "Domain", "Tube", "a tube does not repeat");
   refuse(scene.domain.present && alone, "Domain", "Particle", "what repeats is named in the list Particles");
   refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
-  refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force), "Domain/periodic `" + scene.domain.periodic + "`",
+  refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force),
+         "Domain/periodic `" + scene.domain.periodic + "`",
          told ? motion : weight ? "Particle/density difference" : "Particle/force",
          "the velocity of a net force in every cell is known in a lattice of three directions only");
   refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");

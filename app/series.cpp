@@ -132,7 +132,7 @@ constexpr Statement table[] = {
      Needs::cell_strain},
     {"normal_stress_difference_", "1 2", "force/length^2",
      "number # of the particle stress, 11 - 33 and 33 - 22 where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane",
-     of_several, [](const Moment& m, int c) { return c == 0 ? m.turned_stress(0, 0) - m.turned_stress(2, 2) : m.turned_stress(2, 2) - m.turned_stress(1, 1); },
+     of_several, [](const Moment& m, int c) { return m.turned_stress(2 * c, 2 * c) - m.turned_stress(2 - c, 2 - c); },
      Needs::cell_strain},
     {"pressure_gradient_", axes, "force/length^3", "uniform one that balances the force of the particles on the fluid, component #", of_several,
      [](const Moment& m, int c) { return m.pressure_gradient[c]; }, Needs::cell},
@@ -253,7 +253,8 @@ void add_bulk_stress(const Scene& scene, const stokes::PeriodicCell& cell, const
   now.particle_stress = now.stresslet / cell.volume();
   now.turned_stress = plane * now.particle_stress * plane.transpose();
   now.pressure_gradient = force / cell.volume();
-  if (!strain.isZero(0)) now.relative_viscosity = 1 + now.particle_stress.cwiseProduct(strain).sum() / (2 * scene.flow.viscosity * strain.squaredNorm());
+  if (strain.isZero(0)) return;
+  now.relative_viscosity = 1 + now.particle_stress.cwiseProduct(strain).sum() / (2 * scene.flow.viscosity * strain.squaredNorm());
 }
 
 bool strains(const Scene& scene) {

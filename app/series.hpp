@@ -56,7 +56,7 @@ struct Moment {
 /// particles; of a free body, in a tube only; of a prescribed one.
 enum Owner : unsigned { of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64 };
 
-/// What a scene must have beside; `cell`: a lattice of three directions, `cell_strain`: with a strain; the last four: an exact solution of a prescribed body, which has a force, a torque, a pressure that is not zero.
+/// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
 enum class Needs { nothing, tube, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
 
 /// A column of `/series` and its value.

@@ -74,8 +74,8 @@ struct CapsuleParameters {
 ///
 /// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
 ///
-/// On a lattice the layers are those of all images (Layer::repeat), and so are they where viscosities differ. Every particle is evaluated where its mean is in
-/// the cell around the origin, and moves on where it is, with what the flow is faster there. Frozen operators leave images out.
+/// On a lattice the layers are those of all images (Layer::repeat). Every particle is evaluated where its mean is in the cell around the origin, and
+/// moves on where it is, with what the flow is faster there. Frozen operators leave images out.
 ///
 /// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the
 /// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).

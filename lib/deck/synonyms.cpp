@@ -59,8 +59,7 @@ constexpr std::array<Meaning, 26> synonyms{{
 /// By the whole path, by a list, or by the name of the key alone.
 constexpr std::array<Meaning, 12> features{{
     {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
-    {"|periodic|period|box|box size|domain|unit cell|periodicity|",
-     "periodic domains are not there; the fluid is unbounded, or fills a Tube"},
+    {"|period|box|box size|unit cell|periodicity|", "a scene of several Particles repeats on a lattice by the list Domain"},
     {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},
     {"|membrane/viscosity|membrane viscosity|surface viscosity|shear surface viscosity|boussinesq number|",
      "viscous membranes are not there; the viscosity inside is Particle/viscosity ratio"},

@@ -245,8 +245,7 @@ void Layer::add_far(const Targets& targets, Net& u) {
 void Layer::add_rest(const Targets& targets, Net& u) {
   const auto clock = phases_.time("rest of the lattice");
   const std::vector<Vec3> at = far_targets(targets, targets.rows);
-  const auto n = static_cast<Eigen::Index>(at.size());
-  Net sums = Net::Zero(n, 3);
+  Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
   if (single()) {
     add_rest(density_, 3, at, sums);
   } else {
@@ -255,10 +254,12 @@ void Layer::add_rest(const Targets& targets, Net& u) {
     take_moments(mean);
     add_rest(moment_, 6, at, sums);
     if (cell_->n() == 3) sums.rowwise() += pressure_along().transpose();
-    for (Eigen::Index k = 0; k < n; ++k)
-      sums.row(k) -= (rest_stress_[static_cast<std::size_t>(k)] * (targets.f0.row(targets.rows[static_cast<std::size_t>(k)]).transpose() - mean)).transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
+      sums.row(static_cast<Eigen::Index>(k)) -= (rest_stress_[k] * (value - mean)).transpose();
+    }
   }
-  for (Eigen::Index k = 0; k < n; ++k) u.row(targets.rows[static_cast<std::size_t>(k)]) += sums.row(k);
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
 void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums) {
@@ -267,8 +268,8 @@ void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n
   periodic_->add_rest(charges, at, sums.data());
 }
 
-/// What it takes of constant densities at these targets, a column each: images of a surface are partly in the far sum, partly in the rest, so that over
-/// it neither vanishes by itself.
+/// What it takes of constant densities at these targets, a column each: images of a surface are partly in the far sum, partly in the rest, so that
+/// over it neither vanishes by itself.
 void Layer::place_rest(const std::vector<Vec3>& at) {
   rest_at_ = at;
   rest_stress_.assign(at.size(), Mat3::Zero());

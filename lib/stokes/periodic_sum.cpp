@@ -84,6 +84,44 @@ std::vector<double> interpolated(std::vector<double> values, const std::array<Ei
   return values;
 }
 
+/// The three numbers that each one carried adds to, side by side, with a fourth that is idle.
+std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>& components, int n) {
+  constexpr int number[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  const int in = kind == PeriodicKernel::Kind::stokeslet ? 3 : 6;
+  const std::size_t places = components.size() / static_cast<std::size_t>(n);
+  std::vector<double> result(4 * static_cast<std::size_t>(in) * places, 0.);
+  for (std::size_t k = 0; k < places; ++k)
+    for (int c = 0; c < in; ++c)
+      for (int i = 0; i < 3; ++i)
+        result[static_cast<std::size_t>(4 * in) * k + static_cast<std::size_t>(4 * c + i)] =
+            components[static_cast<std::size_t>(n) * k + static_cast<std::size_t>(in == 3 ? number[3 * i + c] : 6 * i + c)];
+  return result;
+}
+
+/// Where the table has the difference of two nodes.
+struct Differences {
+  const std::array<std::vector<int>, 3>* number;
+  const std::array<std::size_t, 3>* many;
+  std::array<int, 3> order;
+};
+
+/// What In numbers at each node do to node a.
+template <int In>
+Eigen::Array4d product(const Differences& of, const double* table, int a, const double* carried) {
+  const auto& [n0, n1, n2] = of.order;
+  const int* along[3] = {&(*of.number)[0][static_cast<std::size_t>(n0 * (a % n0))], &(*of.number)[1][static_cast<std::size_t>(n1 * (a / n0 % n1))],
+                         &(*of.number)[2][static_cast<std::size_t>(n2 * (a / (n0 * n1)))]};
+  const int rows = static_cast<int>((*of.many)[1]), columns = static_cast<int>((*of.many)[2]);
+  Eigen::Array4d sum = Eigen::Array4d::Zero();
+  for (int b2 = 0; b2 < n2; ++b2)
+    for (int b1 = 0; b1 < n1; ++b1)
+      for (int b0 = 0; b0 < n0; ++b0, carried += In) {
+        const double* t = table + 4 * In * static_cast<std::ptrdiff_t>((along[0][b0] * rows + along[1][b1]) * columns + along[2][b2]);
+        for (int c = 0; c < In; ++c) sum += Eigen::Map<const Eigen::Array4d>(t + 4 * c) * carried[c];
+      }
+  return sum;
+}
+
 }  // namespace
 
 PeriodicSum::PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double asked, const std::array<Vec3, 2>& extent)
@@ -119,8 +157,8 @@ PeriodicSum::PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, do
     to_places[d] = interpolation(places[d], nodes[d]);
   }
   const PeriodicKernel kernel(kind, cell, box, steps, tolerance);
-  components_ = kernel.components();
-  table_ = interpolated(kernel.values(nodes), to_places);
+  table_ = columns(kind, interpolated(kernel.values(nodes), to_places), kernel.components());
+  components_ = kind == PeriodicKernel::Kind::stokeslet ? 12 : 24;
 }
 
 bool PeriodicSum::holds(const std::array<Vec3, 2>& extent) const {
@@ -136,27 +174,14 @@ Vec3 PeriodicSum::in_box(const Vec3& wrapped) const {
 
 /// Numbers at the nodes of sources to values at those of targets, in blocks.
 void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& u) const {
-  const auto [n0, n1, n2] = box_.order;
-  const auto number = [&](std::size_t d, int a, int b) {
-    return static_cast<std::size_t>(difference_[d][static_cast<std::size_t>(a * box_.order[d] + b)]);
-  };
-  for (int a = 0; a < box_.n_nodes(); ++a) {
-    const int a0 = a % n0, a1 = a / n0 % n1, a2 = a / (n0 * n1);
-    double sum[3] = {};
-    for (int b2 = 0, b = 0; b2 < n2; ++b2)
-      for (int b1 = 0; b1 < n1; ++b1)
-        for (int b0 = 0; b0 < n0; ++b0, ++b) {
-          const std::size_t place = (number(0, a0, b0) * differences_[1] + number(1, a1, b1)) * differences_[2] + number(2, a2, b2);
-          const double* t = &table_[place * static_cast<std::size_t>(components_)];
-          if (kind_ == PeriodicKernel::Kind::stokeslet) {
-            sum[0] += t[0] * q[0][b] + t[1] * q[1][b] + t[2] * q[2][b];
-            sum[1] += t[1] * q[0][b] + t[3] * q[1][b] + t[4] * q[2][b];
-            sum[2] += t[2] * q[0][b] + t[4] * q[1][b] + t[5] * q[2][b];
-          } else {
-            for (int i = 0; i < 3; ++i, t += 6)
-              sum[i] += t[0] * q[0][b] + t[1] * q[1][b] + t[2] * q[2][b] + t[3] * q[3][b] + t[4] * q[4][b] + t[5] * q[5][b];
-          }
-        }
+  const int n = box_.n_nodes();
+  const std::size_t in = static_cast<std::size_t>(components_) / 4;
+  std::vector<double> carried;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(n); ++b)
+    for (std::size_t c = 0; c < in; ++c) carried.push_back(q[c][b]);
+  const Differences from{&difference_, &differences_, box_.order};
+  for (int a = 0; a < n; ++a) {
+    const Eigen::Array4d sum = in == 3 ? product<3>(from, table_.data(), a, carried.data()) : product<6>(from, table_.data(), a, carried.data());
     for (int i = 0; i < 3; ++i) u[static_cast<std::size_t>(far_block * (3 * (a / far_block) + i) + a % far_block)] = sum[i];
   }
 }

@@ -93,7 +93,8 @@ TEST(PeriodicKernel, StokesletsOfOnePeriodDifferByWhatIsKnown) {
 
 TEST(PeriodicKernel, CellsOfTheSameLatticeAreEqual) {
   const Vec3 r(0.31, -0.22, 0.43);
-  const Mat3 tilted = rows({1, 0, 0}, {0, 1, 0}, {1, 0, 1}), half = rows({1, 0, 0}, {0, 1, 0}, {0.5, 0, 1}), other = rows({1, 0, 0}, {0, 1, 0}, {-0.5, 0, 1});
+  const Mat3 tilted = rows({1, 0, 0}, {0, 1, 0}, {1, 0, 1});
+  const Mat3 half = rows({1, 0, 0}, {0, 1, 0}, {0.5, 0, 1}), other = rows({1, 0, 0}, {0, 1, 0}, {-0.5, 0, 1});
   EXPECT_LT((stokeslet_at({tilted, 3}, r) - stokeslet_at({Mat3::Identity(), 3}, r)).norm(), 1e-11);
   EXPECT_LT((stokeslet_at({half, 3}, r) - stokeslet_at({other, 3}, r)).norm(), 1e-11);
   const PeriodicCell oblong(Vec3(1, 1, 2).asDiagonal(), 3);
@@ -193,7 +194,8 @@ double error_of_sums(Kind kind, const PeriodicCell& cell, double tolerance) {
   for (int c = 0; c < 6; ++c)  // sums of one and two periods are known but for a constant times these
     for (double& charge : q[c]) charge -= mean[c];
   std::vector<double> u(3 * n, 0.);
-  sum.add_rest({n, x[0].data(), x[1].data(), x[2].data(), {q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()}}, targets, u.data());
+  sum.add_rest({n, x[0].data(), x[1].data(), x[2].data(),
+                {q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()}}, targets, u.data());
   double largest = 0;
   for (int i = 0; i < n; i += 5) {
     Vec3 found(&u[static_cast<std::size_t>(3 * i)]), exact = Vec3::Zero();
@@ -206,7 +208,8 @@ double error_of_sums(Kind kind, const PeriodicCell& cell, double tolerance) {
           found += stokeslet(y) * Vec3(f(0), f(1), f(2));
         else
           found += -6 * y / std::pow(y.norm(), 5) *
-                   (f(0) * y[0] * y[0] + f(1) * y[1] * y[1] + f(2) * y[2] * y[2] + 2 * (f(3) * y[0] * y[1] + f(4) * y[0] * y[2] + f(5) * y[1] * y[2]));
+                   (f(0) * y[0] * y[0] + f(1) * y[1] * y[1] + f(2) * y[2] * y[2] +
+                    2 * (f(3) * y[0] * y[1] + f(4) * y[0] * y[2] + f(5) * y[1] * y[2]));
       }
       const std::vector<double> t = whole(kind, cell, r, 1, 1.5);
       for (int c = 0; c < 3; ++c) {

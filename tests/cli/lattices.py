@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+# Scenes that repeat on a lattice: the same one by several cells and on several ranks, what a tilt that is put back leaves, resumed, and what a deck
+# may not ask for.
+# ranks: 2
+import numpy
+
+from harness import check, deck, main, run, series
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Domain: {side lengths: [2.8, 2.8, 2.8]}
+  Particles:
+    defaults:
+      viscosity ratio: 2.0
+      Membrane: {law: neo-Hookean, capillary number: 0.3}
+      Surface: {elements per side: 3}
+    one: {center: [0.3, 0.2, 0.1]}
+  Quadrature: {tolerance: 1.0e-6}
+  Solvers: {tolerance: 1.0e-11}
+  Time: {scheme: bs3, fixed step: 0.02, final time: 0.04}
+"""
+OF_ONE = "one/velocity_x1", "one/velocity_x2", "one/velocity_x3", "one/energy", "one/stresslet_13", "one/taylor_inertia"
+OF_ALL = "relative_viscosity", "normal_stress_difference_1", "normal_stress_difference_2", "smallest_gap"
+
+
+def _row(name, *more, names=OF_ONE + OF_ALL, ranks=1, **lists):
+    run(deck(_with(**lists)), *more, "--output", name, "--quiet", ranks=ranks)
+    return numpy.array([series(name, key)[-1] for key in names])
+
+
+def _with(**lists):
+    """The deck with other lists, or more."""
+    lines = [line for line in DECK.splitlines() if not any(line.startswith(f"  {name}:") for name in lists)]
+    return "\n".join(lines + [f"  {name}: {text}" for name, text in lists.items()]) + "\n"
+
+
+def the_same_lattice_by_other_cells_is_the_same():
+    one = _row("one")
+    tilted = _row("tilted", Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 2.8, 0, 2.8]}")
+    check(abs(tilted - one).max() < 1e-9, "a whole period of tilt:", tilted - one)
+    two = _row("two", "--set", "Particles/two/center=[0.3, 3.0, 0.1]", Domain="{side lengths: [2.8, 5.6, 2.8]}")
+    check(abs(two - one).max() < 1e-5, "two particles in a cell:", two - one)
+    beyond = _row("beyond", "--set", "Particles/one/center=[0.3, 5.8, -2.7]")
+    beyond[0] += 2.8
+    check(abs(beyond - one).max() < 1e-8, "in another cell:", beyond - one)
+
+
+def ranks_agree():
+    one, two = _row("on_one"), _row("on_two", ranks=2)
+    check(abs(two - one).max() < 1e-10, two - one)
+
+
+def a_tilt_that_is_put_back_leaves_no_trace():
+    fine = "--set", "Quadrature/tolerance=1e-8", "--set", "Time/final time=0.08"
+    before = _row("before", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 1.26, 0, 2.8]}")  # put back at 0.05
+    after = _row("after", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, -1.54, 0, 2.8]}")  # was put back
+    check(abs(before - after).max() < 1e-8, before - after)
+
+
+def a_run_is_resumed_with_its_lattice_where_it_was():
+    run(deck(DECK), "--output", "whole", "--quiet", "--set", "Output/interval=0.02")
+    run(deck(DECK), "--output", "parts", "--quiet", "--set", "Output/interval=0.02", "--set", "Time/final time=0.02")
+    run("--resume", "parts", "--quiet", "--set", "Time/final time=0.04")
+    for name in OF_ONE + OF_ALL:
+        check(abs(series("whole", name) - series("parts", name)).max() < 1e-12, name)
+
+
+def what_no_lattice_can_do_is_refused():
+    for lists, words in (
+        ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "gradient"]),
+        ({"Flow": "{type: simple shear, history: {type: sine, frequency: 1.0, amplitude: 1.0}}"}, ["Domain", "Flow/history"]),
+        ({"Domain": "{side lengths: [1.9, 2.8, 2.8]}"}, ["Domain", "smaller", "Particles/one", "image"]),
+        ({"Domain": "{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 2.8, 2.8, 0]}"}, ["Domain/lattice vectors", "no volume"]),
+        ({"Domain": "{periodic: x1}"}, ["Domain", "side lengths"]),
+        ({"Domain": "{side lengths: [2.8, -2.8, 2.8]}"}, ["Domain/side lengths", "positive"]),
+        ({"Domain": "{side lengths: [2.8, 2.8, 2.8], lattice vectors: [1, 0, 0, 0, 1, 0, 0, 0, 1]}"}, ["contradict"]),
+        ({"Flow": "{type: duct}", "Tube": "{section: circle, radius: 5.0}"}, ["Domain", "contradict"]),
+        ({"Quadrature": "{rule: desingularised}"}, ["Domain", "desingularised"]),
+    ):
+        error = run(deck(_with(**lists)), "--check", code=2).stderr
+        check(all(word in error for word in words) and error.count("\n") == 1, lists, error)
+
+
+main()
