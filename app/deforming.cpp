@@ -158,7 +158,8 @@ class Deforming : public ParticleSystem {
     Vec3 force = Vec3::Zero();
     for (std::size_t p = 0; p < members_.size(); ++p)
       force += members_[p].scene.particle.rigid() ? capsule_->rigid_about(x, scene_.time.tolerance).force(p)
-                                                  : Vec3(members_[p].body->volume * members_[p].scene.body_force());
+                                                  : Vec3(members_[p].body->volume * members_[p].scene.body_force() +
+                                                         members_[p].scene.membrane.forces.total());
     return force;
   }
 
@@ -171,6 +172,7 @@ class Deforming : public ParticleSystem {
     Moment now = tanktread::moment(member.scene, body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
+    if (members_[p].scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
     now.intrinsic_viscosity = intrinsic_viscosity(body, scene_.flow.viscosity, now);
     add_treading(member.scene, body, geometry(member), x, member.own(v), now);
     std::optional<double> angle;

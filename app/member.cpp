@@ -13,8 +13,9 @@ namespace tanktread {
 namespace {
 
 membrane::Material material(const Scene& scene, const Body& body) {
-  if (scene.particle.rigid()) return {body.law, {}};
-  return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed"}};
+  if (scene.particle.rigid()) return {body.law, {}, {}};
+  return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed"},
+          {scene.membrane.shear_viscosity, scene.membrane.dilatational_viscosity}};
 }
 
 Eigen::MatrixXd numbers_of(const auto& values) {

@@ -28,8 +28,7 @@ std::string surface_line(const Body& body) {
 std::string wall_solver(const Scene& scene) {
   if (scene.particle.rigid()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
-  const auto has_system = [](const Scene& one) { return one.particle.rigid() || one.particle.viscosity_ratio != 1; };
-  return std::ranges::any_of(scene.alone(), has_system) ? "eliminated from the system of the velocity" : "solved for directly";
+  return std::ranges::any_of(scene.alone(), &Scene::has_velocity_system) ? "eliminated from the system of the velocity" : "solved for directly";
 }
 
 void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
@@ -59,6 +58,9 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 }
 
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
+  if (scene.particle.viscosity_ratio == 1 && scene.viscous_membrane())
+    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns a velocity",
+                     scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
   return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
                    scene.solvers.assembled(tree) && !scene.domain.present ? "assembled" : "matrix-free", 3 * n_points);
@@ -124,8 +126,8 @@ std::string solvers_line(const Scene& scene) {
     add("traction", solvers.traction);
     return line;
   }
-  const auto coupled = [](const Scene& one) { return one.particle.rigid() || one.particle.viscosity_ratio != 1; };
-  if (std::ranges::any_of(scene.alone(), coupled) || (scene.tube.present && solvers.tube != "schur")) add("velocity", solvers.velocity);
+  const bool blocks = scene.tube.present && solvers.tube != "schur";
+  if (blocks || std::ranges::any_of(scene.alone(), &Scene::has_velocity_system)) add("velocity", solvers.velocity);
   if (scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   return line.empty() ? "none iterates" : line;
 }

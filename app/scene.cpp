@@ -115,7 +115,7 @@ double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
-  return doubles * ((viscous && scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +
+  return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 
@@ -215,6 +215,8 @@ void check_contradictions(const Scene& scene) {
          "the velocity of a net force in every cell is known in a lattice of three directions only");
   refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");
   refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
+  refuse(scene.viscous_membrane() && tube && scene.solvers.tube != "schur", "Membrane viscosity", "Solvers/tube `" + scene.solvers.tube + "`",
+         "the system of all blocks leaves the membrane's own load out; `schur` has it");
   refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
   refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
   refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");

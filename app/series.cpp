@@ -54,6 +54,8 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.refit_error; }, Needs::adaptation},
     {"area", "", "length^2", "area of the surface", of_deforming | told_or_among_others, [](const Moment& m, int) { return m.measures.area; }},
     {"energy", "", "force length", "energy stored in the membrane", of_deforming | of_several, [](const Moment& m, int) { return m.energy; }},
+    {"membrane_dissipation", "", "force length/time", "power that the membrane's viscosity turns into heat (3.10)", of_deforming,
+     [](const Moment& m, int) { return m.dissipation; }, Needs::viscous_membrane},
     {"smallest_tension", "", "1", "smallest principal tension over G_s", of_deforming, [](const Moment& m, int) { return m.tension.smallest; }},
     {"compressed_area", "", "1", "share of the area with a negative principal tension", of_deforming,
      [](const Moment& m, int) { return m.tension.compressed_area; }},
@@ -182,6 +184,7 @@ std::vector<Series> stated() {
 bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::nothing) return true;
   if (needs == Needs::tube) return scene.tube.present;
+  if (needs == Needs::viscous_membrane) return scene.viscous_membrane();
   if (needs == Needs::strain) return strains(scene);
   if (needs == Needs::cell || needs == Needs::cell_strain)
     return scene.domain.present && scene.domain.directions() == 3 && (needs == Needs::cell || strains(scene));

@@ -33,7 +33,7 @@ struct Moment {
   surface::Measures measures;
   surface::Deformation shape;
   surface::PrincipalAxes axes;
-  double volume_error = 0, refit_error = 0, energy = 0, normal_velocity = 0, shape_velocity = 0;
+  double volume_error = 0, refit_error = 0, energy = 0, normal_velocity = 0, shape_velocity = 0, dissipation = 0;
   membrane::TensionSummary tension;
   Mat3 stresslet = Mat3::Zero();
   double intrinsic_viscosity = 0;
@@ -57,7 +57,7 @@ struct Moment {
 enum Owner : unsigned { of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64 };
 
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
-enum class Needs { nothing, tube, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
+enum class Needs { nothing, tube, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
 
 /// A column of `/series` and its value.
 struct Series {

@@ -73,6 +73,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     double_layer_.emplace(stokes::Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, std::move(contrasts));
     double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
   }
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); })) viscous_.emplace(membrane_);
   if (by_sites()) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
@@ -194,7 +195,7 @@ void Capsule::add_weight(const Net& x, Net& gradient) const {
 }
 
 Net Capsule::load(const Net& x) {
-  if (!rigid_.empty()) velocity(x);  // a rigid body's load is part of what its velocity is solved from
+  if (!rigid_.empty() || viscous_) velocity(x);  // the load is part of what the velocity is solved from
   return same(x, latest_.x) ? latest_.load : membrane_load(x, nullptr);
 }
 
@@ -303,8 +304,10 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   rigid_.add_lacking(v);
   rigid_.subtract_prescribed(v);
   if (constrained) constrain(v, b, c);
-  if (double_layer_ || !schur()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
+  if (viscous_) viscous_->update(x, own_elements_);
+  if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
   latest_.unknowns = v;
+  if (viscous_) latest_.load += viscous_load(symmetric(v));
   if (!rigid_.empty()) {
     latest_.unknowns = symmetric(v);
     latest_.load += rigid_.completing_load(v);
@@ -339,7 +342,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f) {
     if (tube_ && schur()) {
       Tube::Response response = tube_->respond(f);
       u += response.velocity;
-      if (!double_layer_) latest_.response = std::move(response);
+      if (!has_velocity_system()) latest_.response = std::move(response);
     }
     const auto clock = phases_.time("projection");
     return solved(collocation_, std::move(u));
@@ -360,6 +363,18 @@ bool Capsule::enter_tube(const Net& x) {
     return (place - outline.centroid()).norm() >= inner_radius_ && !outline.inside(place);
   });
   return !ranks_.any(outside);
+}
+
+/// M0^-1 C v, where the viscous load was updated last.
+Net Capsule::viscous_load(const Net& v) {
+  Net load;
+  {
+    const auto clock = phases_.time("membrane");
+    viscous_->apply(v, load);
+    replicate_sums(load);
+  }
+  const auto clock = phases_.time("projection");
+  return solved(mass_.reference(), std::move(load));
 }
 
 /// B v = v - R^-1 D v, from what the double layers give at the sites.
@@ -403,16 +418,29 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const bool assembled = double_layer_ && !cell_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_points_, double_rows_);
+  const bool single_assembled = viscous_ && !cell_ && parameters_.solvers.assembled(layer_.by_clusters());
+  if (viscous_) layer_.place(x, measure());
+  if (single_assembled) layer_.assemble(own_points_, single_rows_);
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // of own points, for everybody
+    Net at_sites(n, 3);
+    const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
+    for (size_t k = 0; k < own_points_.size(); ++k) at_sites.row(own_points_[k]) = rows.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    replicate(at_sites);
+    return at_sites;
+  };
   const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall
-    if (!double_layer_) return v;
-    Net hv(n, 3);
+    if (!double_layer_ && !viscous_) return v;
+    Net hv = Net::Zero(n, 3);
     if (assembled) {
-      const Eigen::VectorXd rows = double_rows_ * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
-      for (size_t k = 0; k < own_points_.size(); ++k) hv.row(own_points_[k]) = rows.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    } else {
+      hv = times(double_rows_, v);
+    } else if (double_layer_) {
       double_layer_->apply(v, own_points_, hv);
+      gather(*double_layer_, hv);
     }
-    assembled ? replicate(hv) : gather(*double_layer_, hv);
+    if (viscous_) {
+      const Net load = viscous_load(v);
+      hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
+    }
     if (rigid_.prescribed()) hv -= single_layer_of(x, rigid_.completing_load(v)) / parameters_.viscosity;
     Net bv = viscous(v, hv);
     rigid_.complete(v, bv);
@@ -426,7 +454,11 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     Net v = Eigen::Map<const Net>(in, n, 3);
     project(v);
     Net bv = unbounded(v);
-    if (tube_) bv -= collocation_.solve(tube_->respond(rigid_.prescribed() ? rigid_.completing_load(v) : Net(), v).velocity);
+    if (tube_) {
+      Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
+      if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(v)) : viscous_load(v);
+      bv -= collocation_.solve(tube_->respond(load, v).velocity);
+    }
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
@@ -512,14 +544,31 @@ double Capsule::norm(const Net& displacement) const {
 Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const Particle& particle = particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
-  Mat3 moment = rigid_.holds(p) ? rigid_.load_moment(p) : Mat3(own(energy_gradient(x)).transpose() * own(x));  // int df x dG, x = sum N_A x_A
+  Net work = energy_gradient(x);
+  if (viscous_) work += viscous_work(x, slope);
+  Mat3 moment = rigid_.holds(p) ? rigid_.load_moment(p) : Mat3(own(work).transpose() * own(x));  // int df x dG, x = sum N_A x_A
   if ((!particle.body_force.isZero(0) || pulled(particle)) && !rigid_.holds(p))  // about the centroid
-    moment -= own(energy_gradient(x)).colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
+    moment -= own(work).colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
     moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(geometry_.volume_gradient(x));
   }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+}
+
+/// C v at x.
+Net Capsule::viscous_work(const Net& x, const Net& v) {
+  Net work;
+  viscous_->update(x, own_elements_);
+  viscous_->apply(v, work);
+  replicate_sums(work);
+  return work;
+}
+
+double Capsule::membrane_dissipation(const Net& x, const Net& v, std::size_t p) {
+  if (!viscous_) return 0;
+  const spline::Block& block = particles()[p].block;
+  return block.rows(v).cwiseProduct(block.rows(viscous_work(x, v))).sum();
 }
 
 stokes::Evaluations Capsule::kernel_evaluations() const {

@@ -70,6 +70,8 @@ struct CapsuleParameters {
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
 ///
+/// A viscous membrane's load M0^{-1} C v (3.10) is part of B: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                           (3.11)
+///
 /// Rigid bodies among them move rigidly (RigidParticles): in their rows the unknown is w of (2.23), and in Jacobian and stiff steps they only follow.
 ///
 /// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
@@ -135,6 +137,9 @@ class Capsule : public Dynamics {
     return rigid_;
   }
 
+  /// v.C v of particle p: the power that its membrane's viscosity (3.10) turns into heat at x, where its material points move by v. Collective.
+  double membrane_dissipation(const Net& x, const Net& v, std::size_t p = 0);
+
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(const Net& x) const;  ///< of all volumes together
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
@@ -177,6 +182,9 @@ class Capsule : public Dynamics {
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& dv) const;
+  Net frozen_single_layer(const Net& f);
+  Net viscous_load(const Net& v);
+  Net viscous_work(const Net& x, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
@@ -185,6 +193,7 @@ class Capsule : public Dynamics {
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
+  bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
   bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
 
   const spline::Space& space_;
@@ -200,6 +209,7 @@ class Capsule : public Dynamics {
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
+  std::optional<membrane::ViscousLoad> viscous_;  // where a membrane is
   stokes::Layer layer_;
   std::optional<stokes::Layer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
   membrane::SymmetricSolver collocation_;
@@ -210,7 +220,7 @@ class Capsule : public Dynamics {
   RigidParticles rigid_;
   std::optional<OneBodyInverses> alone_;  // made when first needed
   std::optional<InterfaceMotion> interface_;  // not for material motion
-  stokes::Rows<double> double_rows_;
+  stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
   Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube
   std::optional<stokes::PeriodicCell> cell_;  // now

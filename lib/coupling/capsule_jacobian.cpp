@@ -43,21 +43,29 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++work_.tangents;
   tangent_.update(x, own_elements_);
+  if (viscous_) viscous_->update(x, own_elements_);
   if (interface_) interface_->linearise(x, flux_vector(x));
   if (by_sites()) gradients_ = flow_.gradients(sites_ * x);
 }
 
-/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta, and 0 of rigid bodies                             (4.3)
-Net Capsule::energy_part(const Net& delta) {
-  Net h(delta.rows(), 3), u(delta.rows(), 3);
-  tangent_.apply(delta, h);
-  replicate_sums(h);
-  const Net f = solved(mass_.reference(), std::move(h));
+/// A f with A frozen.
+Net Capsule::frozen_single_layer(const Net& f) {
+  Net u(f.rows(), 3);
   if (nodal_.empty())
     frozen_.apply(f, u);
   else
     nodal_.apply(f, u);
   replicate(u);
+  return u;
+}
+
+/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta, and 0 of rigid bodies                             (4.3)
+Net Capsule::energy_part(const Net& delta) {
+  Net h(delta.rows(), 3);
+  tangent_.apply(delta, h);
+  replicate_sums(h);
+  const Net f = solved(mass_.reference(), std::move(h));
+  Net u = frozen_single_layer(f);
   if (by_sites()) {
     u /= -parameters_.viscosity;
     if (tube_) u += tube_->frozen_response(f);
@@ -73,20 +81,26 @@ Net Capsule::energy_part(const Net& delta) {
 
 /// B v with B frozen; rigid bodies keep what they have and do nothing to the others.
 Net Capsule::frozen_viscous(const Net& v) {
-  if (!double_layer_) return v;
-  Net hv(v.rows(), 3), deforming = v;
+  if (!double_layer_ && !viscous_) return v;
+  Net hv = Net::Zero(v.rows(), 3), deforming = v, load;
   rigid_.clear(deforming);
-  frozen_double_.apply(deforming, hv);
-  replicate(hv);
+  if (double_layer_) {
+    frozen_double_.apply(deforming, hv);
+    replicate(hv);
+  }
+  if (viscous_) {
+    load = viscous_load(deforming);
+    hv -= frozen_single_layer(load) / parameters_.viscosity;
+  }
   rigid_.clear(hv);
   if (!tube_) return viscous(v, hv);
-  return v - collocation_.solve(hv + tube_->frozen_response({}, v));
+  return v - collocation_.solve(hv + tube_->frozen_response(load, v));
 }
 
 /// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
 Net Capsule::fluid_velocity_change(const Net& delta) {
   const Net rhs = energy_part(delta);
-  if (!double_layer_) return rhs;
+  if (!double_layer_ && !viscous_) return rhs;
   const Eigen::Index n = delta.rows();
   const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = frozen_viscous(Eigen::Map<const Net>(in, n, 3)); };
   Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());

@@ -160,9 +160,22 @@ struct Bending {
   bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point; otherwise 0
 };
 
+/// A membrane that flows as it stretches (Kelvin & Voigt's element): what joins the elastic stress is, of the rate of strain d of the surface,
+///
+///   tau^ab = 2 eta_s (d^ab - g^ab d^c_c/2) + kappa_s g^ab d^c_c,   d_ab = (v,a.g_b + g_a.v,b)/2                            (3.10)
+///
+/// Boussinesq and Scriven's; Barthes-Biesel & Sgaier, J. Fluid Mech. 160, 1985.
+struct SurfaceViscosity {
+  double shear = 0;        ///< eta_s, viscosity x length
+  double dilatational = 0;  ///< kappa_s
+
+  bool any() const { return shear > 0 || dilatational > 0; }
+};
+
 struct Material {
   Law law;
   Bending bending;
+  SurfaceViscosity viscosity{};
 };
 
 /// The materials of a surface, and which of them each element is of.

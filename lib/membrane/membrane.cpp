@@ -218,6 +218,40 @@ void Tangent::apply(const Net& u, Net& hu) const {
   });
 }
 
+struct ViscousLoad::Points {
+  std::shared_ptr<const Part> part;
+  std::vector<std::vector<TangentPoint>> of_group;  // empty for groups without viscosity
+};
+
+ViscousLoad::ViscousLoad(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
+ViscousLoad::~ViscousLoad() = default;
+ViscousLoad::ViscousLoad(ViscousLoad&&) noexcept = default;
+
+void ViscousLoad::update(const Net& x, std::span<const int> elements) {
+  points_->part = membrane_->part(elements);
+  const Part& part = *points_->part;
+  points_->of_group.resize(part.groups.size());
+  for (std::size_t g = 0; g < part.groups.size(); ++g)
+    points_->of_group[g].resize(part.materials[part.groups[g].material].viscosity.any() ? part.reference[g].size() : 0);
+  part.each_batch([&](const Part::Points& at) {
+    if (points_->of_group[at.g].empty()) return;
+    Pack a[6 * max_gauss];
+    tangents(at.group, at.batch, x, a);
+    viscous_points(at.material.viscosity, at.n, at.reference, a, &points_->of_group[at.g][at.first]);
+  });
+}
+
+void ViscousLoad::apply(const Net& v, Net& cv) const {
+  cv.setZero(membrane_->space().n_points, 3);
+  points_->part->each_batch([&](const Part::Points& at) {
+    if (points_->of_group[at.g].empty()) return;
+    Pack gradient[6 * max_gauss], p[6 * max_gauss];
+    tangents(at.group, at.batch, v, gradient);
+    membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
+    add_transpose(at.group, at.batch, p, cv);
+  });
+}
+
 Net unstressed(const Net& rest, const Vec3& centre, double alpha) {
   return ((rest.rowwise() - centre.transpose()) / (1 + alpha)).rowwise() + centre.transpose();
 }

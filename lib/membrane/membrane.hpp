@@ -71,6 +71,7 @@ class Membrane {
 
  private:
   friend class Tangent;
+  friend class ViscousLoad;
   std::shared_ptr<const Part> part(std::span<const int> elements) const;
 
   const spline::Space* space_;
@@ -96,6 +97,25 @@ class Tangent {
 
   /// Hu = H u, shape (N, 3), zeroed first, from the elements of the last update; rows complete as in Membrane::load.
   void apply(const Net& u, Net& hu) const;
+
+ private:
+  struct Points;
+  const Membrane* membrane_;
+  std::unique_ptr<Points> points_;
+};
+
+/// What the membrane's viscosity (3.10) does at a configuration: (C v)_A = int J tau^ab R_A,a g_b of the velocity v, C symmetric, v.C v dissipated.
+class ViscousLoad {
+ public:
+  explicit ViscousLoad(const Membrane& membrane);
+  ~ViscousLoad();
+  ViscousLoad(ViscousLoad&&) noexcept;
+
+  /// Takes the shape, on the given elements.
+  void update(const Net& x, std::span<const int> elements);
+
+  /// Cv = C v, shape (N, 3), zeroed first, from the elements of the last update; rows complete as in Membrane::load.
+  void apply(const Net& v, Net& cv) const;
 
  private:
   struct Points;

@@ -7,8 +7,8 @@ namespace tanktread::membrane {
 
 void Options::declare(deck::Section& section) {
   section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "surface tension"},
-              "constitutive law (3.3): rubber of constant volume, `neo-Hookean` (P-7) or `Mooney-Rivlin`; resistance to a change of area, `Skalak` (P-8) "
-              "or `Evans-Skalak`; or a fluid interface (3.4)");
+              "constitutive law (3.3): rubber of constant volume, `neo-Hookean` (P-7) or `Mooney-Rivlin`; resistance to a change of area, "
+              "`Skalak` (P-8) or `Evans-Skalak`; or a fluid interface (3.4)");
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
               "Ca = viscosity x rate x R_C / G_s (over the surface tension for a drop); R_C: radius of the sphere of equal volume, rate: "
@@ -33,6 +33,10 @@ void Options::declare(deck::Section& section) {
               "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
   section.key("bending reference", bending_reference, deck::Choice{"unstressed", "flat"},
               "curvature at which no bending moment acts: that of the unstressed surface, or none");
+  section.key("shear viscosity", shear_viscosity, deck::not_negative(), "viscosity x length",
+              "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
+  section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
+              "kappa_s: the same against a change of area");
   if (section.given("forces") || section.documenting())
     section.section("forces", forces, "forces on patches of the membrane, none without this list");
   else
@@ -62,6 +66,13 @@ void Options::check() const {
     throw UserError(
         "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
   forces.check();
+  if (shear_viscosity + dilatational_viscosity > 0) {
+    const std::string key = std::string("Membrane/") + (shear_viscosity > 0 ? "shear" : "dilatational") + " viscosity";
+    if (law == "surface tension")
+      throw UserError(key + " and Membrane/law `surface tension` contradict each other: an interface has no material points.");
+    if (load == "strong" || load_measure == "current")
+      throw UserError(key + " needs Membrane/load `weak` and Membrane/load measure `reference`.");
+  }
   if (!forces.all.empty() && law == "surface tension")
     throw UserError("Membrane/forces and Membrane/law `surface tension` contradict each other: nothing holds on to a fluid interface.");
   if (!forces.all.empty() && load == "strong")

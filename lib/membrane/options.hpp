@@ -29,6 +29,7 @@ struct Options {
   std::optional<double> bending_modulus;   ///< E_b, force x length; 0 if neither is given: none
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or over sigma R_C^2
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
+  double shear_viscosity = 0, dilatational_viscosity = 0;  ///< eta_s, kappa_s (3.10), viscosity x length
   PatchForces forces;                            ///< by which it is held or pulled
 
   void declare(deck::Section& section);

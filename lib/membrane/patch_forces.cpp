@@ -16,7 +16,8 @@ void PatchForce::declare(deck::Section& section) {
   if (!section.documenting())
     for (const char* key : {"direction", "radius", "force"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing: a force on a membrane needs `direction`, `radius` and `force`.");
-  section.key("direction", direction, deck::any(), "1", "from the centroid of the unstressed shape to the middle of the patch, of any length (required)");
+  section.key("direction", direction, deck::any(), "1",
+              "from the centroid of the unstressed shape to the middle of the patch, of any length (required)");
   section.key("radius", radius, deck::positive(), "length", "of the patch of the unstressed surface, seen along the direction (required)");
   section.key("force", force, deck::any(), "force",
               "on the patch, three numbers; spread like (1 - d^2/radius^2)^2 over the distance d from its middle (required)");
@@ -29,6 +30,12 @@ void PatchForces::declare(deck::Section& section) {
                  all.back().declare(inner);
                });
   if (section.documenting()) all.clear();
+}
+
+Vec3 PatchForces::total() const {
+  Vec3 sum = Vec3::Zero();
+  for (const PatchForce& one : all) sum += one.force;
+  return sum;
 }
 
 void PatchForces::check() const {

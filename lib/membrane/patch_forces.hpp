@@ -32,11 +32,13 @@ struct PatchForces {
 
   void declare(deck::Section& section);
 
+  Vec3 total() const;
+
   /// One sentence (UserError) for a patch without direction, or two on one place.
   void check() const;
 
-  /// Their virtual work for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3), where int w dGamma_0 = 1 by the
-  /// rule that is used: the rows add up to the forces to rounding. Throws UserError for a patch on which there is no membrane.
+  /// Their virtual work for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3), where
+  /// int w dGamma_0 = 1 by the rule that is used: the rows add up to the forces to rounding. Throws UserError for a patch without membrane.
   Net virtual_work(const spline::Space& space, const Net& unstressed) const;
 };
 

@@ -144,6 +144,24 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
   });
 }
 
+// With k = (g^11, g^12, g^22) and e = (d11, 2 d12, d22): S = J (2 eta_s g^ac g^bd d_cd + (kappa_s - eta_s) g^ab k.e).
+void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* points, const Pack* tangents, TangentPoint* moduli) {
+  const auto* const reference = reinterpret_cast<const Reference*>(points);
+  const Register* const a = registers(tangents);
+  auto* const tangent = reinterpret_cast<TangentPointOf<Register>*>(moduli);
+  for (int q = 0; q < n; ++q) {
+    const Metric m(a + 6 * q);
+    const Register inverse = 1.0 / m.det(), area = reference[q].area * sqrt(m.det() * reference[q].inverse_det);
+    const Register g11 = inverse * m.g22, g12 = -inverse * m.g12, g22 = inverse * m.g11;
+    const Register twice = (2 * viscosity.shear) * area, rest = (viscosity.dilatational - viscosity.shear) * area;
+    auto& t = tangent[q];
+    for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
+    t.s11 = t.s12 = t.s22 = Register{};
+    t.c11 = (twice + rest) * g11 * g11, t.c12 = (twice + rest) * g11 * g12, t.c13 = twice * g12 * g12 + rest * g11 * g22;
+    t.c22 = 0.5 * twice * (g11 * g22 + g12 * g12) + rest * g12 * g12, t.c23 = (twice + rest) * g12 * g22, t.c33 = (twice + rest) * g22 * g22;
+  }
+}
+
 void apply(int n, const TangentPoint* points, const Pack* gradient, Pack* result) {
   const auto* const tangent = reinterpret_cast<const TangentPointOf<Register>*>(points);
   const Register* const u = registers(gradient);
@@ -239,6 +257,8 @@ KERNEL(void, smaller_tensions, (const Law& law, int n, const ReferencePoint* ref
        (law, n, reference, a, tension, area))
 KERNEL(void, tangent_points, (const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent),
        (law, n, reference, a, tangent))
+KERNEL(void, viscous_points, (const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent),
+       (viscosity, n, reference, a, tangent))
 KERNEL(void, apply, (int n, const TangentPoint* tangent, const Pack* u, Pack* p), (n, tangent, u, p))
 KERNEL(void, curvatures, (int n, const Pack* jets, Pack* curvature), (n, jets, curvature))
 KERNEL(void, bending_energy, (double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* energy),

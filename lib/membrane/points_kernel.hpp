@@ -42,6 +42,10 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
 
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
+/// The moduli of the viscous stress (3.10) in place of the elastic ones, without a stress of its own: apply() then makes p_a = J tau^ab a_b of the
+/// velocity's gradients.
+void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
+
 /// p = d^2E/da^2 u, for displacement gradients u in the layout of a.
 void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p);
 
