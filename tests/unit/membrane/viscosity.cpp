@@ -50,7 +50,10 @@ TEST(ViscousLoad, IsSymmetricAndAddsUpToNoForce) {
   const Sphere sphere;
   const Net x = stretched(sphere.net);
   Net v = x, w = x;
-  for (Eigen::Index a = 0; a < x.rows(); ++a) v(a, 1) += std::sin(3 * x(a, 0) + x(a, 2)), w.row(a) << x(a, 2) + x(a, 1), x(a, 1) * x(a, 1), std::cos(x(a, 0) + 1);
+  for (Eigen::Index a = 0; a < x.rows(); ++a) {
+    v(a, 1) += std::sin(3 * x(a, 0) + x(a, 2));
+    w.row(a) << x(a, 2) + x(a, 1), x(a, 1) * x(a, 1), std::cos(x(a, 0) + 1);
+  }
   const Net cv = sphere.load({0.7, 1.9}, x, v), cw = sphere.load({0.7, 1.9}, x, w);
   EXPECT_NEAR(w.cwiseProduct(cv).sum(), v.cwiseProduct(cw).sum(), 1e-12 * std::abs(w.cwiseProduct(cv).sum()));
   EXPECT_LT(cv.colwise().sum().norm(), 1e-12 * cv.norm());
