@@ -59,7 +59,7 @@ struct Skalak {
 };
 
 /// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)): a sheet of Mooney's rubber that keeps its volume, for m = 1 the
-/// neo-Hookean one. Barthes-Biesel, Diaz & Dhenin 2002, eq. 2.16.
+/// neo-Hookean one. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
 struct MooneyRivlin {
   double shear_modulus = 1;
   double share = 1;  ///< m
@@ -79,7 +79,8 @@ struct MooneyRivlin {
   double area_modulus() const { return 3 * shear_modulus; }
 };
 
-/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area apart from dilatation. Evans & Skalak 1980.
+/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area apart from dilatation. Evans & Skalak, *Mechanics and
+/// Thermodynamics of Biomembranes*, 1980.
 struct EvansSkalak {
   double shear_modulus = 1;
   double area_dilatation = 1;  ///< C: K_s = (1 + 2 C) G_s, as Skalak's law has it for small strains

@@ -153,7 +153,7 @@ TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Membrane: {capillary number: 0.3, shear modulus: 1}\n"),
             "Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
   EXPECT_EQ(refusal("  Membrane: {area dilatation: 2}\n"),
-            "Membrane/area dilatation belongs to Membrane/law `Skalak`, but Membrane/law is `neo-Hookean`.");
+            "Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `neo-Hookean`.");
   EXPECT_EQ(refusal("  Membrane: {surface tension: 2}\n"),
             "Membrane/surface tension and Membrane/law `neo-Hookean` contradict each other: give Membrane/shear modulus.");
   EXPECT_EQ(refusal("  Membrane: {law: surface tension, load measure: reference}\n"),
