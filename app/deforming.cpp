@@ -39,6 +39,7 @@ class Deforming : public ParticleSystem {
   }
 
   coupling::Dynamics& dynamics() override { return *capsule_; }
+  const coupling::Capsule* capsule() const override { return capsule_.get(); }
   const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
   Net start() const override { return body().initial; }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
@@ -144,7 +145,7 @@ class Deforming : public ParticleSystem {
     else
       around = tube(scene_, body(), phases_);
     capsule_.reset();
-    capsule_ = capsule(members_, body(), ranks_, phases_, std::move(around));
+    capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
   }
 
   /// Of the fluids on the surface. In a tube it is asked for, as the slope carries what is left of the scheme's iteration, over the step.

@@ -171,7 +171,7 @@ int run(const Arguments& arguments, bool speaks) {
   for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
   scene.particles = with_copies(scene.particles);
   scene.check();
-  coupling::try_solvers(scene.solvers, scene.time.nonlinear_solver);
+  coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
 

@@ -36,6 +36,7 @@ class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
+  virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< of what deforms
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now

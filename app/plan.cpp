@@ -90,6 +90,17 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
   return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
 }
 
+/// In place of the line `time`: what is sought.
+void add_steady(Lines& lines, const Scene& scene, const Body& body) {
+  if (scene.steady.present)
+    lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
+  if (!scene.spectrum.present) return;
+  const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.interface_motion() == "material" ? 3 : 1);
+  const bool dense = scene.spectrum.method == "dense";
+  lines.emplace_back("spectrum", dense ? formatted("%d unknowns at most: as many pairs of velocities for the Jacobian, all its eigenvalues", unknowns)
+                                       : formatted("%d unknowns at most: block Krylov-Schur on the shift-inverted motion", unknowns));
+}
+
 std::string symmetry_line(const Scene& scene, const Body& body) {
   if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
   if (body.symmetry.order() == 1) return body.wall ? "none looked for in a tube" : "none found";
@@ -128,7 +139,9 @@ std::string solvers_line(const Scene& scene) {
   }
   const bool blocks = scene.tube.present && solvers.tube != "schur";
   if (blocks || std::ranges::any_of(scene.alone(), &Scene::has_velocity_system)) add("velocity", solvers.velocity);
-  if (scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
+  if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
+  if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
+  if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
   return line.empty() ? "none iterates" : line;
 }
 
@@ -164,7 +177,10 @@ Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
   lines.emplace_back("far sum", tree ? "by clusters of nodes and targets" : "every target meets every node");
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint + ", of each");
-  lines.emplace_back("time", time_line(scene, n * n, ranks));
+  if (scene.runs_in_time())
+    lines.emplace_back("time", time_line(scene, n * n, ranks));
+  else
+    add_steady(lines, scene, all);
   lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("symmetry", "none looked for among several particles");
   std::string last;
@@ -195,7 +211,10 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node");
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint);
-  lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
+  if (scene.runs_in_time())
+    lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
+  else
+    add_steady(lines, scene, body);
   lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("mesh", mesh_line(scene));
   lines.emplace_back("symmetry", symmetry_line(scene, body));

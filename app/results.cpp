@@ -285,6 +285,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.seconds = with_earlier(phases, account.earlier);
   summary.plan = account.plan;
   summary.numbers = numbers(scene_, *body_);
+  summary.modes = account.modes;
   summary.warnings = warnings_;
   output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
   if (durable() == output::Durable::yes)

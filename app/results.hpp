@@ -35,6 +35,7 @@ struct Account {
   bool whole = true;            ///< it came to its end, so that expectations bind
   output::Entries<double> earlier;  ///< seconds of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< for `final`, made of the last row
+  output::Entries<std::string> modes;  ///< of a spectrum
 };
 
 /// Seconds by phase, those of earlier parts of the run included.

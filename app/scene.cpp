@@ -11,6 +11,7 @@
 #include "coupling/frozen_operator.hpp"
 #include "coupling/ranks.hpp"
 #include "deck/words.hpp"
+#include "stokes/ambient_flow.hpp"
 
 namespace tanktread {
 
@@ -186,8 +187,16 @@ void check_motion(const Scene& scene) {
   if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section.");
   if (scene.adaptation.film_resolution && scene.name.empty())
     throw UserError("Adaptation/film resolution is for several particles: there are no films between others.");
-  if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed)
+  if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed && scene.runs_in_time())
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
+}
+
+/// Whether an unbounded flow with the same gradient everywhere has a vorticity.
+bool turns(const Scene& scene) {
+  if (scene.tube.present || scene.flow.type == "duct") return false;
+  const stokes::AmbientFlow ambient(scene.flow);
+  const Mat3 gradient = ambient.gradient(Vec3::Zero());
+  return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
 }
 
 /// Every pair of choices, of whatever lists, that cannot be made together.
@@ -197,12 +206,22 @@ void check_contradictions(const Scene& scene) {
   const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
   const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
+  const bool steady = !scene.runs_in_time();
+  const std::string sought = scene.steady.present ? "Steady" : "Spectrum";
   const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
   const auto refuse = [](bool both, const std::string& one, const std::string& other, const char* why) {
     if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
   };
   refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
+  refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
+  refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
+  refuse(steady && adapts, sought, "Adaptation/enabled", "the mesh stays what it is");
+  refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
+  refuse(steady && drop && scene.interface_motion() == "material", sought, "Interface/motion `material`",
+         "points that go with the fluid along an interface do not rest");
+  refuse(scene.steady.present && !drop && !rigid && turns(scene), sought, flow,
+         "the flow turns, and the membrane treads around its shape: no point of it rests");
   refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", "Tube", flow,
          "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");
   refuse(tube && desingularised, "Quadrature/rule `desingularised`", "Tube", "the wall is not closed");
@@ -280,6 +299,18 @@ void Scene::declare(deck::Section& root) {
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
+  steady.present = root.given("Steady");
+  if (steady.present || root.documenting())
+    root.section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
+  else
+    root.mention("Steady");
+  spectrum.present = root.given("Spectrum");
+  if (spectrum.present || root.documenting())
+    root.section("Spectrum", spectrum,
+                 "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at "
+                 "rest, grow or decay");
+  else
+    root.mention("Spectrum");
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");
@@ -333,7 +364,7 @@ void Scene::check() const {
   check_adaptation(*this);
   check_size(*this);
   check_vectors(*this, "Solvers", solvers.belos);
-  for (const coupling::IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step})
+  for (const coupling::IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step, &solvers.spectrum})
     check_vectors(*this, system->path, system->belos);
 }
 

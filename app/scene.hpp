@@ -14,6 +14,8 @@
 #include "membrane/options.hpp"
 #include "motion/adaptation.hpp"
 #include "motion/options.hpp"
+#include "motion/spectrum.hpp"
+#include "motion/steady.hpp"
 #include "output/options.hpp"
 #include "quadrature/options.hpp"
 #include "stokes/flow_options.hpp"
@@ -72,6 +74,8 @@ struct Scene : ParticleKind {
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
   motion::TimeOptions time;
+  motion::SteadyOptions steady;
+  motion::SpectrumOptions spectrum;
   coupling::SymmetryOptions symmetry;
   coupling::SolverOptions solvers;
   output::Options output;
@@ -84,6 +88,7 @@ struct Scene : ParticleKind {
   /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
   void check() const;
   void check_several() const;
+  bool runs_in_time() const { return !spectrum.present && !steady.present; }  ///< otherwise steady shapes are looked at
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// The scene of each particle, as if it were alone.

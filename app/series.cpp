@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -162,6 +163,11 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.pressure_error; }, Needs::exact_pressure},
     {"normal_l2_error", "", "1", "L2 norm of n_h - n over that of n (6.3), where that is known", of_prescribed,
      [](const Moment& m, int) { return m.normal_error; }, Needs::exact},
+    {"rate_", "k", "1/time",
+     "of mode k of the spectrum, as its displacement grows (Spectrum): the modes as Spectrum/number and Spectrum/near order them",
+     of_mode, [](const Moment& m, int) { return m.rate.real(); }},
+    {"frequency_", "k", "1/time", "of the same mode, 2 pi over the period with which it oscillates; not negative", of_mode,
+     [](const Moment& m, int) { return std::abs(m.rate.imag()); }},
     {"kernel_evaluations", "", "1", "of the layer operator, all rules together", of_prescribed,
      [](const Moment& m, int) { return m.kernel_evaluations; }},
 };
@@ -222,6 +228,17 @@ std::vector<Series> run_series(const Scene& scene) {
     for (Series& own : particle_series(one)) {
       if (!one.name.empty()) own.name = one.name + "/" + own.name;
       all.push_back(std::move(own));
+    }
+  std::ranges::move(mode_series(scene), std::back_inserter(all));
+  return all;
+}
+
+std::vector<Series> mode_series(const Scene& scene) {
+  std::vector<Series> all;
+  for (int k = 1; scene.spectrum.present && k <= scene.spectrum.number; ++k)
+    for (Series one : series(scene, of_mode)) {
+      one.name.replace(one.name.size() - 1, 1, std::to_string(k));
+      all.push_back(std::move(one));
     }
   return all;
 }

@@ -30,6 +30,8 @@ constexpr Entry fields[] = {
     {"largest tension", "1", "capsule, drop", "larger principal tension (3.2) over G_s, of a drop over sigma"},
     {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
     {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
+    {"mode k", "1", "capsule, drop", "displacement of mode k of a spectrum, at its largest 1; of one that oscillates its real part"},
+    {"mode k imaginary", "1", "capsule, drop", "its imaginary part"},
     {"pressure", "force/length^2", "prescribed body",
      "p = -t.n of the traction t on the body, its mean over the surface as of the exact solution"},
     {"pressure error", "force/length^2", "prescribed body", "p - p_exact, where the exact solution is known"},
@@ -45,6 +47,7 @@ constexpr Entry entries[] = {
     {"seconds", "s", "all", "wall time of the first rank by phase, which add up to the run's"},
     {"plan", "", "all", "what the run chose to compute, a line each"},
     {"numbers", "", "all", "derived and dimensionless numbers of the scene, below"},
+    {"modes", "", "capsule, drop", "of each mode of a spectrum: `shape`, or `translation`, `rotation`, `volume`, which change none"},
     {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
 };
 
@@ -52,7 +55,8 @@ constexpr Entry entries[] = {
 std::string owners(const Series& one) {
   constexpr std::pair<unsigned, const char*> all[] = {{of_run | of_deforming, "capsule, drop"}, {of_rigid, "rigid one of several"},
                                                       {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
-                                                      {of_prescribed, "prescribed body"}, {of_run | of_several, "several particles together"}};
+                                                      {of_prescribed, "prescribed body"}, {of_mode, "capsule, drop"},
+                                                      {of_run | of_several, "several particles together"}};
   std::string list;
   for (const auto& [owner, text] : all)
     if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);

@@ -18,6 +18,7 @@
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
 #include "app/signals.hpp"
+#include "app/steady.hpp"
 #include "app/tube.hpp"
 #include "app/warnings.hpp"
 #include "base/errors.hpp"
@@ -322,7 +323,7 @@ class Run {
   }
 
   Account account(const std::string& status) const {
-    return {plan(scene_, particle_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}};
+    return {plan(scene_, particle_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}, {}};
   }
 
   /// `reason`: to have ended before its time, if it did.
@@ -386,12 +387,13 @@ std::vector<std::string> check_expectations(const Scene& scene) {
   std::vector<std::string> names;
   for (const Series& one : run_series(scene)) names.push_back(one.name);
   deck::check_series(scene.expect.all, names);
-  return deck::too_late(scene.expect.all, scene.particle.motion == Motion::prescribed ? 0 : scene.time.final_time);
+  return deck::too_late(scene.expect.all, scene.particle.motion == Motion::prescribed || !scene.runs_in_time() ? 0 : scene.time.final_time);
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
   if (scene.particle.motion == Motion::prescribed) return resist(scene, request);
+  if (!scene.runs_in_time()) return find_steady(scene, request);
   return Run(scene, request).go();
 }
 

@@ -43,9 +43,8 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   }
 }
 
-namespace {
-/// At a site, or, at a plain pole, where elements have none themselves, the mean of theirs close by.
-Vec3 normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites) {
+/// At a plain pole, where elements have no normal themselves, the mean of theirs close by.
+Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites) {
   const surface::Point p = surface::point(space, x, sites.front());
   if (p.jacobian > 1e-9 * std::max(p.a1.squaredNorm(), p.a2.squaredNorm())) return p.n;
   constexpr double aside = 1e-4;
@@ -54,6 +53,7 @@ Vec3 normal(const spline::Space& space, const Net& x, std::span<const spline::Si
   return sum.normalized();
 }
 
+namespace {
 /// U (6.4) from b = dV/dx, for 3 V = b.x; of a velocity that is the same everywhere exactly that one.
 Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
@@ -115,7 +115,7 @@ Mat3 rotation_between(const Net& from, const Net& to) {
 Net InterfaceMotion::normals_at(const Net& x) const {
   Net normals = Net::Zero(x.rows(), 3);
   for (const Drop& drop : drops_)
-    for (const int i : drop.points) normals.row(i) = normal(space_, x, space_.collocation[static_cast<size_t>(i)]).transpose();
+    for (const int i : drop.points) normals.row(i) = site_normal(space_, x, space_.collocation[static_cast<size_t>(i)]).transpose();
   ranks_.replicate(normals);
   return normals;
 }

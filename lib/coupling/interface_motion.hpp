@@ -17,6 +17,9 @@
 
 namespace tanktread::coupling {
 
+/// The unit normal of the surface with net x at a place, which is the site of one element or the meeting point of several.
+Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites);
+
 /// Velocity of the control points from the fluid's velocity v: at the collocation sites of each drop
 ///
 ///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T M0^{-1} dE1/dx (`relaxed`)    (4.6)

@@ -148,10 +148,12 @@ Teuchos::ParameterList defaults(const std::string& method) {
 struct FixedPoint::Impl {
   Teuchos::ParameterList given, list;
   Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
-  Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver = belos_factory({"GMRES"}).factory;
+  Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver;
 };
 
-FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list) : impl_(std::make_unique<Impl>()) {
+FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->linear_solver = belos_factory(linear).factory;
   impl_->list = defaults(method);
   if (list) impl_->list.setParameters(impl_->given = unread_copy(*list));
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "coupling/options.hpp"
 
 namespace Teuchos {
 class ParameterList;
@@ -27,8 +28,8 @@ class FixedPoint {
   using Norm = std::function<double(const Net&)>;
 
   /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or `newton-krylov` without a matrix: products with dg/dx by differences of g, Belos'
-  /// GMRES without preconditioner. `list` goes to NOX as it is, after our defaults.
-  FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list);
+  /// solver `linear` without preconditioner. `list` goes to NOX as it is, after our defaults.
+  FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"});
   ~FixedPoint();
 
   /// From x on, until norm(g(x) - x) <= tolerance or `most` iterations are over. Collective. A value of g that is not finite ends the iteration.

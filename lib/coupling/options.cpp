@@ -43,7 +43,10 @@ void SolverOptions::declare(deck::Section& section) {
   section.section("velocity", velocity, "the system of a velocity: viscosity ratio other than 1, rigid bodies among others, the blocks in a tube");
   section.section("traction", traction, "the system of the traction of a single rigid particle, and of its motion in a tube");
   section.section("implicit step", implicit_step, "the system of an implicit step");
-  section.foreign("NOX", nox, "list handed as it is to the nonlinear solver of Time/scheme `crank-nicolson`, where that is not `plain`");
+  section.section("spectrum", spectrum, "the shift-inverted system of Spectrum/method `krylov`");
+  section.section("steady", steady, "the system of a Newton step of Steady/method `newton-krylov`");
+  section.foreign("NOX", nox,
+                  "list handed as it is to the nonlinear solver: of Steady, and of Time/scheme `crank-nicolson`, where that is not `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual of the systems that a velocity (viscosity ratio other than 1) or a traction (rigid particle) comes from");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},

@@ -43,6 +43,7 @@ struct SolverOptions {
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
   IterativeOptions velocity, traction;
   IterativeOptions implicit_step{.restart = 30};  ///< three iterations are usual
+  IterativeOptions spectrum{.restart = 30}, steady{.restart = 30};
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< list of the nonlinear solver of crank-nicolson, as it is
   double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
   std::string double_layer = "auto";              ///< assembled once a velocity, for all iterations; matrix-free: summed in each of them;

@@ -21,6 +21,7 @@ struct Summary {
   Entries<double> seconds;    ///< by phase
   Entries<std::string> plan;  ///< what the run chose to compute, one line each
   Entries<double> numbers;    ///< derived and dimensionless ones of the scene
+  Entries<std::string> modes;  ///< of a spectrum, what each mode is
   std::vector<std::string> warnings;  ///< edges of the method that the run came near to, a sentence each
 };
 

@@ -1,0 +1,42 @@
+#pragma once
+// Small changes of shape as a column of numbers.
+
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "coupling/particle.hpp"
+#include "membrane/symmetric_solver.hpp"
+#include "spline/space.hpp"
+#include "surface/symmetry.hpp"
+
+namespace tanktread::coupling {
+
+/// Coordinates of small displacements of a net x, and of rates of change: at each collocation site three components, or, of a drop whose mesh slides
+/// along its interface, the one along the normal of x, for the others change no shape,
+///
+///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
+///
+/// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone.
+class ShapeCoordinates {
+ public:
+  ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x);
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(all_.size()); }
+  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates
+  Eigen::VectorXd coordinates(const Net& field) const;  ///< of a field of these control values
+
+ private:
+  struct Coordinate {
+    int site;
+    Vec3 direction;
+  };
+  std::vector<Coordinate> all_;
+  surface::Symmetry symmetry_;
+  Eigen::SparseMatrix<double> sites_;  // R
+  membrane::SymmetricSolver collocation_;
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,161 @@
+#include "motion/spectrum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/errors.hpp"
+#include "coupling/agreement.hpp"
+#include "coupling/eigenvalues.hpp"
+#include "coupling/rigid_motion.hpp"
+#include "deck/section.hpp"
+
+namespace tanktread::motion {
+
+void SpectrumOptions::declare(deck::Section& section) {
+  section.key("number", number, deck::between(1, 500), "1", "modes that are reported, those first that grow fastest or decay most slowly");
+  section.key("near", near, deck::any(), "1/time", "report those whose rate is nearest to this one instead");
+  section.key("method", method, deck::Choice{"dense", "krylov"},
+              "`dense`: the whole Jacobian, a column by two velocities, and all its eigenvalues; `krylov`: the leading ones by block Krylov-Schur on "
+              "(I - J/shift)^-1, each product a solve by Solvers/spectrum, preconditioned by the frozen Jacobian");
+  section.key("shift", shift, deck::positive(), "1/time",
+              "`krylov`: modes come in the order of |shift - rate|; if not given, the rate of the flow, or of the membrane at rest");
+  section.key("block", block, deck::between(1, 50), "1",
+              "`krylov`: vectors that are multiplied together: how many modes of one rate are sure to be seen");
+  section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
+              "displacements whose velocities the Jacobian is made of, at the largest");
+}
+
+const char* name(ModeKind kind) {
+  constexpr const char* names[] = {"shape", "translation", "rotation", "volume"};
+  return names[static_cast<int>(kind)];
+}
+
+Eigen::VectorXd linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference,
+                           const Eigen::VectorXd& y) {
+  const Net d = shapes.displacement(y);
+  const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / dynamics.norm(d);
+  const double e = difference * radius / d.rowwise().norm().maxCoeff();
+  const Net change = (dynamics.velocity(x + e * d) - dynamics.velocity(x - e * d)) / (2 * e);
+  if (!change.allFinite()) throw RunFailure("the velocity of a shape close to the one that is linearised about cannot be had");
+  return shapes.coordinates(change);
+}
+
+namespace {
+
+/// Orthonormal coordinates of the translations (first = 0) or rotations (3) of x that symmetry admits and that are seen: those of a sphere along
+/// itself are not.
+Eigen::MatrixXd rigid_motions(const coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
+  constexpr double seen = 1e-3;
+  const Vec3 centre = x.colwise().mean().transpose();
+  Eigen::MatrixXd all(shapes.size(), 3);
+  int rank = 0;
+  for (int k = first; k < first + 3; ++k) {
+    const Net field = coupling::rigid_velocity(x, coupling::unit_motion(k), centre);
+    if ((dynamics.symmetric(field) - field).norm() > seen * field.norm()) continue;
+    Eigen::VectorXd y = shapes.coordinates(field);
+    const double size = y.norm();
+    for (int j = 0; j < rank; ++j) y -= all.col(j).dot(y) * all.col(j);
+    if (y.norm() > seen * field.norm() && y.norm() > seen * size) all.col(rank++) = y.normalized();
+  }
+  return all.leftCols(rank);
+}
+
+/// What tells the modes that are no change of shape.
+class Recognition {
+ public:
+  Recognition(const coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux)
+      : shapes_(shapes),
+        flux_(flux),
+        translations_(rigid_motions(dynamics, shapes, x, 0)),
+        rotations_(rigid_motions(dynamics, shapes, x, 3)) {}
+
+  /// All modes but one of rate 0 keep the volume, for the motion does: rate x b.d = 0.
+  ModeKind kind(const Eigen::VectorXcd& mode) const {
+    constexpr double most = 0.9;
+    const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();
+    const std::complex<double> gain(flux_.cwiseProduct(shapes_.displacement(mode.real())).sum(),
+                                    flux_.cwiseProduct(shapes_.displacement(mode.imag())).sum());
+    const double size = std::hypot(shapes_.displacement(mode.real()).norm(), shapes_.displacement(mode.imag()).norm());
+    const double volume = std::abs(gain) / (flux_.norm() * size), all = std::hypot(translation, rotation, volume);
+    if (all < most * mode.norm() && volume < 0.1) return ModeKind::shape;
+    if (volume > std::max(translation, rotation) / mode.norm()) return ModeKind::volume;
+    return translation > rotation ? ModeKind::translation : ModeKind::rotation;
+  }
+
+ private:
+  const coupling::ShapeCoordinates& shapes_;
+  const Net& flux_;
+  Eigen::MatrixXd translations_, rotations_;
+};
+
+/// As a field on the surface, turned in the complex plane so that it is as real as can be, at its largest 1.
+Mode mode(const coupling::ShapeCoordinates& shapes, const Recognition& recognition, std::complex<double> rate, Eigen::VectorXcd y) {
+  const std::complex<double> square = (y.array() * y.array()).sum();
+  if (std::abs(square) > 0) y /= std::sqrt(square / std::abs(square));
+  Mode found{rate, shapes.displacement(y.real()), shapes.displacement(y.imag()), recognition.kind(y)};
+  const double largest = std::sqrt((found.real.rowwise().squaredNorm() + found.imaginary.rowwise().squaredNorm()).maxCoeff());
+  found.real /= largest, found.imaginary /= largest;
+  return found;
+}
+
+}  // namespace
+
+namespace {
+
+using Pairs = std::vector<coupling::Eigenpair>;
+
+/// All of J, which is made column by column.
+Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const SpectrumOptions& options) {
+  const Eigen::Index n = shapes.size();
+  Eigen::MatrixXd jacobian(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(dynamics, shapes, x, options.difference, Eigen::VectorXd::Unit(n, k));
+  coupling::take_first({jacobian.data(), static_cast<std::size_t>(jacobian.size())});
+  return coupling::eigenpairs(std::move(jacobian));
+}
+
+/// Those with the largest (1 - rate/shift)^-1: (I - J/shift)^-1 by GMRES, with what an implicit step has for it as preconditioner.
+Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const SpectrumOptions& options,
+              const coupling::IterativeOptions& solver) {
+  constexpr double tolerance = 1e-6;
+  const double step = 1 / options.shift.value();
+  dynamics.freeze(x);
+  dynamics.linearise(x);
+  const Eigen::Index n = shapes.size();
+  using Numbers = Eigen::Map<const Eigen::VectorXd>;
+  const coupling::Krylov krylov(solver);
+  const coupling::LinearSystem system{
+      {{"shape", n}},
+      [&](const double* in, double* out) {
+        const Eigen::VectorXd y = Numbers(in, n);
+        Eigen::Map<Eigen::VectorXd>(out, n) = y - step * linearised(dynamics, shapes, x, options.difference, y);
+      },
+      [&](const double* in, double* out) {
+        const Net r = shapes.displacement(Numbers(in, n));
+        Eigen::Map<Eigen::VectorXd>(out, n) = shapes.coordinates(dynamics.solve(step, r, 1e-2, {}));
+      }};
+  const auto inverse = [&](const double* in, double* out) {
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(n);
+    coupling::require_convergence(krylov.solve(system, Numbers(in, n), y, 0.1 * tolerance), "the shift-inverted motion", tolerance);
+    Eigen::Map<Eigen::VectorXd>(out, n) = y;
+  };
+  Pairs pairs = coupling::largest_eigenpairs(inverse, n, options.number, options.block, tolerance);
+  for (coupling::Eigenpair& pair : pairs) pair.value = (1. - 1. / pair.value) / step;
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+                           const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
+  Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, options) : shifted(dynamics, shapes, x, options, solver);
+  const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
+  std::ranges::stable_sort(pairs, {}, rank);
+  pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));
+  const Recognition recognition(dynamics, shapes, x, flux);
+  std::vector<Mode> modes;
+  for (const coupling::Eigenpair& pair : pairs) modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
+  return modes;
+}
+
+}  // namespace tanktread::motion

@@ -1,0 +1,56 @@
+#pragma once
+// The linearised motion about a shape: how fast small changes of shape grow or decay, and which.
+
+#include <complex>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "coupling/dynamics.hpp"
+#include "coupling/options.hpp"
+#include "coupling/shape_coordinates.hpp"
+
+namespace tanktread::deck {
+class Section;
+}
+
+namespace tanktread::motion {
+
+/// `Spectrum/*` of the deck.
+struct SpectrumOptions {
+  bool present = false;            ///< whether the deck has this list
+  int number = 12;                 ///< of modes that are reported
+  std::optional<double> near;      ///< those whose rate is nearest to this one, 1/time; empty: those that grow fastest
+  std::string method = "dense";    ///< dense, krylov
+  std::optional<double> shift;     ///< of krylov, 1/time
+  int block = 3;                   ///< of krylov
+  double difference = 1e-5;        ///< size of the displacements whose velocities the Jacobian is made of, over R_C
+
+  void declare(deck::Section& section);
+};
+
+/// What a mode is beside a change of shape.
+enum class ModeKind { shape, translation, rotation, volume };
+const char* name(ModeKind kind);
+
+/// A displacement that grows like Re(mode e^{rate t}), its largest displacement 1.
+struct Mode {
+  std::complex<double> rate;
+  Net real, imaginary;
+  ModeKind kind = ModeKind::shape;
+};
+
+/// J y for the coordinates y of a displacement of x, by a central difference of velocities:
+///
+///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
+Eigen::VectorXd linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference,
+                           const Eigen::VectorXd& y);
+
+/// The leading modes of the motion about x, as `options` ask, whose shift is given. `flux`: dV/dx, which tells the mode that only the conserved
+/// volume keeps at rate 0. `solver`: of the shift-inverted systems. Collective. Throws RunFailure where a velocity or the eigenvalues cannot be had.
+std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+                           const SpectrumOptions& options, const coupling::IterativeOptions& solver);
+
+}  // namespace tanktread::motion

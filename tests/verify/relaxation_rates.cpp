@@ -1,0 +1,136 @@
+// Spheres in a fluid at rest: how fast their harmonics relax, against Lamb's solution (4.18) for drops and the 2 x 2 system (4.19) of capsules.
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include "motion/spectrum.hpp"
+#include "tests/evolution.hpp"
+
+namespace tanktread {
+namespace {
+
+using Pair = Eigen::Vector2d;
+
+/// (4.18), of sigma/(mu R).
+double drop_rate(int l, double lambda) {
+  const double a = (2. * l * l + 4 * l + 3) * lambda + 2. * l * (l + 2), b = 2. * l * l + 1 + 2. * (l * l - 1) * lambda;
+  return -(l - 1.) * l * (l + 1) * (l + 2) * (2 * l + 1) * (lambda + 1) / (a * b);
+}
+
+/// The slow and the fast rate of (4.19), of G/(mu R), viscosity ratio 1.
+Pair capsule_rates(int l, double dilatation) {
+  const double k = dilatation, n = l * (l + 1.);
+  Eigen::Matrix2d load, waves;
+  load << -4 * k, 2 * k * n, 2 * k, -k * n - (n - 2);
+  waves << -(l + 1), l, 1, 1;
+  const Pair layer(l / ((2. * l + 1) * (2 * l + 3)), (l + 1.) / ((2. * l + 1) * (2 * l - 1)));
+  const Eigen::Matrix2d system = waves * layer.asDiagonal() * waves.inverse() * load;
+  const Pair rates = Eigen::EigenSolver<Eigen::Matrix2d>(system).eigenvalues().real();
+  return {rates.maxCoeff(), rates.minCoeff()};
+}
+
+struct Sphere {
+  Evolution scene;
+  std::vector<motion::Mode> modes;
+
+  Sphere(std::vector<std::string> settings, int n)
+      : scene([&] {
+          settings.insert(settings.end(), {"Flow/type=quiescent", "Surface/elements per side=" + std::to_string(n), "Quadrature/tolerance=1e-7"});
+          return settings;
+        }()) {
+    const Net& x = scene.body().rest;
+    const coupling::ShapeCoordinates shapes(scene.body().space, scene.capsule->particles(), scene.body().symmetry, x);
+    motion::SpectrumOptions options;
+    options.number = static_cast<int>(shapes.size());
+    modes = motion::spectrum(*scene.capsule, shapes, x, scene.capsule->geometry().volume_gradient(x), options, {});
+  }
+
+  /// The rate, within 5 % of this one, of the mode that is most nearly a displacement of harmonic 2, Y r and grad Y.
+  double second_harmonic(double near) const {
+    const Net& x = scene.body().rest;
+    Eigen::MatrixXd fields(3 * x.rows(), 4);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const Vec3 r = x.row(i).transpose().normalized();
+      const Vec3 slopes[] = {{-r[0], -r[1], 2 * r[2]}, {r[0], -r[1], 0}};  // half the gradients of the solid harmonics
+      for (int k = 0; k < 2; ++k) {
+        fields.block<3, 1>(3 * i, 2 * k) = slopes[k].dot(r) * r;
+        fields.block<3, 1>(3 * i, 2 * k + 1) = slopes[k] - slopes[k].dot(r) * r;
+      }
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(fields);
+    double best = std::numeric_limits<double>::quiet_NaN(), least = 0.5;
+    for (const motion::Mode& mode : modes) {
+      if (std::abs(mode.rate.real() / near - 1) > 0.05) continue;
+      const Eigen::Map<const Eigen::VectorXd> y(mode.real.data(), mode.real.size());
+      const double rest = (y - fields * qr.solve(y)).norm() / y.norm();
+      if (rest < least) least = rest, best = mode.rate.real();
+    }
+    return best;
+  }
+};
+
+TEST(RelaxationRates, OfTheTwoByTwoSystemAreThoseOfTheSeries) {
+  EXPECT_NEAR(capsule_rates(2, 3)[0], -0.24835904, 1e-8);
+  EXPECT_NEAR(capsule_rates(2, 3)[1], -2.20878382, 1e-8);
+  EXPECT_NEAR(capsule_rates(4, 201)[1], -227.14635, 1e-5);
+}
+
+class OfDrops : public testing::TestWithParam<double> {};
+
+TEST_P(OfDrops, ConvergeToLambsSolution) {
+  const double lambda = GetParam(), exact = drop_rate(2, lambda);
+  const std::vector<std::string> drop = {"Membrane/law=surface tension", "Membrane/surface tension=1",
+                                         "Particle/viscosity ratio=" + std::to_string(lambda)};
+  const double coarse = std::abs(Sphere(drop, 4).second_harmonic(exact) / exact - 1);
+  const double fine = std::abs(Sphere(drop, 8).second_harmonic(exact) / exact - 1);
+  EXPECT_LT(fine, 3e-4);
+  EXPECT_GT(std::log2(coarse / fine), 3);  // 4 between n = 6 and 12
+}
+
+INSTANTIATE_TEST_SUITE_P(RelaxationRates, OfDrops, testing::Values(0.1, 1., 10.));
+
+TEST(RelaxationRates, OfACapsuleAreBothElasticModes) {
+  const std::vector<std::string> capsule = {"Membrane/shear modulus=1"};
+  const Sphere coarse(capsule, 4), fine(capsule, 8);
+  for (const double exact : {capsule_rates(2, 3)[0], capsule_rates(2, 3)[1]}) {
+    const double error = std::abs(fine.second_harmonic(exact) / exact - 1);
+    EXPECT_LT(error, 3e-4) << exact;
+    EXPECT_GT(std::log2(std::abs(coarse.second_harmonic(exact) / exact - 1) / error), 3) << exact << ' ' << error;
+  }
+}
+
+TEST(RelaxationRates, OfRigidMotionsAndOfTheVolumeAreZeroAndNamed) {
+  const Sphere sphere({"Membrane/shear modulus=1", "Symmetry/use=none"}, 3);
+  int count[4] = {};
+  for (const motion::Mode& mode : sphere.modes) {
+    if (mode.kind == motion::ModeKind::shape) continue;
+    ++count[static_cast<int>(mode.kind)];
+    EXPECT_NEAR(std::abs(mode.rate), 0, 1e-8) << name(mode.kind);
+  }
+  EXPECT_EQ(count[1], 3);
+  EXPECT_EQ(count[2], 3);
+  EXPECT_EQ(count[3], 1);
+}
+
+TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {
+  Evolution run({"Flow/type=quiescent", "Membrane/law=surface tension", "Membrane/surface tension=1", "Surface/elements per side=4"});
+  const Net& x = run.body().rest;
+  const coupling::ShapeCoordinates shapes(run.body().space, run.capsule->particles(), run.body().symmetry, x);
+  motion::SpectrumOptions options;
+  options.number = 6, options.shift = 1;
+  const Net flux = run.capsule->geometry().volume_gradient(x);
+  const auto all = motion::spectrum(*run.capsule, shapes, x, flux, options, {"GMRES"});
+  options.method = "krylov";
+  const auto some = motion::spectrum(*run.capsule, shapes, x, flux, options, {"GMRES"});
+  ASSERT_EQ(some.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::abs(some[k].rate - all[k].rate), 0, 1e-5) << k;
+}
+
+}  // namespace
+}  // namespace tanktread
