@@ -94,6 +94,9 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
     lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
+  if (scene.continuation.present)
+    lines.emplace_back("branch", formatted("along %s to %g, ", scene.continuation.parameter.c_str(), scene.continuation.to) +
+                                     scene.continuation.method + ", each point by an iteration of its own");
   if (!scene.spectrum.present) return;
   const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.interface_motion() == "material" ? 3 : 1);
   const bool dense = scene.spectrum.method == "dense";

@@ -215,6 +215,7 @@ void check_contradictions(const Scene& scene) {
   };
   refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
+  if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
   refuse(steady && adapts, sought, "Adaptation/enabled", "the mesh stays what it is");
   refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
@@ -304,6 +305,11 @@ void Scene::declare(deck::Section& root) {
     root.section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
   else
     root.mention("Steady");
+  continuation.present = root.given("Continuation");
+  if (continuation.present || root.documenting())
+    root.section("Continuation", continuation, "of the steady shape along a number of the deck; a row and a snapshot each point");
+  else
+    root.mention("Continuation");
   spectrum.present = root.given("Spectrum");
   if (spectrum.present || root.documenting())
     root.section("Spectrum", spectrum,

@@ -14,6 +14,7 @@
 #include "membrane/options.hpp"
 #include "motion/adaptation.hpp"
 #include "motion/options.hpp"
+#include "motion/continuation.hpp"
 #include "motion/spectrum.hpp"
 #include "motion/steady.hpp"
 #include "output/options.hpp"
@@ -75,6 +76,7 @@ struct Scene : ParticleKind {
   quadrature::Options quadrature;
   motion::TimeOptions time;
   motion::SteadyOptions steady;
+  motion::ContinuationOptions continuation;
   motion::SpectrumOptions spectrum;
   coupling::SymmetryOptions symmetry;
   coupling::SolverOptions solvers;

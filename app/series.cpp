@@ -163,6 +163,12 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.pressure_error; }, Needs::exact_pressure},
     {"normal_l2_error", "", "1", "L2 norm of n_h - n over that of n (6.3), where that is known", of_prescribed,
      [](const Moment& m, int) { return m.normal_error; }, Needs::exact},
+    {"parameter", "", "of the key", "Continuation/parameter", of_branch, [](const Moment& m, int) { return m.parameter; }},
+    {"fold", "", "1", "1 where the parameter turns back along the branch, else 0", of_branch, [](const Moment& m, int) { return m.fold; }},
+    {"leading_rate", "", "1/time",
+     "largest rate of the modes that change the shape, translations and rotations left out: negative where it is stable",
+     of_spectrum, [](const Moment& m, int) { return m.leading_rate; }},
+    {"unstable_modes", "", "1", "of those modes, how many grow", of_spectrum, [](const Moment& m, int) { return m.unstable_modes; }},
     {"rate_", "k", "1/time",
      "of mode k of the spectrum, as its displacement grows (Spectrum): the modes as Spectrum/number and Spectrum/near order them",
      of_mode, [](const Moment& m, int) { return m.rate.real(); }},
@@ -229,12 +235,14 @@ std::vector<Series> run_series(const Scene& scene) {
       if (!one.name.empty()) own.name = one.name + "/" + own.name;
       all.push_back(std::move(own));
     }
-  std::ranges::move(mode_series(scene), std::back_inserter(all));
+  std::ranges::move(steady_series(scene), std::back_inserter(all));
   return all;
 }
 
-std::vector<Series> mode_series(const Scene& scene) {
+std::vector<Series> steady_series(const Scene& scene) {
   std::vector<Series> all;
+  if (scene.continuation.present) all = series(scene, of_branch);
+  if (scene.spectrum.present) std::ranges::move(series(scene, of_spectrum), std::back_inserter(all));
   for (int k = 1; scene.spectrum.present && k <= scene.spectrum.number; ++k)
     for (Series one : series(scene, of_mode)) {
       one.name.replace(one.name.size() - 1, 1, std::to_string(k));

@@ -43,6 +43,8 @@ struct Moment {
   surface::Treading treading;
   double phase = 0;
   std::complex<double> rate;  ///< of one mode
+  double leading_rate = 0, unstable_modes = 0;  ///< of a spectrum
+  double parameter = 0, fold = 0;               ///< of a branch
   double pressure_drop = 0, gap = 0;  ///< in a tube
   Nearest nearest;                    ///< among others
   Mat3 particle_stress = Mat3::Zero();  ///< in a cell: sum of stresslets over its volume; in the axes of the plane of the flow: `turned_stress`
@@ -55,9 +57,10 @@ struct Moment {
 };
 
 /// Whose row a series is in, as bits: the run's, which of several particles is that of all; a capsule's or drop's; that of a rigid body among several
-/// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum.
+/// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum, of all of it; of a branch.
 enum Owner : unsigned {
-  of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64, of_mode = 128
+  of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64, of_mode = 128,
+  of_spectrum = 256, of_branch = 512
 };
 
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
@@ -86,8 +89,8 @@ std::vector<Series> particle_series(const Scene& one);
 /// Those of the run of a scene, one particle after another: `<name>`, of one of several particles `<particle>/<name>`.
 std::vector<Series> run_series(const Scene& scene);
 
-/// Those of a number of modes: `rate_1`, …
-std::vector<Series> mode_series(const Scene& scene);
+/// Those that a steady shape has beside, of a branch, and of a spectrum: `rate_1`, …
+std::vector<Series> steady_series(const Scene& scene);
 
 /// One row. Throws RunFailure, which names the series, where a value is not a number.
 std::vector<double> row(std::span<const Series> of, const Moment& now);

@@ -47,7 +47,7 @@ constexpr Entry entries[] = {
     {"seconds", "s", "all", "wall time of the first rank by phase, which add up to the run's"},
     {"plan", "", "all", "what the run chose to compute, a line each"},
     {"numbers", "", "all", "derived and dimensionless numbers of the scene, below"},
-    {"modes", "", "capsule, drop", "of each mode of a spectrum: `shape`, or `translation`, `rotation`, `volume`, which change none"},
+    {"modes", "", "capsule, drop", "of each mode of the last spectrum: `shape`, or `translation`, `rotation`, `volume`, which change none"},
     {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
 };
 
@@ -55,8 +55,8 @@ constexpr Entry entries[] = {
 std::string owners(const Series& one) {
   constexpr std::pair<unsigned, const char*> all[] = {{of_run | of_deforming, "capsule, drop"}, {of_rigid, "rigid one of several"},
                                                       {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
-                                                      {of_prescribed, "prescribed body"}, {of_mode, "capsule, drop"},
-                                                      {of_run | of_several, "several particles together"}};
+                                                      {of_prescribed, "prescribed body"}, {of_mode | of_spectrum, "spectrum of a capsule or drop"},
+                                                      {of_branch, "branch of steady shapes"}, {of_run | of_several, "several particles together"}};
   std::string list;
   for (const auto& [owner, text] : all)
     if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <deque>
 #include <iterator>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include <Eigen/SVD>
 
@@ -18,6 +22,8 @@
 #include "base/formatted.hpp"
 #include "coupling/agreement.hpp"
 #include "coupling/kernel_count.hpp"
+#include "deck/document.hpp"
+#include "deck/words.hpp"
 #include "motion/guarded.hpp"
 
 namespace tanktread {
@@ -28,6 +34,15 @@ output::Entries<long> counts(const RunTotals& totals) {
   output::Entries<long> all;
   each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
   return all;
+}
+
+coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
+  using Work = coupling::Work;
+  for (long Work::*count : {&Work::evaluations, &Work::assemblies, &Work::tangents, &Work::solves, &Work::solver_iterations,
+                            &Work::velocity_iterations, &Work::velocity_solves})
+    a.*count += b.*count;
+  a.most_velocity_iterations = std::max(a.most_velocity_iterations, b.most_velocity_iterations);
+  return a;
 }
 
 /// The rigid motions about the origin that change nothing of flow, weight and walls: those whose Lie derivative of the flow vanishes.
@@ -58,72 +73,185 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& 
   return free;
 }
 
+/// A scene, of a branch at one value of the parameter, and its motion.
+struct System {
+  System(Scene of, coupling::Ranks& ranks, Phases& phases)
+      : scene(std::move(of)), particle(deforming(scene, ranks, phases)), motion(particle->dynamics(), told_to_stop),
+        equations(motion, free_motions(scene, particle->body()), scene.steady.step.value_or(0.5 / scene.rate()), particle->start()) {}
+
+  Scene scene;
+  std::unique_ptr<ParticleSystem> particle;
+  motion::GuardedDynamics motion;
+  motion::SteadyEquations equations;
+};
+
+/// The scene with another value of the parameter of its branch.
+Scene at_parameter(const Scene& scene, const std::string& deck, double value) {
+  Scene other = scene;
+  other.particles.clear(), other.expect.all.clear();
+  deck::Document changed = deck::read({}, {scene.continuation.parameter + "=" + deck::real_text(value)}, deck);
+  changed.declare(other);
+  other.particles = with_copies(other.particles);
+  other.check();
+  return other;
+}
+
+/// The number with which the branch begins. Throws UserError where the deck has none.
+double first_parameter(const Scene& scene, const std::string& deck) {
+  const std::string& path = scene.continuation.parameter;
+  deck::Document read = deck::read_text(deck);
+  Scene again = scene;
+  again.particles.clear(), again.expect.all.clear();
+  read.declare(again);
+  const auto values = read.values();
+  const auto found = values.find(path);
+  if (found == values.end())
+    throw UserError("Continuation/parameter must be the path of a key that this deck gives, but is " + deck::in_quotes(path) + ".");
+  char* end = nullptr;
+  const double value = std::strtod(found->second.c_str(), &end);
+  if (end == found->second.c_str() || *end != 0)
+    throw UserError("Continuation/parameter must be the path of a number, but " + path + " is " + found->second + ".");
+  if (value == scene.continuation.to) throw UserError("Continuation/to must differ from " + path + ", where the branch begins.");
+  return value;
+}
+
 /// The shapes that are looked at, one after another, and what is written of each.
 class SteadyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), particle_(deforming(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->bezier(), ranks_) {
+      : scene_(scene), request_(request), system_(std::make_shared<System>(scene, ranks_, phases_)),
+        chosen_(plan(scene, system_->particle->body(), ranks_.size())),
+        results_(scene, request, system_->particle->body(), system_->particle->bezier(), ranks_) {
     ranks_.measure(phases_);
+    state_.x = system_->particle->start();
   }
 
   int go() {
     stop_where_told();
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(chosen_).c_str(), stdout);
     clock_.emplace(phases_, "steady shape");
-    state_.x = particle_->start();
-    motion().restore_volume(state_.x);
-    state_.history = {motion().velocity(state_.x)};
-    if (!state_.history.front().allFinite()) throw RunFailure("the velocity of the initial shape cannot be had: " + motion().failure());
-    if (scene_.steady.present) find_shape();
-    if (scene_.spectrum.present) find_modes();
-    record();
-    save();
+    try {
+      scene_.continuation.present ? follow() : look();
+    } catch (const RunFailure& failure) {
+      failure_ = failure.what();
+      if (results_.last_saved() < 0) throw;
+    }
     clock_.reset();
     return close();
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  motion::GuardedDynamics& motion() { return motion_; }
 
-  void find_shape() {
-    motion::SteadyOptions options = scene_.steady;
-    if (!options.step) options.step = 0.5 / scene_.rate();
-    const motion::SteadyReport found = motion::find_steady(motion(), free_motions(scene_, particle_->body()), options, scene_.solvers, state_.x);
-    report_.iterations = found.iterations;
-    report_.error = found.rest;
-    state_.history = {motion().velocity(state_.x)};
+  /// One shape: the steady one that the first leads to, or that itself.
+  void look() {
+    if (!scene_.steady.present) {
+      system_->motion.restore_volume(state_.x);
+      return write();
+    }
+    const motion::SteadyReport found = motion::find_steady(system_->equations, scene_.steady, scene_.solvers, state_.x);
+    report_.iterations = found.iterations, report_.error = found.rest;
+    write();
     if (!found.converged)
-      failure_ = formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest);
+      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
+  }
+
+  /// All shapes of a branch.
+  void follow() {
+    const double first = first_parameter(scene_, request_.deck_text);
+    systems_.emplace_front(first, system_);
+    motion::Branch branch([this](double parameter) { return equations_at(parameter); }, scene_.continuation, scene_.steady, scene_.solvers, first,
+                          state_.x);
+    for (int k = 0; const auto point = branch.next(); ++k) {
+      stop_where_told();
+      system_ = system_at(point->parameter);
+      results_.remesh(system_->particle->body(), system_->particle->bezier());
+      state_.x = point->x, state_.time = k, totals_.step = k;
+      report_.iterations = point->iterations, report_.error = point->rest;
+      moment_.parameter = point->parameter, moment_.fold = point->fold;
+      write();
+      if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %-11d %s %.8g%s\n", k, scene_.continuation.parameter.c_str(), point->parameter,
+                                                             point->fold ? ", a fold" : "");
+    }
+  }
+
+  /// The latest few are kept.
+  std::shared_ptr<System> system_at(double parameter) {
+    const auto known = std::ranges::find(systems_, parameter, &std::pair<double, std::shared_ptr<System>>::first);
+    if (known != systems_.end()) return known->second;
+    const auto clock = phases_.time("set-up");
+    auto made = std::make_shared<System>(at_parameter(scene_, request_.deck_text, parameter), ranks_, phases_);
+    if (made->particle->body().space.n_points != state_.x.rows())
+      throw UserError("Continuation/parameter must leave the mesh as it is, but " + scene_.continuation.parameter + " does not.");
+    systems_.emplace_front(parameter, made);
+    if (systems_.size() > 3) {
+      const ParticleSystem& oldest = *systems_.back().second->particle;
+      work_ = work_ + oldest.work(), kernel_ = kernel_ + oldest.kernel_evaluations();
+      systems_.pop_back();
+    }
+    return made;
+  }
+
+  std::shared_ptr<motion::SteadyEquations> equations_at(double parameter) {
+    const std::shared_ptr<System> system = system_at(parameter);
+    return {system, &system->equations};
+  }
+
+  /// Velocity, modes, row and snapshot of the present shape.
+  void write() {
+    state_.history = {system_->motion.velocity(state_.x)};
+    if (!state_.history.front().allFinite()) throw RunFailure("the velocity of this shape cannot be had: " + system_->motion.failure());
+    if (scene_.spectrum.present) find_modes();
+    record();
+    save();
   }
 
   void find_modes() {
     const auto clock = phases_.time("spectrum");
-    const coupling::Capsule& capsule = *particle_->capsule();
-    const Body& body = particle_->body();
+    const coupling::Capsule& capsule = *system_->particle->capsule();
+    const Body& body = system_->particle->body();
     const coupling::ShapeCoordinates shapes(body.space, capsule.particles(), body.symmetry, state_.x);
-    if (scene_.spectrum.number > shapes.size())
-      throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
-                                scene_.spectrum.number));
     motion::SpectrumOptions options = scene_.spectrum;
-    if (!options.shift) options.shift = scene_.rate();
-    modes_ = motion::spectrum(motion(), shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
+    if (options.number > shapes.size())
+      throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
+                                options.number));
+    if (!options.shift) options.shift = system_->scene.rate();
+    modes_ = motion::spectrum(system_->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
                               scene_.solvers.of(scene_.solvers.spectrum));
-    motion().velocity(state_.x);
+    moment_.leading_rate = -std::numeric_limits<double>::infinity(), moment_.unstable_modes = 0;
+    for (const motion::Mode& mode : modes_) {
+      if (mode.kind != motion::ModeKind::shape) continue;
+      moment_.leading_rate = std::max(moment_.leading_rate, mode.rate.real());
+      moment_.unstable_modes += mode.rate.real() > 0;
+    }
+    system_->motion.velocity(state_.x);
+  }
+
+  void count() {
+    totals_.work = work_, totals_.kernel = kernel_;
+    const auto add = [&](const ParticleSystem& one) {
+      totals_.work = totals_.work + one.work(), totals_.kernel = totals_.kernel + one.kernel_evaluations();
+    };
+    if (systems_.empty()) add(*system_->particle);
+    for (const auto& [parameter, system] : systems_) add(*system->particle);
+    totals_.kernel = coupling::of_all(totals_.kernel, ranks_);
+    totals_.phase_angle = system_->particle->phase_angle();
   }
 
   void record() {
     const auto clock = phases_.time("diagnostics");
-    totals_.work = particle_->work();
-    totals_.kernel = coupling::of_all(particle_->kernel_evaluations(), ranks_);
-    totals_.phase_angle = particle_->phase_angle();
-    std::vector<double> row = particle_->row(state_, report_, std::chrono::duration<double>(Clock::now() - start_).count());
-    const std::vector<Series> of_one = series(scene_, of_mode);
+    count();
+    std::vector<double> row = system_->particle->row(state_, report_, std::chrono::duration<double>(Clock::now() - start_).count());
+    const std::vector<Series> all = series(scene_, of_run);
+    row[static_cast<std::size_t>(std::ranges::find(all, "evaluations", &Series::name) - all.begin())] = static_cast<double>(totals_.work.evaluations);
+    const auto append = [&](Owner owner, const Moment& now) {
+      std::ranges::copy(tanktread::row(series(scene_, owner), now), std::back_inserter(row));
+    };
+    if (scene_.continuation.present) append(of_branch, moment_);
+    if (scene_.spectrum.present) append(of_spectrum, moment_);
     for (const motion::Mode& mode : modes_) {
-      Moment now;
-      now.rate = mode.rate;
-      std::ranges::copy(tanktread::row(of_one, now), std::back_inserter(row));
+      moment_.rate = mode.rate;
+      append(of_mode, moment_);
     }
     coupling::take_first(row);
     results_.record(row);
@@ -132,8 +260,8 @@ class SteadyRun {
   void save() {
     const auto clock = phases_.time("output");
     output::Checkpoint checkpoint;
-    particle_->store(checkpoint);
-    SurfacePicture picture = particle_->picture(state_);
+    system_->particle->store(checkpoint);
+    SurfacePicture picture = system_->particle->picture(state_);
     picture.fields = [this, of_shape = picture.fields](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);
       int k = 0;
@@ -150,8 +278,9 @@ class SteadyRun {
   int close() {
     Account account;
     account.plan = chosen_;
-    if (!failure_.empty()) account.status = "failed: " + failure_, account.whole = false;
+    count();
     account.counts = counts(totals_);
+    if (!failure_.empty()) account.status = "failed: " + failure_, account.whole = false;
     int k = 0;
     for (const motion::Mode& mode : modes_) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
     const int code = results_.close(account, phases_);
@@ -165,21 +294,24 @@ class SteadyRun {
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   coupling::Ranks ranks_;
-  std::unique_ptr<ParticleSystem> particle_;
-  output::Entries<std::string> chosen_ = plan(scene_, particle_->body(), ranks_.size());
+  std::shared_ptr<System> system_;
+  std::deque<std::pair<double, std::shared_ptr<System>>> systems_;  // of a branch, by parameter, the latest first
+  output::Entries<std::string> chosen_;
   Results results_;
-  motion::GuardedDynamics motion_{particle_->dynamics(), told_to_stop};
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
+  coupling::Work work_;          // of systems that are gone
+  stokes::Evaluations kernel_;
   std::vector<motion::Mode> modes_;
+  Moment moment_;
   std::string failure_;
 };
 
 }  // namespace
 
 int find_steady(const Scene& scene, const RunRequest& request) {
-  if (request.resume) throw UserError("--resume and Spectrum contradict each other: a steady problem has nothing to go on with.");
+  if (request.resume) throw UserError("--resume goes on with a run in time: Steady and Spectrum have nothing to go on with.");
   return SteadyRun(scene, request).go();
 }
 

@@ -70,16 +70,18 @@ class Recognition {
         translations_(rigid_motions(dynamics, shapes, x, 0)),
         rotations_(rigid_motions(dynamics, shapes, x, 3)) {}
 
-  /// All modes but one of rate 0 keep the volume, for the motion does: rate x b.d = 0.
+  /// What a mode gains of the volume, over its size. All but those of rate 0 gain none, for the motion keeps it: rate x b.d = 0.
+  double gain(const Eigen::VectorXcd& mode) const {
+    const Net real = shapes_.displacement(mode.real()), imaginary = shapes_.displacement(mode.imag());
+    const double gained = std::hypot(flux_.cwiseProduct(real).sum(), flux_.cwiseProduct(imaginary).sum());
+    return gained / (flux_.norm() * std::hypot(real.norm(), imaginary.norm()));
+  }
+
+  /// What it is where it is not that of the volume.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();
-    const std::complex<double> gain(flux_.cwiseProduct(shapes_.displacement(mode.real())).sum(),
-                                    flux_.cwiseProduct(shapes_.displacement(mode.imag())).sum());
-    const double size = std::hypot(shapes_.displacement(mode.real()).norm(), shapes_.displacement(mode.imag()).norm());
-    const double volume = std::abs(gain) / (flux_.norm() * size), all = std::hypot(translation, rotation, volume);
-    if (all < most * mode.norm() && volume < 0.1) return ModeKind::shape;
-    if (volume > std::max(translation, rotation) / mode.norm()) return ModeKind::volume;
+    if (std::hypot(translation, rotation) < most * mode.norm()) return ModeKind::shape;
     return translation > rotation ? ModeKind::translation : ModeKind::rotation;
   }
 
@@ -154,7 +156,13 @@ std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCo
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));
   const Recognition recognition(dynamics, shapes, x, flux);
   std::vector<Mode> modes;
-  for (const coupling::Eigenpair& pair : pairs) modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
+  std::vector<double> gains;
+  for (const coupling::Eigenpair& pair : pairs) {
+    modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
+    gains.push_back(recognition.gain(pair.vector));
+  }
+  const auto most = std::ranges::max_element(gains);
+  if (*most > 1e-3) modes[static_cast<std::size_t>(most - gains.begin())].kind = ModeKind::volume;  // near a fold it is hardly told by its shape
   return modes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "coupling/nonlinear.hpp"
 #include "deck/section.hpp"
@@ -33,71 +34,76 @@ std::vector<Net> fields(const std::vector<coupling::RigidMotion>& motions, const
   return all;
 }
 
-/// G(x) (4.17) and its corrections.
-class Search {
- public:
-  Search(coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& free, const Net& start)
-      : dynamics_(dynamics), free_(free), start_(start) {}
+}  // namespace
 
-  /// delta = (1 - s J)^{-1} s G(y), not finite where it cannot be had.
-  Net correction(const Net& y, double step) {
-    constexpr double linear_tolerance = 1e-2;
-    Net volume = y;
-    dynamics_.restore_volume(volume);
-    const Net v = dynamics_.velocity(y);
-    Net r = step * v + (volume - y);
-    for (const Net& field : fields(free_, y)) r -= (step * field.cwiseProduct(v).sum() + field.cwiseProduct(y - start_).sum()) * field;
-    if (!r.allFinite()) return r;
-    dynamics_.linearise(y);
-    Net delta = dynamics_.symmetric(dynamics_.solve(step, r, linear_tolerance, {}));
-    const double rest = dynamics_.norm(delta);
-    if (rest < rest_) rest_ = rest, best_ = y;
-    return delta;
+SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start)
+    : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
+
+Net SteadyEquations::residual(const Net& x) {
+  Net volume = x;
+  dynamics_.restore_volume(volume);
+  const Net v = dynamics_.velocity(x);
+  Net r = step_ * v + (volume - x);
+  for (const Net& field : fields(free_, x)) r -= (step_ * field.cwiseProduct(v).sum() + field.cwiseProduct(x - start_).sum()) * field;
+  return r;
+}
+
+Net SteadyEquations::precondition(const Net& x, const Net& r) {
+  constexpr double linear_tolerance = 1e-2;
+  if (!r.allFinite()) return r;
+  dynamics_.linearise(x);
+  return dynamics_.symmetric(dynamics_.solve(step_, r, linear_tolerance, {}));
+}
+
+double SteadyEquations::unit_length() const {
+  const Net unit = Vec3::UnitY().transpose().replicate(start_.rows(), 1);
+  return unit.norm() / dynamics_.norm(unit);
+}
+
+namespace {
+
+/// Takes shorter implicit steps until one of full length moves x by little.
+void approach(SteadyEquations& equations, Net& x) {
+  constexpr double little = 0.2;
+  constexpr int most = 100;
+  const double full = equations.step();
+  double step = full;
+  for (int k = 0; k < most; ++k) {
+    Net delta;
+    const auto moves_little = [&] {
+      SteadyEquations shorter = equations.with_step(step);
+      delta = shorter.precondition(x, shorter.residual(x));
+      return equations.dynamics().norm(delta) < little;
+    };
+    while (!moves_little() && step > 1e-6 * full) step *= 0.5;
+    if (step == full || !delta.allFinite()) return;
+    x += delta;
+    equations.dynamics().restore_volume(x);
+    step = std::min(full, 4 * step);
   }
-
-  /// Takes shorter implicit steps until one of full length moves x by little.
-  void approach(double full, Net& x) {
-    constexpr double little = 0.2;
-    constexpr int most = 100;
-    double step = full;
-    for (int k = 0; k < most; ++k) {
-      Net delta = correction(x, step);
-      while (!(dynamics_.norm(delta) < little) && step > 1e-6 * full) delta = correction(x, step *= 0.5);
-      if (step == full || !delta.allFinite()) return;
-      x += delta;
-      dynamics_.restore_volume(x);
-      step = std::min(full, 4 * step);
-    }
-  }
-
-  double rest() const { return rest_; }
-  const Net& best() const { return best_; }
-  void forget() { rest_ = std::numeric_limits<double>::infinity(); }
-
- private:
-  coupling::Dynamics& dynamics_;
-  const std::vector<coupling::RigidMotion>& free_;
-  Net start_, best_ = start_;
-  double rest_ = std::numeric_limits<double>::infinity();
-};
+}
 
 }  // namespace
 
-SteadyReport find_steady(coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& free, const SteadyOptions& options,
-                         const coupling::SolverOptions& solvers, Net& x) {
-  const double step = options.step.value();
-  Search search(dynamics, free, x);
+SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x) {
+  coupling::Dynamics& dynamics = equations.dynamics();
   dynamics.freeze(x);
-  search.approach(step, x);
-  search.forget();
+  approach(equations, x);
   dynamics.freeze(x);
-  const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady));
+  Net best = x;
+  double rest = std::numeric_limits<double>::infinity();
+  const auto corrected = [&](const Net& y) -> Net {
+    const Net delta = equations.precondition(y, equations.residual(y));
+    const double size = dynamics.norm(delta);
+    if (size < rest) rest = size, best = y;
+    return y + delta;
+  };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  const auto corrected = [&](const Net& y) -> Net { return y + search.correction(y, step); };
+  const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady));
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x);
-  x = search.best();
+  x = std::move(best);
   dynamics.restore_volume(x);
-  return {found.iterations, found.converged, search.rest()};
+  return {found.iterations, found.converged, rest};
 }
 
 }  // namespace tanktread::motion

@@ -35,14 +35,33 @@ struct SteadyReport {
   double rest = 0;  ///< the correction that was left
 };
 
-/// The volume-keeping shape x, from the one x0 given on, that the motion leaves as it is, but for the rigid motions about the origin in `free`, which
-/// lead from one such shape to others: with Q the projection onto them and x_V what the volume makes of x,
+/// What a shape x at rest obeys that x0 leads to: with Q the projection onto the rigid motions about the origin in `free`, which lead from one such
+/// shape to others, and x_V what the volume makes of x,
 ///
 ///   G(x) = (1 - Q) v(x) + (x_V - x)/s - Q (x - x0)/s = 0                                                           (4.17)
-///
-/// as the fixed point of x + s (1 - s J)^{-1} G(x), an implicit step s with the frozen Jacobian (4.3), by NOX: accelerated (`anderson`) or by Newton's
-/// method (`newton-krylov`). Where it does not converge x is the best that was found. Collective.
-SteadyReport find_steady(coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& free, const SteadyOptions& options,
-                         const coupling::SolverOptions& solvers, Net& x);
+class SteadyEquations {
+ public:
+  /// `step`: s. The motion outlives this.
+  SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
+
+  Net residual(const Net& x);                          ///< s G(x), not finite where it cannot be had. Collective
+  Net precondition(const Net& x, const Net& r);  ///< (1 - s J)^{-1} r with the frozen Jacobian (4.3), linearised at x. Collective
+  double unit_length() const;                          ///< of a displacement, in the norm of all its numbers, where it is 1 in that of the motion
+  coupling::Dynamics& dynamics() { return dynamics_; }
+  double step() const { return step_; }
+
+  /// The same equations with another s.
+  SteadyEquations with_step(double step) const { return {dynamics_, free_, step, start_}; }
+
+ private:
+  coupling::Dynamics& dynamics_;
+  std::vector<coupling::RigidMotion> free_;
+  double step_;
+  Net start_;
+};
+
+/// Their solution as the fixed point of x + s (1 - s J)^{-1} G(x), by NOX: accelerated (`anderson`) or by Newton's method (`newton-krylov`). Shorter
+/// steps come first where a whole one moves x by much. Where it does not converge x is the best that was found. Collective.
+SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion

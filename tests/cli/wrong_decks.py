@@ -30,6 +30,7 @@ SETTINGS = [
     (["Wall/position=1"], ["Wall", "plane walls", "Tube"]),
     (["Particles/one/radius=1"], ["Membrane and Particles contradict", "Particles/defaults"]),
     (["Steady/tolerance=1e-8"], ["Steady", "simple shear", "treads"]),
+    (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
     (["Spectrum/number=4", "Particle/motion=free"], ["Membrane", "Particle/motion"]),
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),

@@ -1,0 +1,219 @@
+#include "motion/continuation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "coupling/nonlinear.hpp"
+#include "deck/section.hpp"
+
+namespace tanktread::motion {
+
+void ContinuationOptions::declare(deck::Section& section) {
+  section.key("parameter", parameter, deck::Choice{},
+              "path of the key of this deck that changes along the branch, say Membrane/capillary number: a number");
+  section.key("to", to, deck::any(), "that of the key", "where the branch ends; it starts at the value that the deck gives to the key");
+  section.key("method", method, deck::Choice{"arclength", "natural"},
+              "`arclength`: around folds, where the parameter turns back; `natural`: up to the first");
+  section.key("step", step, deck::positive(), "that of the key", "first step of the parameter; if not given, a twentieth of the way");
+  section.key("largest change", largest_change, deck::between(1e-5, 1), "1",
+              "of the shape from one point to the next: root mean square displacement of the control points over R_C");
+  section.key("points", points, deck::between(2, 100000), "1", "most points, folds included");
+  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative, of the parameter at a fold");
+}
+
+Branch::Branch(Family family, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
+               double parameter, Net x)
+    : family_(std::move(family)), options_(options), steady_(steady), solvers_(solvers), start_(parameter), first_(family_(parameter)),
+      x_(std::move(x)) {}
+
+double Branch::inner(const Place& a, const Place& b) const {
+  const double unit = first_->unit_length();
+  return a.x.cwiseProduct(b.x).sum() / (unit * unit) + a.q * b.q;
+}
+
+std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& x) {
+  Net found = x;
+  const SteadyReport report = find_steady(*family_(parameter), steady_, solvers_, found);
+  if (!report.converged) return {};
+  return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
+}
+
+/// Where the branch meets the plane through `predicted` with this normal.
+std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
+  constexpr int most_rounds = 8, most_iterations = 40;
+  constexpr double noise = 30;  // a correction this many times the tolerance is as small as the quadrature may let it become
+  Solved solved{predicted, 0, 0, 0};
+  for (int round = 0; round < most_rounds; ++round) {
+    const Place from = solved.place;
+    const std::shared_ptr<SteadyEquations> here = family_(from.q * unit_);
+    const double aside = 1e-3 * std::max(std::abs(from.q), std::abs(step_));
+    here->dynamics().freeze(from.x);
+    const Net slope = (family_((from.q + aside) * unit_)->residual(from.x) - here->residual(from.x)) / aside;
+    if (!slope.allFinite()) return {};
+    const Net b = here->precondition(from.x, slope);
+    Net best;
+    double least = std::numeric_limits<double>::infinity();
+    const auto norm = [&](const Net& joined) {
+      return std::hypot(here->dynamics().norm(joined.topRows(joined.rows() - 1)), joined(joined.rows() - 1, 0));
+    };
+    const auto corrected = [&](const Net& joined) -> Net {
+      const Place at{joined.topRows(joined.rows() - 1), from.q + joined(joined.rows() - 1, 0)};
+      const Net r = here->residual(at.x) + (at.q - from.q) * slope;
+      if (!r.allFinite()) return Net::Constant(joined.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+      const Net a = here->precondition(at.x, r);
+      const double more = -inner(normal, Place{at.x + a, at.q} - predicted) / inner(normal, {b, 1});
+      Net result = joined;
+      result.topRows(a.rows()) += a + more * b;
+      result(a.rows(), 0) += more;
+      if (const double size = norm(result - joined); size < least) least = size, best = joined;
+      return result;
+    };
+    Net joined = Net::Zero(from.x.rows() + 1, 3);
+    joined.topRows(from.x.rows()) = from.x;
+    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady));
+    const int most = std::min(steady_.iterations, most_iterations);
+    const coupling::NonlinearReport report = solver.solve(corrected, norm, steady_.tolerance, most, joined);
+    if (!report.converged && !(least < noise * steady_.tolerance)) return {};
+    solved.iterations = std::max(solved.iterations, report.converged ? report.iterations : 0);
+    solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
+    const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
+    solved.rest = moved * turned;  // what a G that is linear in p may be off by
+    if (solved.rest < steady_.tolerance) return solved;
+  }
+  return {};
+}
+
+void Branch::keep(const Solved& solved) {
+  last_.push_back(solved);
+  if (last_.size() > 3) last_.erase(last_.begin());
+  ahead_.emplace_back(solved, false);
+  ended_ = ends(solved);
+}
+
+/// Whether the parameter is where the branch is to end, or has come back to where it began.
+bool Branch::ends(const Solved& solved) const {
+  const double way = options_.to - start_, gone = solved.place.q * unit_ - start_, rounding = 1e-12 * std::abs(way);
+  return gone / way >= 1 - 1e-12 || (last_.size() > 2 && gone * way < rounding);
+}
+
+/// A step further; shorter where that fails.
+std::optional<Branch::Solved> Branch::stepped() {
+  constexpr double least = 1e-6;
+  const Solved& now = last_.back();
+  Place t = now.place - last_[last_.size() - 2].place;
+  const double before = length(t);
+  t = {t.x / before, t.q / before};
+  for (double first = step_; step_ > least * first; step_ *= 0.5) {
+    Place predicted = now.place.along(t, step_);
+    const double beyond = predicted.q * unit_ - options_.to;
+    if (options_.method == "natural" || beyond * (options_.to - start_) > 0) {  // the last point has the parameter that was asked for
+      const double target = beyond * (options_.to - start_) > 0 ? options_.to : predicted.q * unit_;
+      if (auto solved = at_parameter(target, now.place.along(t, (target / unit_ - now.place.q) / t.q).x)) return solved;
+    } else if (auto solved = on_plane(predicted, t)) {
+      if (length(solved->place - now.place) < 2 * step_) return solved;
+    }
+  }
+  return {};
+}
+
+bool Branch::turned(const Solved& next) const {
+  const std::size_t n = last_.size();
+  return n > 1 && (next.place.q - last_[n - 1].place.q) * (last_[n - 1].place.q - last_[n - 2].place.q) < 0;
+}
+
+/// The fold between the last point but one and `next`.
+Branch::Solved Branch::fold(Solved next) {
+  constexpr int most = 10;
+  std::array<Solved, 3> three{last_[last_.size() - 2], last_.back(), std::move(next)};
+  for (int k = 0; k < most; ++k) {
+    Eigen::Matrix3d powers;
+    Eigen::Vector3d q;
+    for (int i = 0; i < 3; ++i) {
+      const double s = three[i].s - three[1].s;
+      powers.row(i) << 1, s, s * s;
+      q[i] = three[i].place.q;
+    }
+    const Eigen::Matrix3d inverse = powers.inverse();
+    const Eigen::Vector3d parabola = inverse * q;
+    const double s = -parabola[1] / (2 * parabola[2]);
+    const Eigen::RowVector3d weights = Eigen::RowVector3d(1, s, s * s) * inverse;
+    Place predicted{Net::Zero(x_.rows(), 3), 0};
+    for (int i = 0; i < 3; ++i) predicted = predicted.along(three[i].place, weights[i]);
+    Place normal = three[2].place - three[0].place;
+    const double size = length(normal);
+    normal = {normal.x / size, normal.q / size};
+    auto solved = on_plane(predicted, normal);
+    if (!solved) throw RunFailure("the fold of the branch was passed, but not found");
+    solved->s = three[1].s + s;
+    const double nearest = std::min({std::abs(solved->place.q - three[0].place.q), std::abs(solved->place.q - three[1].place.q),
+                                     std::abs(solved->place.q - three[2].place.q)});
+    if (nearest < options_.fold_tolerance * std::abs(solved->place.q)) return *solved;
+    const std::size_t farthest = std::abs(three[0].s - solved->s) > std::abs(three[2].s - solved->s) ? 0 : 2;
+    three[farthest] = std::move(*solved);
+    std::ranges::sort(three, {}, &Solved::s);
+  }
+  throw RunFailure("the fold of the branch was not found to Continuation/fold tolerance");
+}
+
+/// Two points are held back: a fold may lie between the last one and the one before.
+std::optional<BranchPoint> Branch::next() {
+  while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
+    if (count_ >= options_.points) break;
+    try {
+      advance();
+    } catch (const RunFailure& failure) {
+      failure_ = failure.what();
+    }
+  }
+  if (ahead_.empty()) {
+    if (!failure_.empty()) throw RunFailure(failure_);
+    return {};
+  }
+  const auto [solved, fold] = std::move(ahead_.front());
+  ahead_.erase(ahead_.begin());
+  return BranchPoint{solved.place.q * unit_, solved.place.x, fold, solved.iterations, solved.rest};
+}
+
+/// The first or the second point, at values of the parameter.
+void Branch::begin() {
+  const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
+  const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);
+  auto solved = at_parameter(parameter, x_);
+  if (!solved) throw RunFailure(formatted("no shape at rest was found where %s is %.8g", options_.parameter.c_str(), parameter));
+  if (last_.empty()) {
+    x_ = solved->place.x;
+  } else {
+    const double change = first_->dynamics().norm(solved->place.x - x_);
+    unit_ = std::abs(parameter - start_) / std::max(change, 1e-12);
+    last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;
+    ahead_.front().first.place.q = start_ / unit_;
+    solved->s = step_ = length(solved->place - last_.front().place);
+  }
+  keep(*solved);
+}
+
+void Branch::advance() {
+  ++count_;
+  if (last_.size() < 2) return begin();
+  step_ = std::min({step_ * (last_.back().iterations < 25 ? 1.5 : 0.7), options_.largest_change * std::numbers::sqrt2});
+  auto solved = stepped();
+  if (!solved)
+    throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));
+  solved->s = last_.back().s + length(solved->place - last_.back().place);
+  if (turned(*solved)) {
+    ++count_;
+    ahead_.emplace_back(fold(*solved), true);
+  }
+  keep(*solved);
+  std::ranges::stable_sort(ahead_, {}, [](const auto& one) { return one.first.s; });
+}
+
+}  // namespace tanktread::motion

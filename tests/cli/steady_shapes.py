@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+# Steady shapes, spectra and branches in place of a run in time: what they write, and what they say where there is nothing to find.
+from harness import check, close, deck, main, run, series, summary
+
+DECK = """
+Tanktread:
+  Flow: {type: uniaxial extension}
+  Membrane: {law: surface tension, capillary number: 0.08}
+  Surface: {elements per side: 3}
+  Steady: {tolerance: 1.0e-8}
+"""
+IN_TIME = """
+Tanktread:
+  Flow: {type: uniaxial extension}
+  Membrane: {law: surface tension, capillary number: 0.08}
+  Surface: {elements per side: 3}
+  Time: {final time: 20, steady tolerance: 1.0e-7, tolerance: 1.0e-5}
+  Output: {interval: 20}
+"""
+BRANCH = """
+Tanktread:
+  Membrane: {capillary number: 0.1}
+  Surface: {elements per side: 6}
+  Continuation: {parameter: Membrane/capillary number, to: 0.2, step: 0.005, points: 8}
+  Spectrum: {number: 3}
+"""
+
+
+def it_is_the_shape_that_a_run_in_time_comes_to_in_a_fourth_of_the_evaluations():
+    run(deck(DECK), "--output", "steady", "--quiet")
+    run(deck(IN_TIME, "in_time.yaml"), "--output", "in_time", "--quiet")
+    close(series("steady", "taylor_surface")[-1], series("in_time", "taylor_surface")[-1], 1e-6)
+    mine, others = (summary(name)["counts"]["evaluations"] for name in ("steady", "in_time"))
+    check(4 * mine <= others, mine, others)
+
+
+def two_ranks_find_the_same():
+    run(deck(DECK), "--output", "one", "--quiet")
+    run(deck(DECK), "--output", "two", "--quiet", ranks=2)
+    close(series("two", "taylor_surface")[-1], series("one", "taylor_surface")[-1], 1e-10)
+
+
+def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
+    run(deck(DECK), deck(BRANCH, "branch.yaml"), "--output", "branch", "--quiet", "--no-expect")
+    parameter, fold, rate = (series("branch", name) for name in ("parameter", "fold", "leading_rate"))
+    at = fold.argmax()
+    check(fold.sum() == 1 and parameter.argmax() == at, parameter, fold)
+    check((rate[:at] < 0).all() and (rate[at + 1:] > 0).all() and len(rate) > at + 1, rate)
+    check(abs(rate[at]) < 1e-2, rate[at])
+
+
+def above_the_fold_nothing_is_found_and_what_was_reached_is_kept():
+    said = run(deck(DECK), "--set", "Membrane/capillary number=0.3", "--set", "Steady/iterations=20", "--output", "none", "--quiet", code=3).stderr
+    check(len(said.splitlines()) == 1 and "not found" in said and "what was reached" in said, said)
+    check(summary("none")["status"].startswith("failed"), summary("none")["status"])
+    check(len(series("none", "taylor_surface")) == 1, "the row of what was reached")
+
+
+def a_parameter_must_be_a_number_of_the_deck():
+    for path, word in ("Membrane/law", "number"), ("Membrane/colour", "key"), ("Membrane/capillary number", "differ"):
+        said = run(deck(DECK), "--set", f"Continuation/parameter={path}", "--set", "Continuation/to=0.08", "--output", "no", "--quiet", code=2).stderr
+        check(len(said.splitlines()) == 1 and "Continuation" in said and word in said, said)
+
+
+main()
