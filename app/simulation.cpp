@@ -387,7 +387,8 @@ std::vector<std::string> check_expectations(const Scene& scene) {
   std::vector<std::string> names;
   for (const Series& one : run_series(scene)) names.push_back(one.name);
   deck::check_series(scene.expect.all, names);
-  return deck::too_late(scene.expect.all, scene.particle.motion == Motion::prescribed || !scene.runs_in_time() ? 0 : scene.time.final_time);
+  const double last = scene.continuation.present ? scene.continuation.points : 0;
+  return deck::too_late(scene.expect.all, scene.particle.motion == Motion::prescribed || !scene.runs_in_time() ? last : scene.time.final_time);
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {
