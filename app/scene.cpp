@@ -217,6 +217,7 @@ void check_contradictions(const Scene& scene) {
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
   if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
+  refuse(steady && scene.domain.present, sought, "Domain", "the lattice moves along with the flow");
   refuse(steady && adapts, sought, "Adaptation/enabled", "the mesh stays what it is");
   refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
   refuse(steady && drop && scene.interface_motion() == "material", sought, "Interface/motion `material`",
