@@ -45,7 +45,7 @@ coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
   return a;
 }
 
-/// The rigid motions about the origin that change nothing of flow, weight and walls: those whose Lie derivative of the flow vanishes.
+/// The rigid motions about the origin that change nothing of flow, weight, forces on patches and walls: the flow's Lie derivative along them is 0.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& body) {
   if (body.wall) return {coupling::unit_motion(0)};
   const double size = body.radius;
@@ -53,7 +53,9 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& 
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
   const Net v = body.flow.velocities(places);
   const std::vector<Mat3> gradients = body.flow.gradients(places);
-  Eigen::Matrix<double, 15, 6> change;
+  std::vector<Vec3> forces{scene.body_force()};
+  for (const membrane::PatchForce& one : scene.membrane.forces.all) forces.push_back(one.force);
+  Eigen::MatrixXd change(12 + 3 * static_cast<Eigen::Index>(forces.size()), 6);
   for (int k = 0; k < 6; ++k) {
     const coupling::RigidMotion motion = coupling::unit_motion(k);
     const double unit = k < 3 ? 1 : 1 / size;
@@ -61,7 +63,8 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& 
     for (int i = 0; i < 4; ++i)
       change.block<3, 1>(3 * i, k) =
           unit * (gradients[static_cast<std::size_t>(i)] * moved.row(i).transpose() - motion.angular_velocity.cross(Vec3(v.row(i).transpose())));
-    change.block<3, 1>(12, k) = motion.angular_velocity.cross(scene.body_force());
+    for (std::size_t f = 0; f < forces.size(); ++f)
+      change.block<3, 1>(12 + 3 * static_cast<Eigen::Index>(f), k) = motion.angular_velocity.cross(forces[f]);
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
   std::vector<coupling::RigidMotion> free;

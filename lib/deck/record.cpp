@@ -37,7 +37,8 @@ std::string elsewhere(const List& list, const std::string& key) {
   if (!missing.empty()) throw UserError(what + ": " + missing + ".");
   std::string meant = guess(key, names);
   if (!meant.empty()) meant = list.path_of(meant);
-  if (meant.empty()) meant = synonym(key);
+  for (const std::string& name : {list.path_of(key), key})
+    if (meant.empty()) meant = synonym(name);
   const std::string last = meant.substr(meant.rfind('/') + 1);
   if (meant.find(" or ") == meant.npos && std::ranges::find(names, last) != names.end()) meant = list.path_of(last);
   if (meant.empty()) meant = elsewhere(root, key);

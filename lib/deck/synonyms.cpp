@@ -24,7 +24,7 @@ struct Meaning {
   std::string_view what;
 };
 
-constexpr std::array<Meaning, 26> synonyms{{
+constexpr std::array<Meaning, 28> synonyms{{
     {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
      "Particles"},
     {"|dt|delta t|time step|timestep|step|step size|stepsize|", "Time/fixed step or Time/initial step"},
@@ -54,15 +54,14 @@ constexpr std::array<Meaning, 26> synonyms{{
     {"|g|acceleration|", "Flow/gravity"},
     {"|density|rho|density ratio|buoyancy|body force|excess density|bond number|", "Particle/density difference"},
     {"|restart|resume|continue|", "--resume of the command line"},
+    {"|period|box|box size|unit cell|periodicity|", "Domain"},
+    {"|membrane viscosity|surface viscosity|shear surface viscosity|boussinesq number|membrane/viscosity|", "Membrane/shear viscosity"},
 }};
 
 /// By the whole path, by a list, or by the name of the key alone.
-constexpr std::array<Meaning, 12> features{{
+constexpr std::array<Meaning, 10> features{{
     {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
-    {"|period|box|box size|unit cell|periodicity|", "a scene of several Particles repeats on a lattice by the list Domain"},
     {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},
-    {"|membrane/viscosity|membrane viscosity|surface viscosity|shear surface viscosity|boussinesq number|",
-     "viscous membranes are not there; the viscosity inside is Particle/viscosity ratio"},
     {"|order|degree|polynomial degree|polynomial order|spline order|spline degree|p|",
      "the degree of the splines cannot be chosen; accuracy is a matter of the mesh, Surface/elements per side"},
     {"|surfactant|surfactants|marangoni|marangoni number|surfactant concentration|elasticity number|", "surfactants are not there"},
