@@ -13,8 +13,13 @@ TEST(Synonyms, AreFoundHoweverTheyAreWritten) {
   for (const char* name : {"", "/", "|", "zebra", "shear rate"}) EXPECT_EQ(synonym(name), "") << name;
 }
 
+TEST(Synonyms, MayBelongToOneListOnly) {
+  EXPECT_EQ(synonym("Membrane/viscosity"), "Membrane/shear viscosity");
+  EXPECT_EQ(synonym("viscosity"), "");
+}
+
 TEST(MissingFeatures, AreKnownByPathOrName) {
-  EXPECT_NE(missing_feature("Membrane/viscosity"), "");
+  EXPECT_NE(missing_feature("Flow/Reynolds number"), "");
   EXPECT_EQ(missing_feature("Flow/viscosity"), "");
   EXPECT_NE(missing_feature("Surfactant"), "");
 }
