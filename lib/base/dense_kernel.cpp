@@ -20,9 +20,11 @@ void factor(int n, double* a, int* row_of) {
 
 void solve_triangles(int n, const double* factors, int columns, double* x) {
   const Eigen::Map<const Eigen::MatrixXd> lu(factors, n, n);
-  Matrix all(x, n, columns);
-  lu.triangularView<Eigen::UnitLower>().solveInPlace(all);
-  lu.triangularView<Eigen::Upper>().solveInPlace(all);
+  const auto solve = [&](auto all) {
+    lu.triangularView<Eigen::UnitLower>().solveInPlace(all);
+    lu.triangularView<Eigen::Upper>().solveInPlace(all);
+  };
+  columns == 1 ? solve(Eigen::Map<Eigen::VectorXd>(x, n)) : solve(Matrix(x, n, columns));  // a vector needs no packing
 }
 
 }  // namespace INSTRUCTIONS
