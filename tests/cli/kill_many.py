@@ -35,7 +35,7 @@ def what_is_killed_goes_on():
         before, after = 1 + k % 2, 1 + k // 2 % 4
         results = f"killed_{k}"
         process = start(DECK, *SHORT, "--output", results, ranks=before)
-        time.sleep(moments.uniform(0.1, 1) * seconds[before])
+        time.sleep(moments.uniform(0.1, 0.7) * seconds[before])
         process.send_signal(signal.SIGKILL)
         process.communicate()
         if process.returncode != -signal.SIGKILL:
