@@ -159,8 +159,10 @@ void DirectSolver::solve(const Columns& b, Columns& x) const {
   Eigen::MatrixXd all = b;  // by columns
   if (impl_->iterative)
     for (auto column : all.colwise()) column = impl_->iterative->solve(column);
+  else if (impl_->inverse.size() > 0)  // a product with several columns at once would copy the inverse first
+    for (auto column : all.colwise()) column = Eigen::VectorXd(impl_->inverse * column);
   else
-    all = impl_->inverse.size() > 0 ? Eigen::MatrixXd(impl_->inverse * all) : impl_->substituted(all);
+    all = impl_->substituted(all);
   x = all;
 }
 
