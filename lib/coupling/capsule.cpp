@@ -73,7 +73,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     double_layer_.emplace(stokes::Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, std::move(contrasts));
     double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
   }
-  if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); })) viscous_.emplace(membrane_);
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
+    viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (by_sites()) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
@@ -307,7 +308,7 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   if (viscous_) viscous_->update(x, own_elements_);
   if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
   latest_.unknowns = v;
-  if (viscous_) latest_.load += viscous_load(symmetric(v));
+  if (viscous_) latest_.load += viscous_load(*viscous_, symmetric(v));
   if (!rigid_.empty()) {
     latest_.unknowns = symmetric(v);
     latest_.load += rigid_.completing_load(v);
@@ -365,12 +366,12 @@ bool Capsule::enter_tube(const Net& x) {
   return !ranks_.any(outside);
 }
 
-/// M0^-1 C v, where the viscous load was updated last.
-Net Capsule::viscous_load(const Net& v) {
+/// M0^-1 C v, with C as it was updated last.
+Net Capsule::viscous_load(const membrane::ViscousLoad& c, const Net& v) {
   Net load;
   {
     const auto clock = phases_.time("membrane");
-    viscous_->apply(v, load);
+    c.apply(v, load);
     replicate_sums(load);
   }
   const auto clock = phases_.time("projection");
@@ -428,7 +429,12 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     replicate(at_sites);
     return at_sites;
   };
-  const auto unbounded = [&](const Net& v) -> Net {  // B v without a wall
+  const auto load_of = [&](const Net& v) {  // what the velocity adds to the load, empty where it adds nothing
+    Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
+    if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(*viscous_, v)) : viscous_load(*viscous_, v);
+    return load;
+  };
+  const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
     if (!double_layer_ && !viscous_) return v;
     Net hv = Net::Zero(n, 3);
     if (assembled) {
@@ -437,28 +443,21 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
       double_layer_->apply(v, own_points_, hv);
       gather(*double_layer_, hv);
     }
-    if (viscous_) {
-      const Net load = viscous_load(v);
-      hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
-    }
-    if (rigid_.prescribed()) hv -= single_layer_of(x, rigid_.completing_load(v)) / parameters_.viscosity;
+    if (load.size() > 0) hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
     Net bv = viscous(v, hv);
     rigid_.complete(v, bv);
     return bv;
   };
-  if (!schur()) return solve_blocks(unbounded, f, b, c, rhs);
+  if (!schur()) return solve_blocks([&](const Net& v) { return without_wall(v, load_of(v)); }, f, b, c, rhs);
   const auto project = [&](Net& v) {
     if (b.size() > 0) constrain(v, b, c);
   };
   const auto apply = [&](const double* in, double* out) {
     Net v = Eigen::Map<const Net>(in, n, 3);
     project(v);
-    Net bv = unbounded(v);
-    if (tube_) {
-      Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
-      if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(v)) : viscous_load(v);
-      bv -= collocation_.solve(tube_->respond(load, v).velocity);
-    }
+    const Net load = load_of(v);
+    Net bv = without_wall(v, load);
+    if (tube_) bv -= collocation_.solve(tube_->respond(load, v).velocity);
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
@@ -544,11 +543,16 @@ double Capsule::norm(const Net& displacement) const {
 Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const Particle& particle = particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
-  Net work = energy_gradient(x);
-  if (viscous_) work += viscous_work(x, slope);
-  Mat3 moment = rigid_.holds(p) ? rigid_.load_moment(p) : Mat3(own(work).transpose() * own(x));  // int df x dG, x = sum N_A x_A
-  if ((!particle.body_force.isZero(0) || pulled(particle)) && !rigid_.holds(p))  // about the centroid
-    moment -= own(work).colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
+  Mat3 moment;
+  if (rigid_.holds(p)) {
+    moment = rigid_.load_moment(p);
+  } else {
+    Net work = own(energy_gradient(x));
+    if (viscous_) work += own(viscous_work(x, slope));
+    moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
+    if (!particle.body_force.isZero(0) || pulled(particle))  // about the centroid
+      moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
+  }
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
     moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(geometry_.volume_gradient(x));
@@ -556,13 +560,14 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }
 
-/// C v at x.
-Net Capsule::viscous_work(const Net& x, const Net& v) {
-  Net work;
+/// C v at x, kept until another is asked for: every particle of a row of the series asks for the same.
+const Net& Capsule::viscous_work(const Net& x, const Net& v) {
+  if (same(x, viscous_at_) && same(v, viscous_of_)) return viscous_work_;
   viscous_->update(x, own_elements_);
-  viscous_->apply(v, work);
-  replicate_sums(work);
-  return work;
+  viscous_->apply(v, viscous_work_);
+  replicate_sums(viscous_work_);
+  viscous_at_ = x, viscous_of_ = v;
+  return viscous_work_;
 }
 
 double Capsule::membrane_dissipation(const Net& x, const Net& v, std::size_t p) {

@@ -183,8 +183,8 @@ class Capsule : public Dynamics {
   Net energy_part(const Net& delta);
   Net viscous(const Net& v, const Net& dv) const;
   Net frozen_single_layer(const Net& f);
-  Net viscous_load(const Net& v);
-  Net viscous_work(const Net& x, const Net& v);
+  Net viscous_load(const membrane::ViscousLoad& c, const Net& v);
+  const Net& viscous_work(const Net& x, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
@@ -209,7 +209,7 @@ class Capsule : public Dynamics {
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
-  std::optional<membrane::ViscousLoad> viscous_;  // where a membrane is
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
   stokes::Layer layer_;
   std::optional<stokes::Layer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
   membrane::SymmetricSolver collocation_;
@@ -236,6 +236,7 @@ class Capsule : public Dynamics {
   };
   Latest latest_;  // evaluation
   Net gradient_at_, gradient_;  // x and dE/dx there
+  Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle
 };
 

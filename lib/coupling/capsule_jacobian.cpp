@@ -43,7 +43,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++work_.tangents;
   tangent_.update(x, own_elements_);
-  if (viscous_) viscous_->update(x, own_elements_);
+  if (viscous_) linearised_viscous_->update(x, own_elements_);
   if (interface_) interface_->linearise(x, flux_vector(x));
   if (by_sites()) gradients_ = flow_.gradients(sites_ * x);
 }
@@ -89,7 +89,7 @@ Net Capsule::frozen_viscous(const Net& v) {
     replicate(hv);
   }
   if (viscous_) {
-    load = viscous_load(deforming);
+    load = viscous_load(*linearised_viscous_, deforming);
     hv -= frozen_single_layer(load) / parameters_.viscosity;
   }
   rigid_.clear(hv);
