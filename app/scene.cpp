@@ -288,36 +288,18 @@ void Scene::declare(deck::Section& root) {
     root.section("Contact", contact, "what happens where several particles come close");
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
-  tube.present = root.given("Tube");
-  if (tube.present || root.documenting())
-    root.section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
-  else
-    root.mention("Tube");
-  domain.present = root.given("Domain");
-  if (domain.present || root.documenting())
-    root.section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
-  else
-    root.mention("Domain");
+  tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
+  domain.present =
+      root.optional_section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
-  steady.present = root.given("Steady");
-  if (steady.present || root.documenting())
-    root.section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
-  else
-    root.mention("Steady");
-  continuation.present = root.given("Continuation");
-  if (continuation.present || root.documenting())
-    root.section("Continuation", continuation, "of the steady shape along a number of the deck; a row and a snapshot each point");
-  else
-    root.mention("Continuation");
-  spectrum.present = root.given("Spectrum");
-  if (spectrum.present || root.documenting())
-    root.section("Spectrum", spectrum,
+  steady.present = root.optional_section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
+  continuation.present =
+      root.optional_section("Continuation", continuation, "of the steady shape along a number of the deck; a row and a snapshot each point");
+  spectrum.present = root.optional_section("Spectrum", spectrum,
                  "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at "
                  "rest, grow or decay");
-  else
-    root.mention("Spectrum");
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");

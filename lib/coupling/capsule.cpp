@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include <unsupported/Eigen/MatrixFunctions>
+
 #include "base/formatted.hpp"
 #include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
@@ -24,15 +26,6 @@ CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& spac
 
 bool slides(const Particle& particle) { return particle.slides(); }
 
-/// e^A, by its series for a small share of A, squared as often as that was halved.
-Mat3 exponential(const Mat3& a) {
-  const int halved = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(a.norm(), 1e-300)))) + 2);
-  const Mat3 small = a / std::pow(2., halved);
-  Mat3 sum = Mat3::Identity(), term = sum;
-  for (int k = 1; k < 16; ++k) sum += term = term * small / k;
-  for (int k = 0; k < halved; ++k) sum = sum * sum;
-  return sum;
-}
 bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
@@ -69,6 +62,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   layer_.set_reference(unstressed);
   layer_.set_symmetry(symmetry);
   layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
+  nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   if (auto contrasts = viscosity_contrasts(particles()); !contrasts.empty()) {
     double_layer_.emplace(stokes::Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, std::move(contrasts));
     double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
@@ -111,7 +105,7 @@ void Capsule::at(double time, double start) {
 
 /// dH/dt = L H. Whether the cell is another one then.
 bool Capsule::deform_cell(double time) {
-  const stokes::PeriodicCell now(exponential(time * flow_.gradient(Vec3::Zero())) * parameters_.cell->vectors(), parameters_.cell->n());
+  const stokes::PeriodicCell now(Mat3((time * flow_.gradient(Vec3::Zero())).exp()) * parameters_.cell->vectors(), parameters_.cell->n());
   if (cell_ && *cell_ == now) return false;
   cell_ = now;
   layer_.repeat(now);
@@ -145,9 +139,9 @@ void Capsule::replicate_sums(Net& net) {
   replicate(net);
 }
 
-/// Of what a layer gives at own points, or, where its far sums are shared, of parts that add up.
-void Capsule::gather(const stokes::Layer& layer, Net& net) {
-  if (!layer.shared()) return replicate(net);
+/// Of what an operator gives at own points, or, where its far sums are shared, of parts that add up.
+void Capsule::gather(bool shared, Net& net) {
+  if (!shared) return replicate(net);
   Net* const one[] = {&net};
   ranks_.add(one);
 }
@@ -331,7 +325,7 @@ Net Capsule::single_layer_of(const Net& x, const Net& f) {
     layer_.place(x, measure());
     layer_.apply(f, own_points_, u);
   }
-  gather(layer_, u);
+  gather(layer_.shared(), u);
   return u;
 }
 
@@ -441,7 +435,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
       hv = times(double_rows_, v);
     } else if (double_layer_) {
       double_layer_->apply(v, own_points_, hv);
-      gather(*double_layer_, hv);
+      gather(double_layer_->shared(), hv);
     }
     if (load.size() > 0) hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
     Net bv = viscous(v, hv);

@@ -172,7 +172,7 @@ class Capsule : public Dynamics {
   void own(const surface::Share& share);
   void replicate(Net& net);
   void replicate_sums(Net& net);
-  void gather(const stokes::Layer& layer, Net& net);
+  void gather(bool shared, Net& net);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);

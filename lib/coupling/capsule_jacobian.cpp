@@ -50,12 +50,14 @@ void Capsule::linearise(const Net& x) {
 
 /// A f with A frozen.
 Net Capsule::frozen_single_layer(const Net& f) {
-  Net u(f.rows(), 3);
-  if (nodal_.empty())
+  Net u = Net::Zero(f.rows(), 3);
+  if (parameters_.solvers.frozen_operator != "nodal") {
     frozen_.apply(f, u);
-  else
+    replicate(u);
+  } else {
     nodal_.apply(f, u);
-  replicate(u);
+    gather(nodal_.shared(), u);
+  }
   return u;
 }
 

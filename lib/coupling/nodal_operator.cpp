@@ -66,7 +66,13 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   std::vector<Vec3> at;
   for (const auto site : surface.sites.rowwise()) at.emplace_back(site.transpose());
   tree_->place(node_[0].data(), node_[1].data(), node_[2].data(), starts, at);
-  tree_->want(targets_);
+  tree_->share(part_, parts_);
+  tree_->want(parts_ > 1 ? everybody_ : targets_);
+}
+
+void NodalOperator::share(int part, int parts, std::vector<int> everybody) {
+  part_ = part, parts_ = parts;
+  everybody_ = std::move(everybody);
 }
 
 void NodalOperator::find_near(const Surface& surface, double reach) {
@@ -103,32 +109,32 @@ void NodalOperator::spread(const Net& f) {
     }
 }
 
-/// sums[3 k + c]: of the rule at target k.
-void NodalOperator::sum(std::vector<double>& sums) {
-  sums.resize(3 * targets_.size());
+/// Rows of u by the rule: of the targets, or of everybody where the sums are shared.
+void NodalOperator::sum(Net& u) {
   if (tree_) {
     std::vector<double> rows(3 * node_[0].size());
     tree_->sum<stokes::StokesletKernel>({force_[0].data(), force_[1].data(), force_[2].data()}, rows.data());
-    for (std::size_t k = 0; k < targets_.size(); ++k) std::copy_n(&rows[3 * static_cast<std::size_t>(targets_[k])], 3, &sums[3 * k]);
+    for (const int i : shared() ? everybody_ : targets_) u.row(i) = Vec3(&rows[3 * static_cast<std::size_t>(i)]).transpose();
     return;
   }
   const stokes::PointForces all{static_cast<int>(node_[0].size()), node_[0].data(), node_[1].data(), node_[2].data(), force_[0].data(),
                                 force_[1].data(), force_[2].data()};
+  std::vector<double> sums(3 * targets_.size());
   stokes::far_sums(all, at_, sums.data());
+  for (std::size_t k = 0; k < targets_.size(); ++k) u.row(targets_[k]) = Vec3(&sums[3 * k]).transpose();
 }
 
 void NodalOperator::apply(const Net& f, Net& u) {
-  std::vector<double> sums;
   spread(f);
-  sum(sums);
+  sum(u);
   for (std::size_t k = 0; k < targets_.size(); ++k) {
-    Vec3 row(&sums[3 * k]);
+    Vec3 row = Vec3::Zero();
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
       const double* a = &entries_[6 * j];
       const double f1 = f(near_.point[j], 0), f2 = f(near_.point[j], 1), f3 = f(near_.point[j], 2);
       row += Vec3(a[0] * f1 + a[1] * f2 + a[2] * f3, a[1] * f1 + a[3] * f2 + a[4] * f3, a[2] * f1 + a[4] * f2 + a[5] * f3);
     }
-    u.row(targets_[k]) = row.transpose();
+    u.row(targets_[k]) += row.transpose();
   }
 }
 

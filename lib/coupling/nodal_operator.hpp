@@ -41,8 +41,14 @@ class NodalOperator {
   /// `far_sum`: as in quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Rows of the own targets of u = A f; other rows are untouched.
+  /// States that ranks share sums by clusters: this one takes a part of equal work of the rows of `everybody`, in which its targets are.
+  void share(int part, int parts, std::vector<int> everybody);
+
+  /// Rows of the own targets of u = A f; other rows are untouched. Where sums are shared, what this rank adds to the rows of everybody.
   void apply(const Net& f, Net& u);
+
+  /// Whether the ranks' u add up to A f.
+  bool shared() const { return tree_ && parts_ > 1; }
 
   bool empty() const { return targets_.empty(); }
 
@@ -50,9 +56,10 @@ class NodalOperator {
   void find_near(const Surface& surface, double reach);
   void subtract_rule(const Surface& surface);
   void spread(const Net& f);
-  void sum(std::vector<double>& sums);
+  void sum(Net& u);
 
-  std::vector<int> targets_;
+  int part_ = 0, parts_ = 1;
+  std::vector<int> everybody_, targets_;
   std::vector<Vec3> at_;                                 // their places
   surface::Symmetry symmetry_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> values_;  // R at the fundamental sites

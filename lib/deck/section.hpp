@@ -71,6 +71,16 @@ class Section {
     options.declare(inner);
   }
 
+  /// A list that a deck may leave out, and whether it has it; what is left out stays as it is.
+  template <class Options>
+  bool optional_section(std::string_view name, Options& options, std::string_view meaning) {
+    if (given(name) || documenting())
+      section(name, options, meaning);
+    else
+      mention(name);
+    return given(name);
+  }
+
   /// A list handed to another library as it is (Belos, Amesos2, NOX); `field` keeps what the deck gives over its defaults.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
 

@@ -37,10 +37,7 @@ void Options::declare(deck::Section& section) {
               "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
   section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
               "kappa_s: the same against a change of area");
-  if (section.given("forces") || section.documenting())
-    section.section("forces", forces, "forces on patches of the membrane, none without this list");
-  else
-    section.mention("forces");
+  section.optional_section("forces", forces, "forces on patches of the membrane, none without this list");
 }
 
 void Options::check() const {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -25,6 +27,20 @@ int step_of(const std::string& name) {
   const char *first = name.data() + before.size(), *last = name.data() + name.size() - after.size();
   const auto [end, error] = std::from_chars(first, last, step);
   return error == std::errc() && end == last ? step : -1;
+}
+
+/// The numbers of a checkpoint by their names, which stand one a line.
+std::map<std::string, double> numbers(const hdf::Id& file) {
+  hdf::Shape shape;
+  const std::vector<double> values = hdf::read_doubles(file, "checkpoint/numbers", shape);
+  std::istringstream names(hdf::read_text(file, "checkpoint/names of numbers"));
+  std::map<std::string, double> by_name;
+  std::string name;
+  for (const double value : values) {
+    if (!std::getline(names, name)) throw std::runtime_error("a number of the checkpoint has no name");
+    by_name[name] = value;
+  }
+  return by_name;
 }
 
 }  // namespace
@@ -54,8 +70,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
     checkpoint.arrays[name] =
         Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(shape[1]));
   }
-  for (const auto& name : hdf::datasets(file, "checkpoint/numbers"))
-    checkpoint.numbers[name] = hdf::read_doubles(file, "checkpoint/numbers/" + name, shape).at(0);
+  checkpoint.numbers = numbers(file);
   for (const auto& name : hdf::datasets(file, "checkpoint/texts")) checkpoint.texts[name] = hdf::read_text(file, "checkpoint/texts/" + name);
   const auto keys = hdf::attribute_names(file, "checkpoint");  // versions before had no checksum
   if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(file, "checkpoint", "checksum") != checksum(checkpoint))
@@ -74,10 +89,9 @@ std::vector<Snapshot> snapshots(const fs::path& directory) {
 
 std::optional<Picture> pictured(const fs::path& path) try {
   const hdf::Id file = hdf::open(path);
-  const auto has = [&](const char* group, const char* name) { return std::ranges::count(hdf::datasets(file, group), name) > 0; };
-  const char* time = has("checkpoint/numbers", "picture time") ? "checkpoint/numbers/picture time" : "checkpoint/numbers/time";
-  hdf::Shape shape;
-  return Picture{hdf::read_doubles(file, time, shape).at(0), has("checkpoint/texts", "run") ? hdf::read_text(file, "checkpoint/texts/run") : ""};
+  const auto all = numbers(file);
+  const bool named = std::ranges::count(hdf::datasets(file, "checkpoint/texts"), "run") > 0;
+  return Picture{all.contains("picture time") ? all.at("picture time") : all.at("time"), named ? hdf::read_text(file, "checkpoint/texts/run") : ""};
 } catch (const std::exception&) {
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Fields of a spline surface at the nodes of its Lagrange mesh.
 
+#include <map>
 #include <vector>
 
 #include "base/types.hpp"
@@ -28,8 +29,12 @@ class Nodes {
   Net normals(const Net& net) const;
 
  private:
+  template <class Use>
+  void each_cell(const Net& net, Use use) const;
+
   surface::BezierMap map_;
   LagrangeMesh mesh_;
+  std::map<int, std::vector<double>> tables_;  ///< by degree
 };
 
 }  // namespace tanktread::output

@@ -24,7 +24,11 @@ void write(hid_t file, const std::string& name, const Rows& rows, std::size_t di
 void write(hid_t file, const Checkpoint& checkpoint) {
   hdf::write_group(file, "checkpoint");
   for (const auto& [name, matrix] : checkpoint.arrays) write(file, "checkpoint/arrays/" + name, matrix);
-  for (const auto& [name, number] : checkpoint.numbers) hdf::write(file, "checkpoint/numbers/" + name, {&number, 1}, {});
+  std::string names;  // a dataset for each of them would take longer than all of the pictures of a small mesh
+  std::vector<double> numbers;
+  for (const auto& [name, number] : checkpoint.numbers) names += name + "\n", numbers.push_back(number);
+  hdf::write(file, "checkpoint/numbers", numbers, {numbers.size()});
+  hdf::write(file, "checkpoint/names of numbers", names);
   for (const auto& [name, text] : checkpoint.texts) hdf::write(file, "checkpoint/texts/" + name, text);
   hdf::attribute(file, "checkpoint", "checksum", checksum(checkpoint));
 }

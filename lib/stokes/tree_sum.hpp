@@ -51,7 +51,7 @@ class TreeSum {
   }
 
   /// The sums to come are of one part of the interactions; those of parts 0 .. parts - 1, of the same places, charges and wanted rows, add up to the
-  /// whole. Parts are of equal work, each of few clusters of nodes.
+  /// whole. Parts are of equal work, each of few clusters of nodes. Before want().
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
   long long interactions() const { return interactions_; }  ///< of the last sum

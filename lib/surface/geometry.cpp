@@ -10,35 +10,10 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
-#include "surface/integrals_kernel.hpp"
+#include "surface/element_groups.hpp"
 
 namespace tanktread::surface {
 namespace {
-
-/// Calls use(degree, group) for all of the elements, as many of one degree at a time as a register has lanes.
-template <class Use>
-void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
-  const std::size_t lanes = pack_lanes();
-  std::vector<int> alike;
-  for (const Block& block : map.blocks()) {
-    alike.clear();
-    std::ranges::copy_if(elements, std::back_inserter(alike), [&](int e) { return map.degree(e) == block.degree; });
-    for (std::size_t first = 0; first < alike.size(); first += lanes)
-      use(block.degree, std::span<const int>(alike).subspan(first, std::min(lanes, alike.size() - first)));
-  }
-}
-
-/// The Bezier points of a group, one element in each lane; a short group repeats its last.
-kernel::Lanes points_of(const BezierMap& map, const Net& net, std::span<const int> group) {
-  const std::size_t lanes = pack_lanes();
-  kernel::Lanes points;
-  double one[3 * kernel::most_bezier];
-  for (std::size_t l = 0; l < lanes; ++l) {
-    if (l < group.size()) map.points(group[l], net, one);
-    for (int k = 0; k < 3 * map.n_bezier(group[0]); ++k) points.value[k * lanes + l] = one[k];
-  }
-  return points;
-}
 
 /// Adds what is dual to the Bezier points of a group to the control points.
 void add_transposed(const BezierMap& map, std::span<const int> group, const kernel::Lanes& dual, Net& net) {

@@ -67,11 +67,34 @@ inline void store(const Register& from, double (&to)[most_lanes]) {
   for (int l = 0; l < lanes; ++l) to[l] = from[l];
 }
 
+/// Solid harmonics of degree three at most.
+inline void harmonics(const Register (&at)[3], Register (&h)[n_harmonics]) {
+  const Register x = at[0], y = at[1], z = at[2], xx = x * x, yy = y * y, zz = z * z;
+  const Register all[n_harmonics] = {Register{} + 1.,
+                                     x,
+                                     y,
+                                     z,
+                                     x * y,
+                                     y * z,
+                                     z * x,
+                                     xx - yy,
+                                     2. * zz - xx - yy,
+                                     x * (xx - 3. * yy),
+                                     y * (3. * xx - yy),
+                                     z * (xx - yy),
+                                     x * y * z,
+                                     x * (4. * zz - xx - yy),
+                                     y * (4. * zz - xx - yy),
+                                     z * (2. * zz - 3. * xx - 3. * yy)};
+  for (int i = 0; i < n_harmonics; ++i) h[i] = all[i];
+}
+
 template <int p>
 struct Of {
   static constexpr int n = quadrature::gauss_points_for_degree(3 * p - 1);
   static constexpr int n_moments = quadrature::gauss_points_for_degree(5 * p - 1);
   static constexpr int n_transport = quadrature::gauss_points_for_degree(4 * p - 1);
+  static constexpr int n_shape = 3;
 
   static void volume(const Lanes& points, double (&result)[most_lanes]) {
     static const Table<p, n> table;
@@ -139,12 +162,43 @@ struct Of {
     for (int k = 0; k < 6; ++k) store(second[k] / 5, result.second[k]);
   }
 
+  /// v at the nodes, [s][t].
+  template <int n>
+  static void node_values(const Table<p, n>& table, const Lanes& velocities, Register (&v)[n][n][3]) {
+    each_node<p, n, true>(table, velocities, [&](int qs, int qt, const Register(&at)[3], const Register(&)[3], const Register(&)[3]) {
+      for (int c = 0; c < 3; ++c) v[qs][qt][c] = at[c];
+    });
+  }
+
+  static void shape_motion(const Lanes& points, const Lanes& velocities, ShapeMotion& result) {
+    static const Table<p, n_shape> table;
+    Register v[n_shape][n_shape][3], products[n_harmonics * (n_harmonics + 1) / 2]{}, motion[n_harmonics]{}, normals[n_harmonics][3]{};
+    node_values(table, velocities, v);
+    each_node<p, n_shape, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
+      Register normal[3], h[n_harmonics];
+      cross(a1, a2, normal);
+      harmonics(x, h);
+      for (Register& component : normal) component *= table.weight[qs] * table.weight[qt];
+      const Register area = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+      const Register flux = v[qs][qt][0] * normal[0] + v[qs][qt][1] * normal[1] + v[qs][qt][2] * normal[2];
+      for (int i = 0, k = 0; i < n_harmonics; ++i) {
+        const Register weighted = area * h[i];
+        for (int j = i; j < n_harmonics; ++j) products[k++] += weighted * h[j];
+        motion[i] += flux * h[i];
+        for (int c = 0; c < 3; ++c) normals[i][c] += normal[c] * h[i];
+      }
+    });
+    for (int k = 0; k < n_harmonics * (n_harmonics + 1) / 2; ++k) store(products[k], result.products[k]);
+    for (int i = 0; i < n_harmonics; ++i) {
+      store(motion[i], result.motion[i]);
+      for (int c = 0; c < 3; ++c) store(normals[i][c], result.normals[i][c]);
+    }
+  }
+
   static void transport(const Lanes& points, const Lanes& velocities, Transport& result) {
     static const Table<p, n_transport> table;
     Register v[n_transport][n_transport][3], volume_sum{}, flux_sum{}, first[3]{}, carried[3]{};
-    each_node<p, n_transport, true>(table, velocities, [&](int qs, int qt, const Register(&at)[3], const Register(&)[3], const Register(&)[3]) {
-      for (int c = 0; c < 3; ++c) v[qs][qt][c] = at[c];
-    });
+    node_values(table, velocities, v);
     each_node<p, n_transport, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
       Register normal[3];
       cross(a1, a2, normal);
@@ -207,6 +261,10 @@ void transport(int degree, const Lanes& x, const Lanes& v, Transport& result) {
   with_degree(degree, [&](auto p) { Of<p>::transport(x, v, result); });
 }
 
+void shape_motion(int degree, const Lanes& x, const Lanes& v, ShapeMotion& result) {
+  with_degree(degree, [&](auto p) { Of<p>::shape_motion(x, v, result); });
+}
+
 }  // namespace INSTRUCTIONS
 
 KERNEL(void, volume, (int degree, const Lanes& x, double (&volume)[most_lanes]), (degree, x, volume))
@@ -214,5 +272,6 @@ KERNEL(void, volume_gradient, (int degree, const Lanes& x, Lanes& gradient), (de
 KERNEL(void, moment_gradient, (int degree, const Lanes& x, const double* g, Lanes& gradient), (degree, x, g, gradient))
 KERNEL(void, moments, (int degree, const Lanes& x, Moments& result), (degree, x, result))
 KERNEL(void, transport, (int degree, const Lanes& x, const Lanes& v, Transport& result), (degree, x, v, result))
+KERNEL(void, shape_motion, (int degree, const Lanes& x, const Lanes& v, ShapeMotion& result), (degree, x, v, result))
 
 }  // namespace tanktread::surface::kernel

@@ -8,8 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "quadrature/gauss.hpp"
-#include "spline/bernstein.hpp"
+#include "surface/element_groups.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::surface {
@@ -64,18 +63,11 @@ struct Circuit {
   }
 };
 
-constexpr int n_harmonics = 16;  // solid harmonics of degree three at most
+using kernel::n_harmonics;
 using Values = Eigen::Matrix<double, n_harmonics, 1>;
 
-Values harmonics(const Vec3& at) {
-  const double x = at[0], y = at[1], z = at[2], xx = x * x, yy = y * y, zz = z * z;
-  Values h;
-  h << 1, x, y, z, x * y, y * z, z * x, xx - yy, 2 * zz - xx - yy, x * (xx - 3 * yy), y * (3 * xx - yy), z * (xx - yy), x * y * z,
-      x * (4 * zz - xx - yy), y * (4 * zz - xx - yy), z * (2 * zz - 3 * xx - 3 * yy);
-  return h;
-}
-
-/// Integrals over the surface: of products of harmonics, harmonics times v.n, harmonics times n; the last of these with x/R are 3 V/R.
+/// Integrals over the surface x/R: of products of harmonics (the lower triangle), harmonics times v.n, harmonics times n; the last of these with x/R
+/// are 3 V/R^3.
 struct Sums {
   Eigen::Map<Eigen::Matrix<double, n_harmonics, n_harmonics>> products;
   Eigen::Map<Values> motion;
@@ -110,31 +102,26 @@ Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const N
 }
 
 std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, const Net& v, double radius, std::span<const int> elements) {
-  const quadrature::TensorRule& rule = quadrature::tensor_gauss(3);
-  const Vec3 mean = x.colwise().mean().transpose();
+  const Net here = (x.rowwise() - x.colwise().mean()) / radius;
   std::vector<double> numbers(Sums::size, 0.);
   Sums sums(numbers.data());
-  constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
-  double points[most], velocities[most];
-  for (const int e : elements) {
-    map.points(e, x, points);
-    map.points(e, v, velocities);
-    for (int q = 0; q < rule.size(); ++q) {
-      const Jet at = jet({map.degree(e), points}, rule.s[q], rule.t[q]);
-      const Vec3 normal = rule.weights[q] * at.s.cross(at.t), velocity = place({map.degree(e), velocities}, rule.s[q], rule.t[q]);
-      const Values h = harmonics((at.x - mean) / radius);
-      sums.products += normal.norm() * h * h.transpose();
-      sums.motion += velocity.dot(normal) * h;
-      sums.normals += h * normal.transpose();
-    }
-  }
+  each_group(map, elements, [&](int degree, std::span<const int> group) {
+    kernel::ShapeMotion part;
+    kernel::shape_motion(degree, points_of(map, here, group), points_of(map, v, group), part);
+    for (std::size_t l = 0; l < group.size(); ++l)
+      for (int i = 0, k = 0; i < n_harmonics; ++i) {
+        for (int j = i; j < n_harmonics; ++j) sums.products(j, i) += part.products[k++][l];
+        sums.motion[i] += part.motion[i][l];
+        for (int c = 0; c < 3; ++c) sums.normals(i, c) += part.normals[i][c][l];
+      }
+  });
   return numbers;
 }
 
 double shape_velocity(std::span<const double> sums, bool along_x1) {
   std::vector<double> numbers(sums.begin(), sums.end());
   const Sums all(numbers.data());
-  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R times the identity, but for the rule; with them a translation has no rest
+  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R^3 times the identity, but for the rule; with them a translation has no rest
   Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
   if (along_x1) frame.tail<2>().setZero();
   const Values motion = all.motion - all.normals * frame;

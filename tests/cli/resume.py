@@ -51,7 +51,8 @@ def _last_checkpoint(results):
     with h5py.File(sorted(pathlib.Path(results).glob("snapshot_*.hdf"))[-1], "r") as file:
         root = file["checkpoint"]
         found = {f"arrays/{name}": data[()] for name, data in root["arrays"].items()}
-        found.update({f"numbers/{name}": data[()] for name, data in root["numbers"].items() if "wall" not in name})
+        names = root["names of numbers"][()].decode().splitlines()
+        found.update({f"numbers/{name}": number for name, number in zip(names, root["numbers"][()]) if "wall" not in name})
         return found
 
 
