@@ -72,8 +72,10 @@ Body body(const Scene& scene) {
 }
 
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
-  if (scene.particle.rigid() || body.wall || scene.domain.present) return surface::Symmetry(body.space.n_points);
+  const bool channel = body.wall && body.wall->channel;
+  if (scene.particle.rigid() || (body.wall && !channel) || scene.domain.present) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
+  if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, scene.body_force(), patch_forces(scene, body));
   return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force(), patch_forces(scene, body));
 }
 

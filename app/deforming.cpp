@@ -140,7 +140,7 @@ class Deforming : public ParticleSystem {
     all_ = stacked_body(members_);
     if (all_ && scene_.tube.present) all_->wall = before ? before->wall : wall(scene_, *all_);
     std::unique_ptr<coupling::Tube> around;
-    if (capsule_ && capsule_->tube())
+    if (capsule_ && capsule_->tube() && !capsule_->tube()->fixed())
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
       around = tube(scene_, body(), phases_);

@@ -66,7 +66,7 @@ class Free : public ParticleSystem {
     now.time = state.time;
     now.step = report;
     now.wall_seconds = wall_seconds;
-    if (tube_) now.pressure_drop = free_->pressure_drop(state.x), now.gap = tube_->gap();
+    if (tube_) now.pressure_drop = free_->pressure_drop(state.x), now.gap = tube_->gap(), add_tube(*tube_, free_->force_density(state.x), now);
     add_turning(state.x, report.step, now);
     now.work = work();
     return tanktread::row(series(scene_, of_free), now);

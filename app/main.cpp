@@ -162,7 +162,8 @@ int run(const Arguments& arguments, bool speaks) {
   deck::Document deck = deck::read(arguments.decks, arguments.settings, stored, arguments.no_expect ? "--no-expect" : "");
   deck.declare(scene);
   if (resume) check_changes(stored, deck, before);
-  if (auto& outline = scene.tube.outline) find(*outline, kept_outline(scene), arguments, scene);
+  if (auto& outline = scene.tube.outline) find(*outline, kept_name(*outline), arguments, scene);
+  if (auto& channel = scene.tube.channel; channel && channel->points) find(*channel->points, kept_name(*channel->points), arguments, scene);
   if (auto& history = scene.flow.history; history && history->file) {
     find(*history->file, kept_flow_history, arguments, scene);
     history->read();

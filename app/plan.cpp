@@ -50,7 +50,12 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   if (scene.flow.type == "duct")
     flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));
-  lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
+  if (wall.channel)
+    lines.emplace_back("channel", formatted("section `%s`, R_T = %.6g at the inlet, s from %.6g to %.6g, %.6g wide where it is narrowest: %s",
+                                            scene.tube.section.c_str(), body.duct->radius(), wall.start, wall.end,
+                                            2 * wall.channel->smallest_radius(), wall.space.description.c_str()));
+  else
+    lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
                                        wall.space.description.c_str()));
   lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
                                        "and as much of rows on all together",

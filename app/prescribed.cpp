@@ -113,7 +113,9 @@ int resist(const Scene& scene, const RunRequest& request) {
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
   const std::vector<Series> all = series(scene, of_prescribed);
-  const std::vector<double> only = row(all, moment(scene, body, resistance, solution, kernel, seconds));
+  Moment now = moment(scene, body, resistance, solution, kernel, seconds);
+  if (around) add_tube(*around, solution.density, now);
+  const std::vector<double> only = row(all, now);
 
   clock.emplace(phases, "output");
   Results results(scene, request, body, surface::BezierMap(body.space), ranks);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/channel_picture.hpp"
 #include "app/duct_picture.hpp"
 #include "app/numbers.hpp"
 #include "app/provenance.hpp"
@@ -83,7 +84,7 @@ std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ?
 
 std::string kept_places(const ParticleKind& kind) { return kind.name + ".csv"; }
 
-std::string kept_outline(const Scene& scene) { return std::filesystem::path(scene.tube.outline.value()).filename(); }
+std::string kept_name(const std::string& file) { return std::filesystem::path(file).filename(); }
 
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks) {
   const bool chooses = ranks.rank() == 0;
@@ -124,9 +125,12 @@ std::map<std::string, std::string> Results::origin() const {
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map,
                  const coupling::Ranks& ranks)
     : scene_(scene), request_(request), body_(&body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+  std::vector<output::Array> channel;
+  if (const auto* flow = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()); flow && !request.resume) channel = channel_picture(*flow);
   write([&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
+    if (!channel.empty()) output::write_arrays(directory_ / "channel.h5", channel);
   });
   remesh(body, map);
 }
@@ -137,7 +141,7 @@ void Results::begin() {
   output::start_directory(directory_);
   run_ = identifier();
   for (const auto& [file, name] : scene_.files) keep(file, name);
-  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(*body_->duct));
+  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(stokes::DuctFlow(*body_->duct)));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);
   declare_series();

@@ -24,7 +24,7 @@ namespace tanktread {
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< of a particle's file
 std::string kept_places(const ParticleKind& kind);   ///< of its copies
-std::string kept_outline(const Scene& scene);        ///< the name of Tube/outline, without its folder
+std::string kept_name(const std::string& file);      ///< of an outline or of the points of a channel: without its folder
 
 /// What a run says of itself when it ends.
 struct Account {

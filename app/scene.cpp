@@ -12,6 +12,7 @@
 #include "coupling/ranks.hpp"
 #include "deck/words.hpp"
 #include "stokes/ambient_flow.hpp"
+#include "surface/channel.hpp"
 
 namespace tanktread {
 
@@ -80,6 +81,16 @@ void ContactOptions::declare(deck::Section& section) {
 
 namespace {
 
+/// The list Channel.
+struct ChannelList {
+  surface::TubeOptions& tube;
+
+  void declare(deck::Section& section) {
+    tube.channel.emplace();
+    tube.declare(section);
+  }
+};
+
 /// The list Particles.
 struct Kinds {
   std::vector<ParticleKind>& all;
@@ -108,7 +119,10 @@ double points(const Scene& scene) {
   return imported ? imported->space.n_points : scene.surface.n_points();
 }
 
-double wall_points(const Scene& scene) { return scene.tube.azimuthal_elements * (scene.tube.axial_elements + 3.0); }
+double wall_points(const Scene& scene) {
+  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : scene.tube.axial_elements;
+  return scene.tube.azimuthal_elements * (along + 3.0);
+}
 
 /// Bytes a pair of control points of what the particle's layers are assembled in: rows of doubles, and frozen operators of six entries of 16 bits.
 /// `auto` assembles nothing that is too large.
@@ -151,7 +165,7 @@ void check_size(const Scene& scene) {
                 points(scene), bytes);
   if (!scene.tube.present) return;
   const double of_wall = doubles * (1 + coupling::Ranks().size());  // rows on all ranks together, and the factors on each
-  check_bytes("Tube/azimuthal elements and Tube/axial elements",
+  check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
               formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / of_wall))),
               wall_points(scene), of_wall);
 }
@@ -184,7 +198,7 @@ void check_motion(const Scene& scene) {
                                                               : ": on what deforms a force is spread, by Particle/density difference and "
                                                                 "Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
-  if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section.");
+  if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section, or Channel.");
   if (scene.adaptation.film_resolution && scene.name.empty())
     throw UserError("Adaptation/film resolution is for several particles: there are no films between others.");
   if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed && scene.runs_in_time())
@@ -214,6 +228,7 @@ void check_contradictions(const Scene& scene) {
     if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
   };
   refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
+  refuse(steady && scene.tube.channel, sought, "Channel", "in a channel what is carried along is nowhere at rest");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
   if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
@@ -224,10 +239,11 @@ void check_contradictions(const Scene& scene) {
          "points that go with the fluid along an interface do not rest");
   refuse(scene.steady.present && !drop && !rigid && turns(scene), sought, flow,
          "the flow turns, and the membrane treads around its shape: no point of it rests");
-  refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", "Tube", flow,
+  const std::string confined = scene.tube.list();
+  refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
          "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");
-  refuse(tube && desingularised, "Quadrature/rule `desingularised`", "Tube", "the wall is not closed");
-  refuse(scene.domain.present && tube, "Domain", "Tube", "a tube does not repeat");
+  refuse(tube && desingularised, "Quadrature/rule `desingularised`", confined, "the wall is not closed");
+  refuse(scene.domain.present && tube, "Domain", confined, "a tube does not repeat");
   refuse(scene.domain.present && alone, "Domain", "Particle", "what repeats is named in the list Particles");
   refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
   refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force),
@@ -238,6 +254,8 @@ void check_contradictions(const Scene& scene) {
   refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
   refuse(scene.viscous_membrane() && tube && scene.solvers.tube != "schur", "Membrane viscosity", "Solvers/tube `" + scene.solvers.tube + "`",
          "the system of all blocks leaves the membrane's own load out; `schur` has it");
+  refuse(scene.flow.held != "flow rate" && scene.solvers.tube != "schur", "Flow/held `" + scene.flow.held + "`",
+         "Solvers/tube `" + scene.solvers.tube + "`", "the system of all blocks holds the flow rate; `schur` may hold either");
   refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
   refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
   refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");
@@ -254,7 +272,7 @@ void check_contradictions(const Scene& scene) {
          "a degenerate element has no normal at its pole");
   refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
   refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
-  refuse(held && (tube || rigid), "Particle/drift `held`", tube ? "Tube" : motion,
+  refuse(held && (tube || rigid), "Particle/drift `held`", tube ? confined : motion,
          "it is for particles that deform in a flow whose gradient is the same everywhere");
 }
 
@@ -289,6 +307,11 @@ void Scene::declare(deck::Section& root) {
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
+  surface::TubeOptions documented;
+  ChannelList channel{root.given("Channel") ? tube : documented};
+  if (tube.present && root.given("Channel")) throw UserError("Channel and Tube contradict each other: a scene has one wall.");
+  if (root.optional_section("Channel", channel, "a tube whose section changes along a centre line, which may bend; none without this list"))
+    tube.present = true;
   domain.present =
       root.optional_section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
@@ -389,12 +412,12 @@ bool Scene::lands_on_snapshots() const {
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 
 bool may_change_on_resume(const std::string& path) {
-  if (path == "Tube/contact gap" || path == "Contact/limit") return true;
+  if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Contact/limit") return true;
   if (path.starts_with("Particles/")) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
     return of_particle.starts_with("Interface/") || of_particle.starts_with("Adaptation/");
   }
-  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube"})
+  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

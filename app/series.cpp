@@ -18,6 +18,7 @@ constexpr unsigned all_particles = of_deforming | of_rigid | of_free | of_prescr
 constexpr unsigned moving = of_deforming | of_rigid | of_free;
 constexpr unsigned told_or_among_others = of_rigid | of_prescribed;
 constexpr unsigned timed = of_run | of_free;
+constexpr unsigned in_tubes = of_run | of_free | of_prescribed;
 constexpr const char* axes = "x1 x2 x3";
 
 /// One series, or several with the names of their components behind their own, which stand in the description for each `#`.
@@ -115,6 +116,12 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.pressure_drop; }, Needs::tube},
     {"gap", "", "length", "smallest distance between particle and wall", timed | of_prescribed,
      [](const Moment& m, int) { return m.gap; }, Needs::tube},
+    {"flow_rate", "", "length^3/time", "through the tube, where Flow/held is `pressure drop`", timed | of_prescribed,
+     [](const Moment& m, int) { return m.flow_rate; }, Needs::held_pressure},
+    {"channel_pressure_drop", "", "force/length^2", "between the ends of the empty channel (2.30)", timed | of_prescribed,
+     [](const Moment& m, int) { return m.channel_pressure_drop; }, Needs::channel},
+    {"channel_extra_pressure_drop", "", "force/length^2", "the same, over that of a straight tube of the inlet's section and as long",
+     timed | of_prescribed, [](const Moment& m, int) { return m.channel_extra_pressure_drop; }, Needs::channel},
     {"smallest_gap", "", "length", "smallest distance between two of several particles", of_several,
      [](const Moment& m, int) { return m.nearest.gap; }},
     {"first_of_gap", "", "1", "number of the first of these two, from 1 in the order of the deck", of_several,
@@ -139,16 +146,16 @@ constexpr Statement table[] = {
      Needs::cell_strain},
     {"pressure_gradient_", axes, "force/length^3", "uniform one that balances the force of the particles on the fluid, component #", of_several,
      [](const Moment& m, int c) { return m.pressure_gradient[c]; }, Needs::cell},
-    {"disturbance_flux", "", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", of_run,
+    {"disturbance_flux", "", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", in_tubes,
      [](const Moment& m, int) { return m.tube.flux; }, Needs::tube},
     {"force_imbalance", "", "1",
-     "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: should vanish (2.14)", of_run,
+     "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: should vanish (2.14)", in_tubes,
      [](const Moment& m, int) { return m.tube.force; }, Needs::tube},
-    {"cap_velocity", "", "1", "largest disturbance velocity left on the caps, over the mean velocity", of_run,
+    {"cap_velocity", "", "1", "largest disturbance velocity left on the caps, over the mean velocity", in_tubes,
      [](const Moment& m, int) { return m.tube.cap_velocity; }, Needs::tube},
-    {"pressure_drop_by_flux", "", "force/length^2", "disturbed pressure drop for which the flux of the disturbance vanishes", of_run,
+    {"pressure_drop_by_flux", "", "force/length^2", "disturbed pressure drop for which the flux of the disturbance vanishes", in_tubes,
      [](const Moment& m, int) { return m.tube.pressure_by_flux; }, Needs::tube},
-    {"pressure_drop_by_force", "", "force/length^2", "disturbed pressure drop for which the axial forces balance", of_run,
+    {"pressure_drop_by_force", "", "force/length^2", "disturbed pressure drop for which the axial forces balance", in_tubes,
      [](const Moment& m, int) { return m.tube.pressure_by_force; }, Needs::tube},
     {"drag_", axes, "force", "force on the particle, component #", told_or_among_others, [](const Moment& m, int c) { return m.drag[c]; }},
     {"torque_", axes, "force length", "torque on the particle about its centre, component #", told_or_among_others,
@@ -196,6 +203,8 @@ std::vector<Series> stated() {
 bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::nothing) return true;
   if (needs == Needs::tube) return scene.tube.present;
+  if (needs == Needs::held_pressure) return scene.tube.present && scene.flow.held == "pressure drop";
+  if (needs == Needs::channel) return scene.tube.channel.has_value();
   if (needs == Needs::viscous_membrane) return scene.viscous_membrane();
   if (needs == Needs::strain) return strains(scene);
   if (needs == Needs::cell || needs == Needs::cell_strain)

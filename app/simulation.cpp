@@ -35,7 +35,7 @@ namespace tanktread {
 namespace {
 
 /// Why a run ends before its time, as its status says it.
-const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady";
+const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady", past = "past";
 
 output::Entries<long> counts(const RunTotals& totals) {
   output::Entries<long> all;
@@ -215,8 +215,8 @@ class Run {
     const double widest = particle_->body().wall->widest;
     if (gap > 0.6 * widest) return;
     warn({"coarse wall", formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
-                                   "Tube/azimuthal elements and Tube/axial elements",
-                                   state_.time, gap, widest)});
+                                   "%s/azimuthal elements and %s/axial elements",
+                                   state_.time, gap, widest, scene_.tube.list().c_str(), scene_.tube.list().c_str())});
   }
 
   void warn(const Warning& warning) {
@@ -319,7 +319,22 @@ class Run {
     if (limit && ranks_.first(seconds_here()) > *limit) return by_clock;
     const auto tolerance = scene_.time.steady_tolerance;
     if (tolerance && largest("shape_velocity") < *tolerance) return steady;
+    if (scene_.time.end_when_past && least_way() > *scene_.time.end_when_past) return past;
     return {};
+  }
+
+  /// Along x1, or the centre line of a channel, of the centroid that has come least far.
+  double least_way() const {
+    const std::string name = scene_.particle.motion == Motion::free ? "center_x" : "centroid_x";
+    std::vector<double> x[3];
+    for (int c = 0; c < 3; ++c) x[c] = entries(name + std::to_string(c + 1));
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < x[0].size(); ++p) {
+      const auto& wall = particle_->body().wall;
+      const bool bent = wall && wall->channel;
+      least = std::min(least, bent ? wall->channel->coordinates({x[0][p], x[1][p], x[2][p]})[0] : x[0][p]);
+    }
+    return least;
   }
 
   Account account(const std::string& status) const {
@@ -330,7 +345,7 @@ class Run {
   int end(const std::string& reason) {
     if (scene_.output.surface_text) results_.write_surface(particle_->picture(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
-    last.whole = reason.empty() || reason == steady;
+    last.whole = reason.empty() || reason == steady || reason == past;
     if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
     if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " goes on";
     const int code = results_.close(last, phases_);

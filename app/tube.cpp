@@ -6,13 +6,42 @@
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
 #include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread {
 
 namespace {
 
+/// In a channel, at the places that a surface is drawn from.
+void check_fits_channel(const Scene& scene, const Body& body, const surface::TubeWall& wall) {
+  const surface::Channel& channel = *wall.channel;
+  const surface::Patches particle(surface::BezierMap(body.space), body.initial), around(surface::BezierMap(wall.space), wall.net);
+  double first = channel.end(), last = channel.start();
+  for (int e = 0; e < particle.size(); ++e)
+    for (const auto& line : surface::sample(particle[e]))
+      for (const Vec3& x : line) {
+        const Vec3 at = channel.coordinates(x);
+        if (!channel.outline().inside(at.tail<2>()))
+          throw UserError(formatted("The particle does not fit into the channel: at [%.4g, %.4g, %.4g] it is in the wall; R_C = %.4g, half the channel's "
+                                    "width is %.4g where it is narrowest.",
+                                    x[0], x[1], x[2], body.radius, channel.smallest_radius()));
+        first = std::min(first, at[0]), last = std::max(last, at[0]);
+      }
+  const double margin = 1.7 * wall.radius();
+  if (first < channel.start() + margin || last > channel.end() - margin)
+    throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to Channel/start "
+                              "= %.4g and Channel/end = %.4g.",
+                              first, last, margin, channel.start(), channel.end()));
+  const double gap = surface::closest_points(surface::ElementBoxes(particle), surface::ElementBoxes(around), 1e-6 * wall.radius(), wall.radius()).gap;
+  if (const double least = scene.tube.contact_gap * body.radius; gap < least)
+    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.", gap,
+                              scene.tube.contact_gap, least));
+}
+
 void check_fits(const Scene& scene, const Body& body) {
+  if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()))
+    return check_fits_channel(scene, body, *channel->surface());
   const surface::Outline& outline = body.duct->outline();
   const Vec3& centre = scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
@@ -45,11 +74,14 @@ void check_fit(const Scene& scene, const Body& body) {
 
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
   if (!scene.tube.present) return {};
+  if (scene.tube.channel)
+    return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0), scene.quadrature);
   return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0));
 }
 
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body) {
   if (!scene.tube.present) return {};
+  if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
   const surface::Outline& outline = body.duct->outline();
   const double centroid = surface::measures(body.space, body.rest).centroid[0];
   const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
@@ -67,8 +99,12 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   parameters.viscosity_ratio = scene.particle.viscosity_ratio;
   const auto current = [](const Scene& one) { return load_measure(one) == stokes::Measure::current; };
   if (std::ranges::any_of(scene.alone(), current)) parameters.measure = stokes::Measure::current;
+  if (scene.tube.channel) parameters.symmetry = body.symmetry;
+  parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
+  if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
+    return std::make_unique<coupling::Tube>(channel, body.space, parameters, phases);
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
@@ -77,9 +113,22 @@ void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now) {
   now.tube = capsule.checks(x);
   now.pressure_drop = capsule.response(x).pressure_drop;
   now.gap = tube.gap();
+  add_channel(tube, now);
+}
+
+void add_tube(coupling::Tube& tube, const Net& density, Moment& now) {
+  now.tube = tube.checks(-density, {}, tube.respond(-density));
+  add_channel(tube, now);
+}
+
+void add_channel(const coupling::Tube& tube, Moment& now) {
+  now.flow_rate = tube.flow_rate(now.pressure_drop);
+  const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
+  if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
 }
 
 void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
+  if (wall.channel) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out
   if (wall.length() < needed)
@@ -92,8 +141,8 @@ std::string contact(const Scene& scene, double gap) {
   const std::vector<Scene> all = scene.alone();
   const double least = scene.tube.contact_gap * std::ranges::min(all, {}, &Scene::radius).radius();
   if (gap >= least) return {};
-  return formatted("the particle touches the wall: the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g,", gap,
-                   scene.tube.contact_gap, least);
+  return formatted("the particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap,
+                   scene.tube.list().c_str(), scene.tube.contact_gap, least);
 }
 
 }  // namespace tanktread

@@ -25,6 +25,12 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
 /// What the series in a tube are taken from: the particles at x. Collective.
 void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now);
 
+/// Of a rigid body where the tube has it placed, with this force density on the fluid: the checks of its pressure drop.
+void add_tube(coupling::Tube& tube, const Net& density, Moment& now);
+
+/// The flow rate, and the pressure drop of the empty channel if it is one.
+void add_channel(const coupling::Tube& tube, Moment& now);
+
 /// Throws RunFailure where particles at x have drawn apart by more than the wall is long.
 void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 

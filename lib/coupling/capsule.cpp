@@ -72,7 +72,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (by_sites()) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
-    inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
+    if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
     if (particles().size() > 1 || !rigid_.empty()) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
   }
@@ -333,7 +333,8 @@ Net Capsule::single_layer_of(const Net& x, const Net& f) {
 Net Capsule::explicit_velocity(const Net& x, const Net& f) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
-    u = flow_.velocities(sites_ * x) - u / parameters_.viscosity;
+    const bool known = tube_ && flow_.duct();
+    u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(sites_ * x)) - u / parameters_.viscosity;
     if (tube_ && schur()) {
       Tube::Response response = tube_->respond(f);
       u += response.velocity;
@@ -352,6 +353,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f) {
 bool Capsule::enter_tube(const Net& x) {
   place(x);
   const Net at_sites = sites_ * x;
+  if (tube_->fixed()) return !ranks_.any(!tube_->inside(at_sites, own_points_));
   const surface::Outline& outline = tube_->wall().outline;
   const bool outside = std::ranges::any_of(own_points_, [&](int i) {
     const surface::Vec2 place(at_sites(i, 1), at_sites(i, 2));
@@ -524,7 +526,7 @@ double Capsule::volume_error(const Net& x) const {
 }
 
 double Capsule::norm(const Net& displacement) const {
-  const double along = tube_ ? displacement.col(0).mean() : 0;
+  const double along = tube_ && !tube_->fixed() ? displacement.col(0).mean() : 0;
   double largest = 0;
   for (const Particle& particle : particles()) {
     const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);

@@ -161,6 +161,7 @@ class Capsule : public Dynamics {
  private:
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
+  std::vector<Mat3> gradients_at(const Net& x) const;
   Net evaluate(Net x, const Net& guess);
   Net evaluate_here(Net x, const Net& guess);
   bool deform_cell(double time);

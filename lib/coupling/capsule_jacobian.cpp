@@ -45,7 +45,19 @@ void Capsule::linearise(const Net& x) {
   tangent_.update(x, own_elements_);
   if (viscous_) linearised_viscous_->update(x, own_elements_);
   if (interface_) interface_->linearise(x, flux_vector(x));
-  if (by_sites()) gradients_ = flow_.gradients(sites_ * x);
+  if (by_sites()) gradients_ = gradients_at(sites_ * x);
+}
+
+/// Of the flow; where there is a symmetry, of fundamental points alone.
+std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
+  const std::vector<int>& rows = parameters_.symmetry.fundamental();
+  if (static_cast<Eigen::Index>(rows.size()) == x.rows()) return flow_.gradients(x);
+  Net at(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(rows[k]);
+  const std::vector<Mat3> found = flow_.gradients(at);
+  std::vector<Mat3> all(static_cast<std::size_t>(x.rows()), Mat3::Zero());
+  for (std::size_t k = 0; k < rows.size(); ++k) all[static_cast<std::size_t>(rows[k])] = found[k];
+  return all;
 }
 
 /// A f with A frozen.

@@ -46,4 +46,20 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
   });
 }
 
+static Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
+
+surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
+                           const surface::TubeWall& wall, const Vec3& body_force, const Net& patch_forces) {
+  if (options.use == "none") return surface::Symmetry(space.n_points);
+  const Net* around[] = {&wall.net};
+  return surface::symmetry(space, nets, [&](const surface::Image& image) {
+    const auto keeps_middle = [&](const Net* net) {
+      const Vec3 apart = middle(*net) - middle(wall.net);
+      return (image.signs.cwiseProduct(apart) - apart).norm() <= 1e-9 * wall.radius();
+    };
+    return image.signs[0] > 0 && image.signs.cwiseProduct(body_force) == body_force && keeps(patch_forces, image) &&
+           std::ranges::all_of(nets, keeps_middle) && surface::image(wall.space, around, image.signs).has_value();
+  });
+}
+
 }  // namespace tanktread::coupling

@@ -8,6 +8,7 @@
 #include "spline/space.hpp"
 #include "stokes/ambient_flow.hpp"
 #include "surface/symmetry.hpp"
+#include "surface/tube_wall.hpp"
 
 namespace tanktread::deck {
 class Section;
@@ -30,5 +31,9 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
 /// What else bounds the fluid has to be looked at here too.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const stokes::AmbientFlow& flow, const Vec3& body_force = Vec3::Zero(), const Net& patch_forces = {});
+
+/// The same in a channel: mirror planes and half turns that leave its wall as it is.
+surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
+                           const surface::TubeWall& wall, const Vec3& body_force, const Net& patch_forces = {});
 
 }  // namespace tanktread::coupling

@@ -13,6 +13,17 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
   particle_->ranks.measure(phases_);
 }
 
+Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases)
+    : flow_(flow), phases_(phases) {
+  {
+    const auto clock = phases_.time("wall assembly");
+    wall_ = flow->wall(phases_, parameters.symmetry);
+    flow->pressure_drop();
+  }
+  particle_ = std::make_unique<Particle>(particle, parameters);
+  particle_->ranks.measure(phases_);
+}
+
 Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_) {
   particle_ = std::make_unique<Particle>(particle, tube.particle_->parameters);
   particle_->ranks.measure(phases_);
@@ -22,6 +33,7 @@ Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
+const Net& Tube::ambient() const { return particle_->ambient; }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
   return wall_->evaluations() + particle_->evaluations();
@@ -37,7 +49,14 @@ void Tube::place(const Net& x) {
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {
-  return dot(particle_->pressure_of_load, f) + dot(particle_->pressure_of_velocity, v);
+  const bool by_flow = fixed() && particle_->dual && v.size() > 0;
+  return dot(particle_->pressure_of_load, f) + (by_flow ? pressure_of_velocity(v, velocity_on_wall(v)) : dot(particle_->pressure_of_velocity, v));
+}
+
+/// dp with which the flow rate of the disturbance that v makes vanishes; `on_wall`: its velocity there.
+double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
+  weigh_flow();
+  return -(flow_of_velocity(v) - dot(flow_weights_, solve_wall(on_wall)) / viscosity()) / flow_of_pressure_;
 }
 
 Net Tube::load_on_wall(const Net& f) {
@@ -74,13 +93,24 @@ double Tube::viscosity() const { return particle_->parameters.viscosity; }
 Tube::Response Tube::respond(const Net& f, const Net& v) {
   const auto clock = phases_.time("wall");
   Response response;
-  response.pressure_drop = pressure_of(f, v);
+  response.pressure_drop = pressure_of(f);
   Net on_wall = Net::Zero(wall_->sites().rows(), 3);
+  if (v.size() > 0 && particle_->dual) {
+    on_wall += velocity_on_wall(v);
+    response.pressure_drop += fixed() ? pressure_of_velocity(v, on_wall) : dot(particle_->pressure_of_velocity, v);
+  }
   if (f.size() > 0) on_wall += load_on_wall(f);
-  if (v.size() > 0 && particle_->dual) on_wall += velocity_on_wall(v);
   response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
   response.velocity = wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
+  if (const double slower = slowed(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
+}
+
+/// By what part of it the flow is slower where its pressure drop is held.
+double Tube::slowed(double pressure_drop) const {
+  if (!particle_->parameters.holds_pressure_drop) return 0;
+  const auto* channel = dynamic_cast<const ChannelFlow*>(flow_.get());
+  return pressure_drop / (channel ? channel->pressure_drop() : flow_->pressure_gradient() * wall().length());
 }
 
 void Tube::velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u) {
@@ -88,6 +118,10 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
   at.col(0).array() -= particle_->centroid;
   wall_->layer().apply(response.wall_traction, at, rows, u);
   for (const int i : rows) u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - u.row(i)) / viscosity();
+  if (const double slower = slowed(response.pressure_drop); slower != 0) {
+    const Net ambient = flow_->velocities(x);
+    for (const int i : rows) u.row(i) -= slower * ambient.row(i);
+  }
 }
 
 void Tube::freeze() {
@@ -111,7 +145,7 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
   Net u(particle_->sites.rows(), 3);
   frozen.wall.apply(solve_wall(on_wall) + pressure * wall_->pumped(), u);
   particle_->ranks.replicate(u);
-  return -u / viscosity() + pressure * frozen.inlet;
+  return -u / viscosity() + pressure * frozen.inlet - slowed(pressure) * frozen.ambient;
 }
 
 }  // namespace tanktread::coupling

@@ -7,6 +7,7 @@
 
 #include "base/timing.hpp"
 #include "base/types.hpp"
+#include "coupling/channel_flow.hpp"
 #include "coupling/ranks.hpp"
 #include "membrane/options.hpp"
 #include "quadrature/options.hpp"
@@ -14,6 +15,7 @@
 #include "stokes/duct_flow.hpp"
 #include "stokes/kernels.hpp"
 #include "stokes/layer.hpp"
+#include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 
 namespace tanktread::coupling {
@@ -24,6 +26,8 @@ struct TubeParameters {
   double viscosity = 1;                                  ///< mu of the outer fluid
   double viscosity_ratio = 1;                            ///< lambda, of all particles, if they do not differ
   stokes::Measure measure = stokes::Measure::reference;  ///< of the particle's load
+  surface::Symmetry symmetry;  ///< of channel, particle and all that is asked for; of no points: none
+  bool holds_pressure_drop = false;  ///< of the duct's flow, in place of its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
 };
@@ -40,10 +44,19 @@ struct TubeParameters {
 /// Several particles are one surface here, C all of it. The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the
 /// particle's centroid. So what depends on the wall alone is assembled and factored once. Points of the particle are true ones everywhere; nets of
 /// the wall are in the wall's frame. Nets are replicated; calls are collective but for queries.
+///
+/// Where the pressure drop dp_0 of the duct's flow is held, not its flow rate, the answer is less by dp/dp_0 of that flow, and dp is what the particle
+/// adds to the empty tube of the flow rate that is left, Q (1 - dp/dp_0).
+///
+/// The wall of a channel stays where it is, v_inf is that of ChannelFlow, and what v does to dp follows from the flow rate of the disturbance (2.14),
+/// which vanishes, in place of f_inf.
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
        Phases& phases);
+
+  /// A channel, with the wall that its flow came from.
+  Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
   /// The same tube around another mesh of the particle: nothing of the wall is made again.
   Tube(const Tube& tube, const spline::Space& particle);
@@ -82,6 +95,7 @@ class Tube {
   Net wall_on_particle(const Net& traction);  ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);      ///< (1/mu) G_W f^D
   const Net& inlet_on_particle() const;       ///< c
+  const Net& ambient() const;                 ///< v_inf at the collocation points, of the amplitude 1
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
   Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors
@@ -95,8 +109,17 @@ class Tube {
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
+  /// Flow rate where the particle adds this pressure drop: Q, or what is left of it.
+  double flow_rate(double pressure_drop) const { return flow_->flow_rate() * (1 - slowed(pressure_drop)); }
+
   /// Smallest distance of the particle's surface to the wall; negative where they cross.
   double gap() const;
+
+  /// Whether the wall stays where it is, and the way along it counts.
+  bool fixed() const { return wall().channel != nullptr; }
+
+  /// Whether these places are inside, of a channel between its ends too.
+  bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
   const stokes::DuctFlow& flow() const { return *flow_; }
@@ -106,13 +129,17 @@ class Tube {
   struct Particle;
   double viscosity() const;
   double cap_velocity(const Net& f, const Net& v, const Response& response);
+  double slowed(double pressure_drop) const;
+  double flow_of_velocity(const Net& v) const;
+  double pressure_of_velocity(const Net& v, const Net& on_wall);
+  void weigh_flow();
 
   std::shared_ptr<const stokes::DuctFlow> flow_;
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
   Net flow_weights_, force_weights_;  // of the checks, made when first asked for, as is
-  double own_flow_ = 0;               // what the inlet's own pressure drives through it
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // what the inlet's own pressure drives through it; with what the wall answers
 };
 
 }  // namespace tanktread::coupling

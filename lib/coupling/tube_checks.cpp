@@ -4,21 +4,36 @@
 
 #include "coupling/tube_particle.hpp"
 #include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
 
-/// Points of a section between its centroid and its outline, as far as they are inside.
-std::vector<Vec3> points_of_cap(const surface::Outline& outline, double place) {
-  std::vector<Vec3> points;
+/// Points of a section between its centroid and its outline, as far as they are inside; `place` takes them into space.
+template <class Place>
+void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
   const surface::Vec2 centre = outline.centroid();
   for (int k = 0; k < outline.n_sides(); ++k)
     for (const double u : outline.knots(k, std::max(2, 12 / outline.n_sides())))
       for (const double share : {0.25, 0.5, 0.75, 0.9}) {
         const surface::Vec2 p = centre + share * (outline.point(k, u) - centre);
-        if (outline.inside(p)) points.emplace_back(place, p[0], p[1]);
+        if (outline.inside(p)) points.push_back(place(p));
       }
+}
+
+/// Of both ends.
+std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
+  std::vector<Vec3> points;
+  for (const double s : {wall.start, wall.end}) {
+    if (!wall.channel) {
+      add_points_of_cap(wall.outline, [&](const surface::Vec2& p) { return Vec3(s, p[0], p[1]); }, points);
+      continue;
+    }
+    const surface::Channel::Section at = wall.channel->section(s);
+    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.across + p[1] * Vec3::UnitZ(); };
+    add_points_of_cap(wall.channel->outline(s), place, points);
+  }
   return points;
 }
 
@@ -30,18 +45,35 @@ std::vector<int> everybody(Eigen::Index n) {
 
 }  // namespace
 
+void Tube::weigh_flow() {
+  if (flow_weights_.size() > 0) return;
+  flow_weights_ = wall_->flow_weights();
+  force_weights_ = wall_->force_weights();
+  own_flow_ = wall_->inlet().own_flow();
+  flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
+}
+
+/// Through the inlet, by the double layer alone.
+double Tube::flow_of_velocity(const Net& v) const {
+  Particle& particle = *particle_;
+  if (v.size() == 0 || !particle.dual) return 0;
+  double flow = 0;
+  std::vector<double> value[3];
+  particle.dual->values(particle.strength(v), value);
+  const auto &node = particle.dual->nodes(), &normal = particle.dual->normals();
+  for (std::size_t k = 0; k < value[0].size(); ++k)
+    flow += wall_->inlet().double_layer_flow(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
+                                             Vec3(normal[0][k], normal[1][k], normal[2][k]));
+  return flow;
+}
+
 /// The flow rate through the inlet is the transpose of c: of a force f at y it is f.c(y)/mu. So no point of the cap is needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
   const stokes::Cap& inlet = wall_->inlet();
-  if (flow_weights_.size() == 0) {
-    flow_weights_ = wall_->flow_weights();
-    force_weights_ = wall_->force_weights();
-    own_flow_ = inlet.own_flow();
-  }
-
+  weigh_flow();
   double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
   double force = area * dp - dot(force_weights_, response.wall_traction);
   std::vector<double> value[3];
@@ -55,21 +87,14 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
       force -= strength[0];
     }
   }
-  if (v.size() > 0 && particle.dual) {
-    particle.dual->values(particle.strength(v), value);
-    const auto &node = particle.dual->nodes(), &normal = particle.dual->normals();
-    for (std::size_t k = 0; k < value[0].size(); ++k)
-      flow += inlet.double_layer_flow(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
-                                      Vec3(normal[0][k], normal[1][k], normal[2][k]));
-  }
-  const double flow_of_pressure = -dot(flow_weights_, wall_->pumped()) / mu + own_flow_ / mu;
+  flow += flow_of_velocity(v);
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
 
   Checks checks;
   checks.flux = flow / flow_->flow_rate();
   checks.force = force / (area * flow_->pressure_gradient() * flow_->radius());
   checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
-  checks.pressure_by_flux = dp - flow / flow_of_pressure;
+  checks.pressure_by_flux = dp - flow / flow_of_pressure_;
   checks.pressure_by_force = dp - force / force_of_pressure;
   return checks;
 }
@@ -77,9 +102,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
 double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
   const double mu = viscosity();
-  std::vector<Vec3> points = points_of_cap(wall_->surface().outline, wall_->surface().start);
-  const std::vector<Vec3> outlet = points_of_cap(wall_->surface().outline, wall_->surface().end);
-  points.insert(points.end(), outlet.begin(), outlet.end());
+  const std::vector<Vec3> points = points_of_caps(wall_->surface());
   Net at(static_cast<Eigen::Index>(points.size()), 3), part = at;
   for (std::size_t k = 0; k < points.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = points[k].transpose();
   const std::vector<int> all = everybody(at.rows());
@@ -97,8 +120,21 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   return u.rowwise().norm().maxCoeff();
 }
 
+bool Tube::inside(const Net& x, std::span<const int> rows) const {
+  const surface::TubeWall& wall = wall_->surface();
+  return std::ranges::all_of(rows, [&](int i) {
+    const Vec3 place = x.row(i).transpose();
+    return wall.channel ? wall.channel->inside(place) : wall.outline.inside(place.tail<2>());
+  });
+}
+
 double Tube::gap() const {
-  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall_->surface().outline).gap;
+  const surface::Patches patches(particle_->geometry.bezier(), particle_->shape);
+  if (fixed()) {
+    const double nearest = surface::closest_points(surface::ElementBoxes(patches), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap;
+    return inside(particle_->sites, everybody(particle_->sites.rows())) ? nearest : -nearest;
+  }
+  return surface::clearance(patches, wall_->surface().outline).gap;
 }
 
 }  // namespace tanktread::coupling

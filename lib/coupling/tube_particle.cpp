@@ -14,8 +14,14 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
       collocation(collocation_matrix(particle)),
       from_sites(how.direct),
       single(Layer::Kernel::single_layer, particle, {}, how.quadrature) {
-  own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
-  ranks.own(own, space.n_points);
+  const surface::Symmetry& symmetry = parameters.symmetry;
+  if (symmetry.order() > 1) {
+    own = surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank()).points;
+    ranks.own(own, symmetry);
+  } else {
+    own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
+    ranks.own(own, space.n_points);
+  }
   from_sites.factor(collocation);
   set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
 }
@@ -29,7 +35,7 @@ void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
 }
 
 void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wall) {
-  centroid = geometry.measures(x).centroid[0];
+  centroid = wall.surface().channel ? 0 : geometry.measures(x).centroid[0];
   shape = x;
   shape.col(0).array() -= centroid;
   sites = collocation * shape;
@@ -41,15 +47,16 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
     dual_on_wall = dual->near(wall.sites(), wall.own());
     wall_on_sites = wall.layer().near(sites, own);
   }
-  weigh_pressure(flow);
+  weigh_pressure(flow, !wall.surface().channel);
 }
 
-/// The weights of (2.7) over Q, with v_inf and its gradient interpolated at the collocation points: v_1, v_1,2 and v_1,3 make the three columns.
+/// The weights of (2.7) over Q, with v_inf and, in a straight tube, its gradient interpolated at the collocation points: v_1, v_1,2 and v_1,3 make the
+/// three columns.
 ///   f_inf.v = G x1 n.v + mu [v_1,2 (n_2 v_1 + n_1 v_2) + v_1,3 (n_3 v_1 + n_1 v_3)]
-void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
-  Net at_sites = Net::Zero(sites.rows(), 3);
-  at_sites.col(0) = flow.velocities(sites).col(0);
-  if (dual) {
+void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
+  ambient = ambient_of(flow);
+  Net at_sites = ambient;
+  if (dual && straight) {
     const std::vector<Mat3> gradient = flow.gradients(sites);
     for (std::size_t i = 0; i < gradient.size(); ++i) at_sites.row(static_cast<Eigen::Index>(i)).tail<2>() = gradient[i].row(0).tail<2>();
   }
@@ -58,10 +65,12 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
   std::vector<double> flow_at[3], weighted[3];
   single.values(field, flow_at);
   for (auto& component : weighted) component.resize(n);
-  for (std::size_t k = 0; k < n; ++k) weighted[0][k] = single.weights()[k] * flow_at[0][k];
   pressure_of_load = Net::Zero(sites.rows(), 3);
-  pressure_of_load.col(0) = single.moments(weighted[0]) / flow.flow_rate();
-  if (!dual) return;
+  for (int c = 0; c < (straight ? 1 : 3); ++c) {
+    for (std::size_t k = 0; k < n; ++k) weighted[c][k] = single.weights()[k] * flow_at[c][k];
+    pressure_of_load.col(c) = single.moments(weighted[c]) / flow.flow_rate();
+  }
+  if (!dual || !straight) return;
   const double mu = flow.viscosity(), gradient = flow.pressure_gradient(), factor = -1 / flow.flow_rate();
   const auto& normal = dual->normals();
   dual->values(field, flow_at);
@@ -74,6 +83,19 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow) {
   }
   pressure_of_velocity.resize(sites.rows(), 3);
   for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = factor * contrasts.cwiseProduct(dual->moments(weighted[c]));
+}
+
+/// Of a symmetric scene at the fundamental points, and their images.
+Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
+  const surface::Symmetry& symmetry = parameters.symmetry;
+  if (symmetry.order() == 1) return flow.velocities(sites);
+  const std::vector<int>& rows = symmetry.fundamental();
+  Net at(static_cast<Eigen::Index>(rows.size()), 3), all = Net::Zero(sites.rows(), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = sites.row(rows[k]);
+  const Net v = flow.velocities(at);
+  for (std::size_t k = 0; k < rows.size(); ++k) all.row(rows[k]) = v.row(static_cast<Eigen::Index>(k));
+  symmetry.complete(all);
+  return all;
 }
 
 void Tube::Particle::find_nearest(const Net& wall_sites) {
@@ -101,7 +123,7 @@ void Tube::Particle::freeze(Wall& wall) {
                          [&](Targets targets, stokes::Rows<float>& rows) { dual->assemble(wall.sites(), targets, rows); });
   frozen.wall.assemble(own, wall.surface().space.n_points,
                        [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
-  frozen.inlet = inlet, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
+  frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
 }
 
 stokes::Evaluations Tube::Particle::evaluations() const {

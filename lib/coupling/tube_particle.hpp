@@ -51,18 +51,20 @@ struct Tube::Particle {
   double centroid = 0;                                                  ///< where that frame has its origin
   Net sites;                                                            ///< collocation points, in the wall's frame
   Net inlet;                                                            ///< (1/mu) c there
+  Net ambient;                                                          ///< the duct's flow there
   Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
   std::vector<int> nearest;                                             ///< to a collocation point of the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;
-    Net inlet, pressure_of_load, pressure_of_velocity;
+    Net inlet, ambient, pressure_of_load, pressure_of_velocity;
   };
   Frozen frozen;
 
  private:
-  void weigh_pressure(const stokes::DuctFlow& flow);
+  void weigh_pressure(const stokes::DuctFlow& flow, bool straight);
+  Net ambient_of(const stokes::DuctFlow& flow) const;
   void find_nearest(const Net& wall_sites);
 };
 

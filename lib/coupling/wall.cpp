@@ -51,25 +51,55 @@ Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<i
 
 }  // namespace
 
-Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases)
+Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
+           const surface::Symmetry& symmetry)
     : surface_(wall),
+      symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(wall.space.n_points)),
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
       inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
       sites_(collocation_points(wall.space, wall.net)) {
-  const int n = wall.space.n_points;
-  for (int i = n * ranks_.rank() / ranks_.size(); i < n * (ranks_.rank() + 1) / ranks_.size(); ++i) own_.push_back(i);
-  ranks_.own(own_, n);
+  const int n = wall.space.n_points, n_rows = static_cast<int>(symmetry_.fundamental().size());
+  for (int i = n_rows * ranks_.rank() / ranks_.size(); i < n_rows * (ranks_.rank() + 1) / ranks_.size(); ++i)
+    own_.push_back(symmetry_.fundamental()[static_cast<std::size_t>(i)]);
+  if (symmetry_.order() > 1)
+    ranks_.own(own_, symmetry_);
+  else
+    ranks_.own(own_, n);
   if (phases) ranks_.measure(*phases);
   layer_.place(wall.net);
+  if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
 
   stokes::Layer own_layer(stokes::Layer::Kernel::single_layer, surface_.space, surface_.space.collocation, sharper(quadrature));
   own_layer.place(wall.net);
   own_layer.assemble(own_, rows_);
   assembly_ = own_layer.evaluations();
-  factors_ = DenseFactors(everybodys(rows_, own_, n, phases));
+  factors_ = DenseFactors(symmetry_.order() > 1 ? folded() : everybodys(rows_, own_, n, phases));
 
   inlet_column_ = inlet_.integral(sites_);
   pumped_ = solve(inlet_column_);
+}
+
+/// The matrix between the components of fundamental points that are not zero by the symmetry (4.12).
+Eigen::MatrixXd Wall::folded() const {
+  const Net& signs = symmetry_.signs();
+  const std::vector<int>& source = symmetry_.source();
+  Eigen::VectorXi of_component = Eigen::VectorXi::Constant(3 * signs.rows(), -1);
+  int n = 0;
+  for (const int a : symmetry_.fundamental())
+    for (int c = 0; c < 3; ++c)
+      if (signs(a, c) != 0) of_component[3 * a + c] = n++;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t k = 0; k < own_.size(); ++k)
+    for (int c = 0; c < 3; ++c) {
+      const int row = of_component[3 * own_[k] + c];
+      if (row < 0) continue;
+      for (Eigen::Index p = 0; p < signs.rows(); ++p)
+        for (int d = 0; d < 3; ++d)
+          if (signs(p, d) != 0)
+            all(row, of_component[3 * source[static_cast<std::size_t>(p)] + d]) += signs(p, d) * rows_(3 * static_cast<Eigen::Index>(k) + c, 3 * p + d);
+    }
+  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
+  return all;
 }
 
 Net Wall::apply(const Net& f) const {
@@ -81,6 +111,21 @@ Net Wall::apply(const Net& f) const {
 }
 
 Net Wall::solve(const Net& rhs) const {
+  if (symmetry_.order() > 1) {
+    const Net& signs = symmetry_.signs();
+    std::vector<double> right;
+    for (const int a : symmetry_.fundamental())
+      for (int c = 0; c < 3; ++c)
+        if (signs(a, c) != 0) right.push_back(rhs(a, c));
+    const Eigen::VectorXd found = factors_.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), static_cast<Eigen::Index>(right.size())));
+    Net f = Net::Zero(rhs.rows(), 3);
+    Eigen::Index n = 0;
+    for (const int a : symmetry_.fundamental())
+      for (int c = 0; c < 3; ++c)
+        if (signs(a, c) != 0) f(a, c) = found[n++];
+    symmetry_.complete(f);
+    return f;
+  }
   const Eigen::VectorXd f = factors_.solve(flat(rhs));
   return Eigen::Map<const Net>(f.data(), rhs.rows(), 3);
 }

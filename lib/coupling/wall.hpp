@@ -2,6 +2,7 @@
 // What depends on a tube's wall alone, made once a run.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/dense_factors.hpp"
@@ -10,21 +11,27 @@
 #include "quadrature/options.hpp"
 #include "stokes/cap.hpp"
 #include "stokes/layer.hpp"
+#include "surface/closest_points.hpp"
+#include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 
 namespace tanktread::coupling {
 
 /// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
 /// The rows are shared out, the factors are on every rank: 72 bytes a pair of control points each.
+///
+/// With a symmetry, which all that is asked for has, only rows of fundamental points are assembled, and the others' columns added to theirs (4.12).
 class Wall {
  public:
   /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
-  Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr);
+  Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
+       const surface::Symmetry& symmetry = surface::Symmetry());
 
   const surface::TubeWall& surface() const { return surface_; }
-  const std::vector<int>& own() const { return own_; }  ///< rows of this rank
+  const surface::Symmetry& symmetry() const { return symmetry_; }
+  const std::vector<int>& own() const { return own_; }  ///< rows of this rank, among the fundamental ones
   const Net& sites() const { return sites_; }           ///< collocation points
-  const Ranks& ranks() const { return ranks_; }
+  const Ranks& ranks() const { return ranks_; }  ///< of these rows; the others are their images
   stokes::Layer& layer() { return layer_; }  ///< of the wall, at points off it
   const stokes::Cap& inlet() const { return inlet_; }
 
@@ -38,12 +45,19 @@ class Wall {
   Net flow_weights() const;
   Net force_weights() const;
 
+  /// Of the surface of a channel, for distances.
+  const surface::ElementBoxes& boxes() const { return *boxes_; }
+
   stokes::Evaluations evaluations() const;
 
  private:
   Net weights(const std::function<Vec3(const Vec3&)>& field) const;
+  Eigen::MatrixXd folded() const;
 
   surface::TubeWall surface_;
+  surface::Symmetry symmetry_;
+  std::optional<surface::Patches> patches_;
+  std::optional<surface::ElementBoxes> boxes_;
   std::vector<int> own_;
   Ranks ranks_;
   stokes::Layer layer_;

@@ -60,7 +60,7 @@ constexpr std::array<Meaning, 28> synonyms{{
 
 /// By the whole path, by a list, or by the name of the key alone.
 constexpr std::array<Meaning, 10> features{{
-    {"|wall|walls|plane wall|plane|channel|slit|plates|", "plane walls and channels are not there; the one wall is that of a Tube"},
+    {"|wall|walls|plane wall|plane|plates|", "plane walls are not there; walls are those of a Tube or a Channel"},
     {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},
     {"|order|degree|polynomial degree|polynomial order|spline order|spline degree|p|",
      "the degree of the splines cannot be chosen; accuracy is a matter of the mesh, Surface/elements per side"},

@@ -20,6 +20,7 @@ struct TimeOptions {
   std::optional<double> minimum_step;      ///< a controlled step below this ends the run with a failure; empty: 1e-9 of `unit`
   double unit = 1;                         ///< of time, that goes with the scene: one over the rate of its flow; no key of the deck
   std::optional<double> steady_tolerance;  ///< stop when the shape's velocity (6.8) over (rate R_C) falls below it; empty: never
+  std::optional<double> end_when_past;     ///< x1 of a centroid: stop when those of all particles are larger; empty: never
   double iteration_tolerance = 1e-7;       ///< end of the sub-iteration of crank-nicolson (4.1)
   std::string nonlinear_solver = "plain";   ///< of crank-nicolson: plain, anderson, newton-krylov
   std::optional<std::string> step_control;  ///< of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations where plain

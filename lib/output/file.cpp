@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view unfinished = ".part", damaged = ".damaged";
 
 bool is_result(const std::string& name) {
-  return name == "run.h5" || name == "duct.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
+  return name == "run.h5" || name == "duct.h5" || name == "channel.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
          (name.starts_with("snapshot_") && (name.ends_with(".hdf") || name.find(std::string(".hdf").append(damaged)) != name.npos));
 }
 

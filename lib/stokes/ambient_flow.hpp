@@ -55,6 +55,8 @@ class AmbientFlow {
   /// The rate of Ca, units 1/time: that of the options; in a duct the mean velocity over R_T.
   double rate() const { return duct_ ? duct_->mean_velocity() / duct_->radius() : rate_; }
 
+  double amplitude() const { return moment_.amplitude; }  ///< at the time told last
+
   /// The duct, or nothing.
   const std::shared_ptr<const DuctFlow>& duct() const { return duct_; }
 

@@ -28,17 +28,21 @@ std::unique_ptr<DuctProfile> rectangle_profile(const surface::Vec2& sides);
 std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline& outline);
 
 /// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall                  (P-33)
-/// whose mean over the section is given. All queries are independent of x1 but for the pressure p = -G x1.
+/// whose mean over the section is given. All queries are independent of x1 but for the pressure p = -G x1. Where a channel's section changes, what
+/// derives from this has another velocity; the rest is that of its inlet.
 class DuctFlow {
  public:
   DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity);
   DuctFlow(surface::Outline outline, std::shared_ptr<const DuctProfile> profile, double viscosity, double mean_velocity);
+  DuctFlow(const DuctFlow&) = default;
+  DuctFlow& operator=(const DuctFlow&) = default;
+  virtual ~DuctFlow() = default;
 
   Vec3 velocity(const Vec3& x) const;
   Mat3 gradient(const Vec3& x) const;                 ///< L_ij = dv_i/dx_j; only L_12 and L_13 are not zero
-  Net velocities(const Net& x) const;                 ///< a row each; much faster than one by one
+  virtual Net velocities(const Net& x) const;         ///< a row each; much faster than one by one
   Net tractions(const Net& x, const Net& n) const;    ///< f_inf = (-p 1 + 2 mu E) n, p = -G x1: full, of the outer viscosity
-  std::vector<Mat3> gradients(const Net& x) const;
+  virtual std::vector<Mat3> gradients(const Net& x) const;
 
   const surface::Outline& outline() const { return outline_; }
   const DuctProfile& profile() const { return *profile_; }

@@ -25,7 +25,10 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("gravity", gravity, deck::any(), "length/time^2", "acceleration, three numbers, that acts on Particle/density difference");
   if (type == "duct") mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
-              "of the `duct` flow: flow rate over area of the section; 1 if not given");
+              "of the `duct` flow: flow rate over area of the section, in a channel at its inlet; 1 if not given");
+  section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
+              "what of the `duct` flow stays whatever particles do: the `flow rate`, or the `pressure drop` between the ends of the modelled piece, with "
+              "which the empty tube or channel has the mean velocity");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("profile", profile, deck::Choice{"round", "plane"},
               "of the `parabolic` flow: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2), or (1 - x3^2/half width^2); `round` if not given");
@@ -52,6 +55,8 @@ void FlowOptions::check() const {
   belongs("profile", profile.has_value(), "parabolic");
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
+  if (held != "flow rate" && type != "duct")
+    throw UserError("Flow/held `" + held + "` and Flow/type `" + type + "` contradict each other: it belongs to `duct`.");
   const bool own_speed = type == "duct" || type == "parabolic";
   if (own_speed && shear_rate != 1.0)
     throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: give Flow/" + (type == "duct" ? "mean" : "maximum") +

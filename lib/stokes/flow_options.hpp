@@ -23,6 +23,7 @@ struct FlowOptions {
   std::optional<Vec3> velocity;          ///< set for `uniform`
   std::optional<Vec3> gravity;           ///< acceleration, of particles with a density difference
   std::optional<double> mean_velocity;   ///< v_m = Q/(area of the section); set for `duct`
+  std::string held = "flow rate";        ///< of `duct`, whatever particles do to it: flow rate, pressure drop
   std::optional<std::string> profile;      ///< round, plane; set for `parabolic`
   std::optional<double> maximum_velocity;  ///< of `parabolic`, at x2 = x3 = 0, units length/time
   std::optional<double> half_width;        ///< of `parabolic`: where the velocity vanishes, units length

@@ -1,6 +1,8 @@
 #include "surface/options.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <tuple>
 
@@ -182,7 +184,7 @@ double ParticleShape::equivalent_radius() const {
 void TubeOptions::declare(deck::Section& list) {
   list.key(
       "section", section, deck::Choice{"circle", "ellipse", "rectangle", "file"},
-      "cross-section of the tube, in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes`, `rectangle` of `sides`, all about "
+      "cross-section, in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes`, `rectangle` of `sides`, all about "
       "the origin; `file`: any closed `outline`");
   if (section == "circle") radius = 1;
   list.key("radius", radius, deck::positive(), "length", "of the `circle`; 1 if not given");
@@ -192,28 +194,72 @@ void TubeOptions::declare(deck::Section& list) {
            "file of the section `file`, looked for where the program is started and beside the deck: one point a row, x2,x3, "
            "counter-clockwise, the first not repeated; a third column holds the word `corner` where two smooth sides meet. A cubic spline "
            "goes through the points");
-  list.key("length", length, deck::positive(), "length",
-           "of the tube's piece that is modelled; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length "
-           "and 4.6 R_T where that is more");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1", "of the wall, around");
-  list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along");
-  list.key("grading", grading, deck::between(1.0, 20.0), "1",
-           "g: the wall's elements along the tube are denser around the particle, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform");
+  if (channel) {
+    channel->declare(list);
+  } else {
+    list.key("length", length, deck::positive(), "length",
+             "of the tube's piece that is modelled; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length "
+             "and 4.6 R_T where that is more");
+    list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along");
+    list.key("grading", grading, deck::between(1.0, 20.0), "1",
+             "g: the wall's elements along the tube are denser around the particle, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform");
+  }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest gap between particle and wall; a run that comes closer stops with a checkpoint. Integrals keep their accuracy down to "
            "0.02");
   list.key("flow", flow, deck::Choice{"exact", "boundary elements"},
-           "the duct's own flow: `exact`, in closed form or as a series where the section has one; `boundary elements` (P-33, P-34, P-35) "
-           "otherwise, and on demand");
-  list.key("flow elements", flow_elements, deck::between(8, 4000), "1", "boundary elements of the duct's own flow");
+           "the flow of a straight duct of this section: `exact`, in closed form or as a series where it has one; `boundary elements` (P-33, P-34, "
+           "P-35) otherwise, and on demand");
+  list.key("flow elements", flow_elements, deck::between(8, 4000), "1", "boundary elements of that flow");
+}
+
+void ChannelOptions::declare(deck::Section& list) {
+  list.key("profile", profile, deck::Choice{"straight", "constriction", "expansion", "step", "file"},
+           "how the section changes with the way s along the centre line: it is that of `section` times a factor f, `constriction`: "
+           "f = 1 - d (1 + cos(pi s/w))/2 for |s| < w, `expansion`: f = 1 + d (1 + cos(pi s/w))/2, `step`: f = 1 - d for |s| < w with rounded edges, "
+           "f = 1 elsewhere; `file`: f by `points`");
+  if (profile == "constriction") depth = 0.5;
+  list.key("depth", depth, deck::any(), "1", "d of `constriction` (0.5 if not given), `expansion` and `step`, where less than 0 widens");
+  list.key("half length", half_length, deck::positive(), "length", "w of `constriction`, `expansion` and `step`");
+  list.key("corner radius", corner_radius, deck::positive(), "length", "of the rounded edges of a `step`");
+  list.key("directions", directions, deck::Choice{"x2 x3", "x2", "x3"}, "in which f changes the section; in the other one f = 1");
+  list.key("points", points, deck::Choice{},
+           "file of the profile `file`, looked for as `outline`: s,f a row, or s,f2,f3 with factors of their own in x2 and x3; s ascending. A cubic "
+           "spline goes through them, and beyond them the section stays what it is");
+  list.key("bend radius", bend_radius, deck::positive(), "length", "of the centre line's arc; straight if not given");
+  list.key("bend start", bend_start, deck::any(), "length", "s where the arc begins");
+  list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees", "by which it turns, from x1 towards x2");
+  list.key("start", start, deck::any(), "length", "s where the modelled piece begins; if not given 4 R_T before the section or the centre line changes");
+  list.key("end", end, deck::any(), "length", "s where it ends; if not given 4 R_T after the last change");
+  list.key("axial elements", axial_elements, deck::between(8, 1000), "1",
+           "of the wall, along, denser where the channel is narrow, bends or has an edge; if not given as fine as those around");
+}
+
+void ChannelOptions::check() const {
+  const auto belongs = [this](const char* key, bool given, std::initializer_list<const char*> owners) {
+    const bool owned = std::ranges::find(owners, profile) != owners.end();
+    if (given && !owned)
+      throw UserError(std::string("Channel/") + key + " and Channel/profile `" + profile + "` contradict each other: it has none.");
+    if (!given && owned) throw UserError("Channel/profile `" + profile + "` needs Channel/" + key + ".");
+  };
+  belongs("depth", depth.has_value(), {"constriction", "expansion", "step"});
+  belongs("half length", half_length.has_value(), {"constriction", "expansion", "step"});
+  belongs("corner radius", corner_radius.has_value(), {"step"});
+  belongs("points", points.has_value(), {"file"});
+  if (depth && !((profile == "expansion" ? *depth < 20 : *depth < 1) && (profile == "step" ? *depth > -20 && *depth != 0 : *depth > 0)))
+    throw UserError("Channel/depth must be " +
+                    std::string(profile == "expansion" ? "between 0 and 20" : profile == "step" ? "between -20 and 1, and not 0" : "between 0 and 1") +
+                    " for Channel/profile `" + profile + "`, but is " + deck::number_text(*depth) + ".");
 }
 
 void TubeOptions::check() const {
   const auto belongs = [this](const char* key, bool given, const char* owner) {
-    if (given && section != owner)
-      throw UserError(std::string("Tube/") + key + " belongs to Tube/section `" + owner + "`, but Tube/section is `" + section + "`.");
-    if (!given && section == owner) throw UserError(std::string("Tube/section `") + owner + "` needs Tube/" + key + ".");
+    const std::string word = list() + "/section";
+    if (given && section != owner) throw UserError(list() + "/" + key + " belongs to " + word + " `" + owner + "`, but " + word + " is `" + section + "`.");
+    if (!given && section == owner) throw UserError(word + " `" + owner + "` needs " + list() + "/" + key + ".");
   };
+  if (channel) channel->check();
   belongs("radius", radius.has_value(), "circle");
   belongs("semi-axes", semi_axes.has_value(), "ellipse");
   belongs("sides", sides.has_value(), "rectangle");

@@ -95,6 +95,24 @@ struct ParticleShape {
   double circumscribed_radius() const;
 };
 
+/// What makes a channel of a tube: `Channel/*` of the deck beside what it shares with `Tube`. Its section is that of a tube, times factors that
+/// change along a centre line, which begins along x1 and may bend.
+struct ChannelOptions {
+  std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
+  std::optional<double> depth;           ///< d: of the factor, at the middle; not of `straight` and `file`
+  std::optional<double> half_length;     ///< w: from the middle to where the factor is 1
+  std::optional<double> corner_radius;   ///< of the rounded edges of a `step`
+  std::string directions = "x2 x3";      ///< in which the section changes
+  std::optional<std::string> points;     ///< path of the file of factors
+  std::optional<double> bend_radius;     ///< of the centre line's arc; none: straight
+  double bend_start = 0, bend_angle = 90;  ///< where the arc begins, and what it turns by from x1 towards x2, degrees
+  std::optional<double> start, end;      ///< of the modelled piece, along the centre line
+  std::optional<int> axial_elements;     ///< of the wall, along; by its shape if not given
+
+  void declare(deck::Section& list);
+  void check() const;
+};
+
 /// The straight tube along x1 around the particle: `Tube/*` of the deck. Its section is constant, in the plane x2 x3. Keys of other sections
 /// are empty.
 struct TubeOptions {
@@ -115,6 +133,9 @@ struct TubeOptions {
 
   std::string flow = "exact";  ///< of the duct: exact (closed form or series, where the section has one), boundary elements
   int flow_elements = 96;      ///< boundary elements of the duct flow
+
+  std::optional<ChannelOptions> channel;  ///< of the list `Channel`, which these are then the keys of
+  std::string list() const { return channel ? "Channel" : "Tube"; }
 
   void declare(deck::Section& section);
 

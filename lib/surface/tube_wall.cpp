@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -125,14 +126,11 @@ spline::Space product(const Line& along, const Line& around) {
   return space;
 }
 
-}  // namespace
-
-TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
-  const double width = std::max(section.radius(), half_length);
-  const std::vector<double> knots = graded_knots(length, options.axial_elements, options.grading, width);
+/// A wall with everything but its control points; the control points of the outline.
+std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements) {
   Line along, around;
   add(along, knots, false, false);
-  TubeWall wall{{}, {}, section.spline(options.azimuthal_elements), -length / 2, length / 2, 0, 0, 0};
+  TubeWall wall{{}, {}, section.spline(azimuthal_elements), knots.front(), knots.back(), 0, 0, 0, {}};
   std::vector<Vec2> ring;
   for (int k = 0; k < wall.outline.n_sides(); ++k) {
     const CubicCurve& side = std::get<CubicCurve>(wall.outline.side(k));
@@ -142,17 +140,54 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
   }
   wall.space = product(along, around);
   wall.n_along = along.n, wall.n_around = around.n;
-  wall.space.description =
-      formatted("tube, %d x %d cubic elements, %d control points", options.azimuthal_elements, options.axial_elements, wall.space.n_points);
+  wall.space.description = formatted("%d x %d cubic elements, %d control points", azimuthal_elements, static_cast<int>(knots.size()) - 1, wall.space.n_points);
   wall.net.resize(wall.space.n_points, 3);
+  return {std::move(wall), std::move(ring)};
+}
+
+}  // namespace
+
+TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
+  const double width = std::max(section.radius(), half_length);
+  const std::vector<double> knots = graded_knots(length, options.axial_elements, options.grading, width);
+  auto [wall, ring] = woven(section, knots, options.azimuthal_elements);
+  wall.space.description = "tube, " + wall.space.description;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, options.axial_elements))]; };
-  for (int i = 0; i < along.n; ++i) {
+  for (int i = 0; i < wall.n_along; ++i) {
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // the control points of x1 itself
-    for (int k = 0; k < around.n; ++k)
-      wall.net.row(i * around.n + k) << place, ring[k][0], ring[k][1];
+    for (int k = 0; k < wall.n_around; ++k)
+      wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
   }
   const int middle = options.axial_elements / 2;
   wall.widest = std::max(knot(middle + 1) - knot(middle), wall.outline.length() / options.azimuthal_elements);
+  return wall;
+}
+
+TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
+  const std::vector<double> knots = channel->knots(channel->elements());
+  auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements);
+  wall.space.description = "channel, " + wall.space.description;
+  const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // the spline's area is that of the section
+  for (Vec2& point : ring) point *= wider;
+  std::vector<Vec2> centre, across, upward;
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Channel::Section at = channel->at(knots[k]);
+    centre.push_back(at.centre.head<2>());
+    across.push_back(at.factor[0] * at.across.head<2>());
+    upward.emplace_back(at.factor[1], 0);
+    if (k == 0 || at.factor.minCoeff() >= narrowest) continue;
+    narrowest = at.factor.minCoeff();
+    wall.widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * narrowest / azimuthal_elements);
+  }
+  const auto control = [&](const std::vector<Vec2>& points) { return control_points(interpolate_open(knots, points)); };
+  const std::vector<Vec2> c = control(centre), a = control(across), u = control(upward);
+  for (int i = 0; i < wall.n_along; ++i)
+    for (int k = 0; k < wall.n_around; ++k)
+      wall.net.row(i * wall.n_around + k) << (c[i] + ring[k][0] * a[i]).transpose(), ring[k][1] * u[i][0];
+  wall.outline = scaled(channel->outline(channel->start()).spline(azimuthal_elements), Vec2::Constant(wider));
+  wall.start = channel->start(), wall.end = channel->end();
+  wall.channel = std::move(channel);
   return wall;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 // The wall of a tube as a spline surface.
 
+#include <memory>
+
 #include "base/types.hpp"
 #include "spline/space.hpp"
+#include "surface/channel.hpp"
 #include "surface/outline.hpp"
 
 namespace tanktread::surface {
@@ -15,10 +18,11 @@ namespace tanktread::surface {
 struct TubeWall {
   spline::Space space;
   Net net;
-  Outline outline;  ///< of the wall itself: cubic sides
+  Outline outline;  ///< of the wall itself, of a channel at its inlet: cubic sides
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
-  double widest = 0;  ///< the larger side of the largest element at x1 = 0, about
+  double widest = 0;  ///< the larger side of the largest element at x1 = 0, of a channel where it is narrowest, about
+  std::shared_ptr<const Channel> channel;  ///< that this is the wall of; none: a straight tube
 
   double length() const { return end - start; }
   double radius() const { return outline.radius(); }  ///< R_T
@@ -27,6 +31,10 @@ struct TubeWall {
 /// The wall of a section over [-length/2, length/2], with the elements and the grading of the options: density 1 + (g - 1)/(1 + (x1/w)^4), w = R_T
 /// or `half_length` of the particle where that is more.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
+
+/// The wall of a channel: (C, f2 N, f3 e3) interpolated by cubic splines at the channel's knots, times the outline. `start` and `end` count along its
+/// centre line.
+TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements);
 
 /// The length that the options ask for: by default 2 pi R_T, or the particle's length and 4.6 R_T where that is more (the disturbance
 /// decays like exp(-4.5 x1/R_T)).

@@ -1,0 +1,160 @@
+#include "stokes/duct_end.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "quadrature/gauss.hpp"
+#include "stokes/far_kernel.hpp"
+#include "stokes/kernels.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+using surface::Vec2;
+
+constexpr int far_around = 24, far_order = 5, close_order = 7;
+constexpr double far = 1.2;  // in radii of the end: where the far nodes do
+
+Mat3 axes(const surface::Channel::Section& place) {
+  Mat3 axes;
+  axes << place.along, place.across, Vec3::UnitZ();
+  return axes;
+}
+
+}  // namespace
+
+DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward) : flow_(std::move(flow)), place_(place), inward_(inward) {
+  for (const Cell& cell : cells(4 * far_around)) {
+    const surface::PlaneJet at = flow_.outline().at(cell.side, cell.t[0]);
+    const Vec2 arm = at.x - flow_.outline().centroid();
+    if (arm[0] * at.d[1] - arm[1] * at.d[0] <= 0)
+      throw UserError("Channel/outline must be seen from its centroid without hiding itself at the ends of a channel.");
+  }
+  Nodes nodes;
+  for (const Cell& cell : cells(far_around)) add(cell, far_order, nodes);
+  far_ = sources(nodes);
+}
+
+std::vector<DuctEnd::Cell> DuctEnd::cells(int around) const {
+  std::vector<Cell> cells;
+  const auto share = flow_.outline().shares(around);
+  for (int k = 0; k < flow_.outline().n_sides(); ++k) {
+    const std::vector<double> u = flow_.outline().knots(k, share[static_cast<std::size_t>(k)]);
+    for (std::size_t i = 0; i + 1 < u.size(); ++i) cells.push_back({k, {u[i], u[i + 1]}, {0, 1}});
+  }
+  return cells;
+}
+
+Vec2 DuctEnd::ray(const Cell& cell, double t, double r) const {
+  const Vec2 centre = flow_.outline().centroid();
+  return centre + r * (flow_.outline().point(cell.side, t) - centre);
+}
+
+void DuctEnd::add(const Cell& cell, int order, Nodes& nodes) const {
+  const quadrature::GaussRule& rule = quadrature::gauss(order);
+  const Vec2 centre = flow_.outline().centroid();
+  const double dt = cell.t[1] - cell.t[0], dr = cell.r[1] - cell.r[0];
+  for (int i = 0; i < order; ++i) {
+    const surface::PlaneJet at = flow_.outline().at(cell.side, cell.t[0] + rule.nodes[i] * dt);
+    const Vec2 arm = at.x - centre;
+    const double swept = arm[0] * at.d[1] - arm[1] * at.d[0];
+    for (int j = 0; j < order; ++j) {
+      const double r = cell.r[0] + rule.nodes[j] * dr;
+      for (int c = 0; c < 2; ++c) nodes.y[c].push_back(centre[c] + r * arm[c]);
+      nodes.area.push_back(rule.weights[i] * rule.weights[j] * dt * dr * r * swept);
+    }
+  }
+}
+
+/// `at`: height above the plane, and the place in it.
+void DuctEnd::add_graded(const Cell& cell, const Vec3& at, double smallest, Nodes& nodes) const {
+  const Vec2 a = ray(cell, cell.t[0], cell.r[0]), b = ray(cell, cell.t[1], cell.r[0]), c = ray(cell, cell.t[0], cell.r[1]),
+             d = ray(cell, cell.t[1], cell.r[1]), middle = ray(cell, (cell.t[0] + cell.t[1]) / 2, (cell.r[0] + cell.r[1]) / 2);
+  const double around = (d - c).norm(), outward = (c - a).norm(), size = std::max(around, outward);
+  const double reach = std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm(), (d - middle).norm()});
+  const double distance = std::hypot(at[0], std::max(0., (at.tail<2>() - middle).norm() - reach));
+  if (distance > size || size < smallest) return add(cell, close_order, nodes);
+  const bool halve_around = around > outward;
+  for (const int k : {0, 1}) {
+    Cell half = cell;
+    double(&range)[2] = halve_around ? half.t : half.r;
+    const double whole[2] = {range[0], range[1]};
+    range[1 - k] = (whole[0] + whole[1]) / 2;
+    add_graded(half, at, smallest, nodes);
+  }
+}
+
+DuctEnd::Sources DuctEnd::sources(const Nodes& nodes) const {
+  const auto n = static_cast<Eigen::Index>(nodes.area.size());
+  Net section = Net::Zero(n, 3);
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (int c = 0; c < 2; ++c) section(k, c + 1) = nodes.y[c][static_cast<std::size_t>(k)];
+  const Net u = flow_.velocities(section);
+  const std::vector<Mat3> slope = flow_.gradients(section);
+  const Mat3 turn = axes(place_);
+  Sources all;
+  for (auto* values : {&all.x, &all.force, &all.velocity, &all.normal})
+    for (std::vector<double>& component : *values) component.resize(static_cast<std::size_t>(n));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
+    const double weight = over_8_pi * nodes.area[k];
+    const Vec3 x = place_.centre + turn * section.row(static_cast<Eigen::Index>(k)).transpose();
+    const Vec3 force = turn * (-inward_ * weight * Vec3(0, slope[k](0, 1), slope[k](0, 2)));
+    for (int c = 0; c < 3; ++c) {
+      all.x[c][k] = x[c], all.force[c][k] = force[c];
+      all.velocity[c][k] = u(static_cast<Eigen::Index>(k), 0) * place_.along[c];
+      all.normal[c][k] = inward_ * weight * place_.along[c];
+    }
+  }
+  return all;
+}
+
+Net DuctEnd::velocities(const Net& x) const {
+  const auto forces = [](const Sources& s) {
+    return PointForces{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.force[0].data(), s.force[1].data(), s.force[2].data()};
+  };
+  const auto stresslets = [](const Sources& s) {
+    return Stresslets{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.velocity[0].data(), s.velocity[1].data(),
+                      s.velocity[2].data(), s.normal[0].data(), s.normal[1].data(), s.normal[2].data()};
+  };
+  const Mat3 turn = axes(place_);
+  const double radius = flow_.radius();
+  Net u = Net::Zero(x.rows(), 3);
+  std::vector<Vec3> at;
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Vec3 target = x.row(i).transpose(), local = turn.transpose() * (target - place_.centre);
+    if (std::abs(local[0]) > far * radius) {
+      at.push_back(target), rows.push_back(i);
+      continue;
+    }
+    Nodes nodes;
+    for (const Cell& cell : cells(far_around)) add_graded(cell, local, 1e-7 * radius, nodes);
+    const Sources close = sources(nodes);
+    double by_forces[3], by_stresslets[3];
+    const double none[3] = {};
+    node_sum(forces(close), target.data(), by_forces);
+    node_sum(stresslets(close), target.data(), none, by_stresslets);
+    for (int c = 0; c < 3; ++c) u(i, c) = by_forces[c] + by_stresslets[c];
+  }
+  std::vector<double> one(3 * at.size()), other(3 * at.size());
+  const std::vector<Vec3> none(at.size(), Vec3::Zero());
+  far_sums(forces(far_), at, one.data());
+  far_sums(stresslets(far_), at, none, other.data());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t c = 0; c < 3; ++c) u(rows[k], static_cast<Eigen::Index>(c)) = one[3 * k + c] + other[3 * k + c];
+  return u;
+}
+
+DuctEnd::Points DuctEnd::points() const {
+  Nodes nodes;
+  for (const Cell& cell : cells(far_around)) add(cell, close_order, nodes);
+  const auto n = static_cast<Eigen::Index>(nodes.area.size());
+  Points points{Net(n, 3), Eigen::Map<const Eigen::VectorXd>(nodes.area.data(), n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    points.x.row(k) = (place_.centre + axes(place_) * Vec3(0, nodes.y[0][i], nodes.y[1][i])).transpose();
+  }
+  return points;
+}
+
+}  // namespace tanktread::stokes

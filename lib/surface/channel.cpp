@@ -1,0 +1,282 @@
+#include "surface/channel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/csv.hpp"
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int n_samples = 4000;
+constexpr double straight_end = 1.7;  // in R_T: what is neglected there is 1e-5 after it
+
+}  // namespace
+
+Outline scaled(const Outline& outline, const Vec2& factor) {
+  std::vector<PlaneCurve> sides;
+  for (int k = 0; k < outline.n_sides(); ++k) {
+    PlaneCurve side = outline.side(k);
+    if (auto* ellipse = std::get_if<Ellipse>(&side)) {
+      ellipse->centre = ellipse->centre.cwiseProduct(factor);
+      ellipse->semi_axes = ellipse->semi_axes.cwiseProduct(factor);
+    } else {
+      for (auto& piece : std::get<CubicCurve>(side).bezier)
+        for (Vec2& point : piece) point = point.cwiseProduct(factor);
+    }
+    sides.push_back(std::move(side));
+  }
+  return Outline(std::move(sides), "Channel/section");
+}
+
+Channel::Channel(const TubeOptions& options)
+    : options_(options), own_(options.channel.value()), outline_(surface::outline(options)) {
+  const auto [low, high] = outline_.box();
+  for (int d = 0; d < 2; ++d) half_[d] = (high[d] - low[d]) / 2;
+  height_ = own_.directions == "x2" ? half_[0] : own_.directions == "x3" ? half_[1] : outline_.radius();
+  if (own_.points) read_points();
+  find_ends();
+  check();
+}
+
+/// Rows s,f or s,f2,f3.
+void Channel::read_points() {
+  const std::string name = "Channel/points \"" + deck::shortened(*own_.points, 80) + "\"";
+  std::vector<double> s;
+  std::vector<Vec2> factor;
+  for (const CsvRow& row : csv_rows(text_of_file(*own_.points, name, 10'000'000), "s")) {
+    const std::string here = name + ", line " + std::to_string(row.line) + ": ";
+    if (row.fields.size() < 2 || row.fields.size() > 3)
+      throw UserError(here + formatted("a row is s,f or s,f2,f3, but this one holds %d entries.", static_cast<int>(row.fields.size())));
+    const double at = csv_number(row.fields[0], here), f = csv_number(row.fields[1], here);
+    if (!s.empty() && at <= s.back()) throw UserError(here + formatted("s must ascend, but %g comes after %g.", at, s.back()));
+    s.push_back(at);
+    factor.emplace_back(f, row.fields.size() == 3 ? csv_number(row.fields[2], here) : f);
+    if (own_.directions == "x2") factor.back()[1] = 1;
+    if (own_.directions == "x3") factor.back()[0] = 1;
+  }
+  if (s.size() < 2) throw UserError(name + " must hold at least two rows.");
+  factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
+}
+
+/// How much longer the line of the wall is than the way along, on each side of the middle.
+double Channel::jump() const {
+  if (own_.profile != "step") return 0;
+  return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;
+}
+
+void Channel::find_ends() {
+  const double radius = outline_.radius();
+  bool changes = false;
+  const auto take = [&](double low, double high) {
+    first_ = changes ? std::min(first_, low) : low, last_ = changes ? std::max(last_, high) : high;
+    changes = true;
+  };
+  if (factors_) take(factors_->breaks.front(), factors_->breaks.back());
+  if (own_.half_length) take(-*own_.half_length - own_.corner_radius.value_or(0), *own_.half_length + own_.corner_radius.value_or(0));
+  if (own_.bend_radius) take(own_.bend_start, own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180);
+  start_ = own_.start.value_or(first_ - 4 * radius), end_ = own_.end.value_or(last_ + 4 * radius);
+}
+
+void Channel::check() {
+  const double radius = outline_.radius();
+  if (own_.profile == "step") {
+    const double rise = std::abs(*own_.depth) * height_, edge = *own_.corner_radius, most = std::min(rise / 2, *own_.half_length);
+    if (edge > most)
+      throw UserError(formatted("Channel/corner radius must be at most %.4g for a step of height %.4g and half length %.4g, but is %.4g.", most, rise,
+                                *own_.half_length, edge));
+  }
+  const double before = start_ + straight_end * outline(start_).radius(), after = end_ - straight_end * outline(end_).radius();
+  if (before > first_ || after < last_ || start_ >= end_)
+    throw UserError(formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
+                              "but the modelled piece goes from %.4g to %.4g.",
+                              straight_end * radius, first_, last_, start_, end_));
+  double widest = 0;
+  for (int k = 0; k <= n_samples; ++k) {
+    const double s = start_ + (end_ - start_) * k / n_samples;
+    const Vec2 factor = section(s).factor;
+    for (int d = 0; d < 2; ++d) {
+      const double width = half_[d] * factor[d];
+      if (!(width > 0.01 * radius))
+        throw UserError(formatted("The channel is closed at s = %.4g: half its width along x%d is %.3g, and must be more than 0.01 R_T = %.3g.", s,
+                                  d + 2, width, 0.01 * radius));
+      smallest_ = k + d == 0 ? width : std::min(smallest_, width);
+      if (d == 0) widest = std::max(widest, width);
+    }
+  }
+  if (own_.bend_radius && *own_.bend_radius <= 1.05 * widest)
+    throw UserError(formatted("Channel/bend radius must be more than half the channel's width, %.4g, and 5 %% of it, or its sections cross, but is %.4g.",
+                              widest, *own_.bend_radius));
+}
+
+/// By the line of a step's wall, u its length: straight, an edge rounded one way, straight across, an edge rounded the other way, straight.
+Channel::Place Channel::step(double u) const {
+  const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
+  const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;
+  double a = std::abs(u) - (w - edge), s = std::abs(u), h = inner;
+  if (a > 0 && a < arc) {
+    s = w - edge + edge * std::sin(a / edge), h = inner + up * edge * (1 - std::cos(a / edge));
+  } else if (a >= arc && a < arc + across) {
+    s = w, h = inner + up * (edge + a - arc);
+  } else if (a >= arc + across) {
+    a -= arc + across;
+    const double t = std::min(a / edge, pi / 2);
+    s = w + edge * (1 - std::cos(t)) + std::max(a - arc, 0.), h = height_ - up * edge * (1 - std::sin(t));
+  }
+  return {std::copysign(s, u), Vec2::Constant(h / height_)};
+}
+
+Channel::Place Channel::place(double u) const {
+  Place at{u, Vec2::Ones()};
+  if (factors_) {
+    const double inside = std::clamp(u, factors_->breaks.front(), factors_->breaks.back());
+    at.factor = jet(*factors_, inside).x;
+  } else if (own_.profile == "step") {
+    at = step(u);
+  } else if (own_.half_length && std::abs(u) < *own_.half_length) {
+    const double bump = *own_.depth * (1 + std::cos(pi * u / *own_.half_length)) / 2;
+    at.factor.setConstant(own_.profile == "expansion" ? 1 + bump : 1 - bump);
+  }
+  if (own_.directions == "x2") at.factor[1] = 1;
+  if (own_.directions == "x3") at.factor[0] = 1;
+  return at;
+}
+
+double Channel::parameter(double s) const {
+  if (own_.profile != "step") return s;
+  double low = std::min(s, -std::abs(s) - jump()), high = -low;
+  for (int k = 0; k < 60; ++k) (place((low + high) / 2).s < s ? low : high) = (low + high) / 2;
+  return (low + high) / 2;
+}
+
+Channel::Section Channel::section_of(const Place& at) const {
+  const double begin = own_.bend_start;
+  if (!own_.bend_radius || at.s <= begin) return {Vec3(at.s, 0, 0), Vec3::UnitX(), Vec3::UnitY(), at.factor};
+  const double r = *own_.bend_radius, all = own_.bend_angle * pi / 180, angle = std::min((at.s - begin) / r, all), rest = at.s - begin - r * angle;
+  const Vec3 along(std::cos(angle), std::sin(angle), 0), across(-along[1], along[0], 0);
+  return {Vec3(begin, r, 0) - r * across + rest * along, along, across, at.factor};
+}
+
+Channel::Section Channel::at(double u) const { return section_of(place(u)); }
+Channel::Section Channel::section(double s) const { return at(parameter(s)); }
+
+Vec3 Channel::coordinates(const Vec3& x) const {
+  double s = x[0], y = x[1];
+  if (own_.bend_radius && (s > own_.bend_start || y > *own_.bend_radius)) {
+    const double begin = own_.bend_start, r = *own_.bend_radius, all = own_.bend_angle * pi / 180;
+    const double angle = std::atan2(s - begin, r - y);
+    if (angle >= 0 && angle <= all) {
+      y = r - std::hypot(s - begin, r - y);
+      s = begin + r * angle;
+    } else {
+      const Section after = section(begin + r * all);
+      y = (x - after.centre).dot(after.across);
+      s = begin + r * all + (x - after.centre).dot(after.along);
+    }
+  }
+  const Vec2 factor = place(parameter(s)).factor;
+  return {s, y / factor[0], x[2] / factor[1]};
+}
+
+bool Channel::inside(const Vec3& x) const {
+  const Vec3 at = coordinates(x);
+  return at[0] > start_ && at[0] < end_ && outline_.inside(at.tail<2>());
+}
+
+Outline Channel::outline(double s) const { return scaled(outline_, section(s).factor); }
+
+TubeOptions Channel::tube(double s) const {
+  TubeOptions tube = options_;
+  tube.channel.reset();
+  const Vec2 factor = section(s).factor;
+  if (tube.section == "circle" && factor[0] != factor[1]) {
+    tube.section = "ellipse";
+    tube.semi_axes = *tube.radius * factor;
+    tube.radius.reset();
+  } else if (tube.radius) {
+    *tube.radius *= factor[0];
+  } else if (tube.semi_axes) {
+    tube.semi_axes = tube.semi_axes->cwiseProduct(factor);
+  } else if (tube.sides) {
+    tube.sides = tube.sides->cwiseProduct(factor);
+  }
+  return tube;
+}
+
+/// Values of u, evenly.
+std::vector<double> Channel::lines() const {
+  const double low = parameter(start_), high = parameter(end_);
+  std::vector<double> u;
+  for (int k = 0; k <= n_samples; ++k) u.push_back(low + (high - low) * k / n_samples);
+  return u;
+}
+
+/// Values of u at which the curvature of wall or centre line jumps, which splines follow to second order only.
+std::vector<double> Channel::kinks() const {
+  std::vector<double> u;
+  if (own_.profile == "constriction" || own_.profile == "expansion") u = {-*own_.half_length, *own_.half_length};
+  if (own_.profile == "step") {
+    const double first = *own_.half_length - *own_.corner_radius, arc = pi / 2 * *own_.corner_radius;
+    const double across = std::abs(*own_.depth) * height_ - 2 * *own_.corner_radius;
+    for (const double v : {first, first + arc, first + arc + across, first + 2 * arc + across}) u.push_back(-v), u.push_back(v);
+  }
+  if (own_.bend_radius) u.push_back(parameter(own_.bend_start)), u.push_back(parameter(own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180));
+  return u;
+}
+
+/// How long elements should be at each u: three quarters of how wide they are there, shorter where the wall bends, a quarter of that where its curvature jumps, two and a half times as long in the straight ends;
+/// never longer by more than 0.3 of the way to where they are to be short.
+std::vector<double> Channel::sizes(const std::vector<double>& u) const {
+  const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
+  const bool changes = last_ > first_;
+  std::vector<double> size;
+  std::vector<Place> at;
+  for (const double v : u) at.push_back(place(v));
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    double h = 0.75 * outline_.length() / options_.azimuthal_elements * at[k].factor.minCoeff();
+    const Place &before = at[k == 0 ? 0 : k - 1], &after = at[std::min(k + 1, u.size() - 1)];
+    const Vec2 in(at[k].s - before.s, height_ * (at[k].factor - before.factor).cwiseAbs().maxCoeff());
+    const Vec2 out(after.s - at[k].s, height_ * (after.factor - at[k].factor).cwiseAbs().maxCoeff());
+    const double turn = std::abs(std::atan2(in[0] * out[1] - in[1] * out[0], in.dot(out)));
+    if (k > 0 && k + 1 < u.size() && turn > 0) h = std::min(h, 0.35 * finer * out.norm() / turn);
+    if (own_.bend_radius) h = std::min(h, 0.35 * finer * (*own_.bend_radius - half_[0] * at[k].factor[0]));
+    if (changes && (at[k].s < first_ - 2.5 * radius || at[k].s > last_ + 2.5 * radius)) h *= 2.5;
+    size.push_back(h);
+  }
+  for (const double kink : kinks())
+    if (const double k = std::round((kink - u[0]) / step); k >= 0 && k < static_cast<double>(size.size())) size[static_cast<std::size_t>(k)] *= 0.25;
+  for (std::size_t k = 1; k < u.size(); ++k) size[k] = std::min(size[k], size[k - 1] + 0.3 * step);
+  for (std::size_t k = u.size() - 1; k > 0; --k) size[k - 1] = std::min(size[k - 1], size[k] + 0.3 * step);
+  return size;
+}
+
+int Channel::elements() const {
+  if (own_.axial_elements) return *own_.axial_elements;
+  const std::vector<double> u = lines(), size = sizes(u);
+  double count = 0;
+  for (std::size_t k = 1; k < u.size(); ++k) count += (u[k] - u[k - 1]) * (1 / size[k] + 1 / size[k - 1]) / 2;
+  return std::max(8, static_cast<int>(std::ceil(count)));
+}
+
+std::vector<double> Channel::knots(int elements) const {
+  const std::vector<double> u = lines(), size = sizes(u);
+  std::vector<double> count{0};
+  for (std::size_t k = 1; k < u.size(); ++k) count.push_back(count.back() + (u[k] - u[k - 1]) * (1 / size[k] + 1 / size[k - 1]) / 2);
+  std::vector<double> knots{u.front()};
+  for (int i = 1; i < elements; ++i) {
+    const double wanted = count.back() * i / elements;
+    const auto k = static_cast<std::size_t>(std::ranges::lower_bound(count, wanted) - count.begin());
+    knots.push_back(u[k - 1] + (u[k] - u[k - 1]) * (wanted - count[k - 1]) / (count[k] - count[k - 1]));
+  }
+  knots.push_back(u.back());
+  return knots;
+}
+
+}  // namespace tanktread::surface

@@ -1,0 +1,121 @@
+// Channels: sections along a centre line, straight or bent, and the wall through them.
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "surface/geometry.hpp"
+#include "surface/tube_wall.hpp"
+
+namespace tanktread::surface {
+namespace {
+
+using std::numbers::pi;
+
+TubeOptions constriction() {
+  TubeOptions o;
+  o.radius = 1;
+  o.azimuthal_elements = 12;
+  o.channel.emplace();
+  o.channel->depth = 0.5, o.channel->half_length = 2;
+  return o;
+}
+
+TubeOptions step() {
+  TubeOptions o = constriction();
+  o.section = "rectangle", o.radius.reset(), o.sides = Eigen::Vector2d(4, 4);
+  o.channel->profile = "step", o.channel->directions = "x3", o.channel->half_length = 1, o.channel->corner_radius = 0.2;
+  return o;
+}
+
+TubeOptions bend() {
+  TubeOptions o = constriction();
+  o.channel->bend_radius = 3, o.channel->bend_start = 1, o.channel->bend_angle = 90;
+  return o;
+}
+
+TEST(Channel, NarrowsAsItsProfileSays) {
+  const Channel round(constriction());
+  for (const double s : {-3., -1.7, 0., 0.4, 2.})
+    EXPECT_NEAR(round.section(s).factor[0], std::abs(s) < 2 ? 1 - (1 + std::cos(pi * s / 2)) / 4 : 1, 1e-14);
+  const Channel slit(step());
+  EXPECT_NEAR(slit.section(0).factor[1], 0.5, 1e-14);
+  EXPECT_NEAR(slit.section(0).factor[0], 1, 1e-14);
+  EXPECT_NEAR(slit.section(-0.9).factor[1], (1 + 0.2 - std::sqrt(0.04 - 0.01)) / 2, 1e-9);   // the edge's arc
+  EXPECT_NEAR(slit.section(1.1).factor[1], (2 - 0.2 + std::sqrt(0.04 - 0.01)) / 2, 1e-9);
+  EXPECT_NEAR(slit.smallest_radius(), 1, 1e-12);
+}
+
+TEST(Channel, KnowsWhereAPlaceIs) {
+  for (const TubeOptions& options : {constriction(), step(), bend()}) {
+    const Channel channel(options);
+    for (const double s : {-3., -0.5, 0.3, 1.5, 4., 7.})
+      for (const Vec2& y : {Vec2(0.3, -0.2), Vec2(-0.5, 0.6)}) {
+        const Channel::Section at = channel.section(s);
+        const Vec3 x = at.centre + at.factor[0] * y[0] * at.across + at.factor[1] * y[1] * Vec3::UnitZ();
+        EXPECT_LT((channel.coordinates(x) - Vec3(s, y[0], y[1])).norm(), 1e-9) << s;
+      }
+    EXPECT_FALSE(channel.inside(Vec3(-3, 0, 2.5)));
+    EXPECT_FALSE(channel.inside(Vec3(channel.start() - 0.1, 0, 0)));
+    EXPECT_TRUE(channel.inside(Vec3(-3, 0.3, 0.6)));
+  }
+}
+
+TEST(Channel, HasAWallThroughItsSections) {
+  double before = 0;
+  for (const int m : {12, 24}) {
+    TubeOptions options = constriction();
+    options.azimuthal_elements = m;
+    const auto channel = std::make_shared<const Channel>(options);
+    const TubeWall wall = channel_wall(channel, m);
+    double error = 0;
+    for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e) {
+      const Point p = point(wall.space, wall.net, {e, 0.3, 0.6});
+      EXPECT_LT(p.n.dot(Vec3(0, p.x[1], p.x[2])), 0);  // into the fluid
+      const double off = std::abs(p.x.tail<2>().norm() - channel->section(p.x[0]).factor[0]);
+      if (std::abs(p.x[0]) < 1.2) error = std::max(error, off);
+      EXPECT_LT(off, 0.06 / (m * m));  // beside the jumps of the curvature at |s| = 2
+    }
+    if (before > 0) {
+      EXPECT_GT(std::log2(before / error), 3.3);
+    }
+    before = error;
+  }
+  EXPECT_LT(before, 1e-4);
+}
+
+TEST(Channel, HasAWallThatBends) {
+  const auto channel = std::make_shared<const Channel>(bend());
+  const TubeWall wall = channel_wall(channel, 24);
+  for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e) {
+    const Vec3 at = channel->coordinates(value(wall.space, wall.net, {e, 0.4, 0.3}));
+    EXPECT_NEAR(at.tail<2>().norm(), 1, 1e-3);
+  }
+}
+
+void refused(const TubeOptions& options, const std::string& words) {
+  try {
+    Channel channel(options);
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+TEST(Channel, IsRefusedWhereItIsNone) {
+  TubeOptions closed = constriction(), short_end = constriction(), tight = bend(), round = step();
+  closed.channel->depth = 0.999;
+  refused(closed, "The channel is closed at s");
+  short_end.channel->start = -3;
+  refused(short_end, "1.7 R_T");
+  tight.channel->bend_radius = 1.01;
+  refused(tight, "Channel/bend radius");
+  round.channel->corner_radius = 0.7;
+  refused(round, "Channel/corner radius");
+}
+
+}  // namespace
+}  // namespace tanktread::surface
