@@ -81,7 +81,8 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
           {"wall_shear_stress", "force/length^2", "size of the tangential traction of the empty channel there", wall.shear, {wall.s.size()}},
           {"wall_pressure", "force/length^2", "of the empty channel there, 0 at the outlet", wall.pressure, {wall.s.size()}},
           {"pressure_drop", "force/length^2", "between the ends of the empty channel", {flow.pressure_drop()}, {}},
-          {"extra_pressure_drop", "force/length^2", "the same over that of a straight tube of the inlet's section and as long", {flow.extra_pressure_drop()}, {}}};
+          {"extra_pressure_drop", "force/length^2", "the same over that of a straight tube of the inlet's section and as long",
+           {flow.extra_pressure_drop()}, {}}};
 }
 
 }  // namespace tanktread

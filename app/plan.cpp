@@ -45,7 +45,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
     return;
   }
   const surface::TubeWall& wall = *body.wall;
-  const double unknowns = 3.0 * wall.space.n_points;
+  const double unknowns = 3.0 * wall.space.n_points / (wall.channel ? body.symmetry.order() : 1);
   std::string flow = "quiescent fluid";
   if (scene.flow.type == "duct")
     flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
@@ -111,7 +111,7 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
 
 std::string symmetry_line(const Scene& scene, const Body& body) {
   if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
-  if (body.symmetry.order() == 1) return body.wall ? "none looked for in a tube" : "none found";
+  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "none looked for in a tube" : "none found";
   const int evaluated = static_cast<int>(body.symmetry.fundamental().size());
   return body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less; whatever would break it is left out "
                                                  "(Symmetry/use)",

@@ -65,7 +65,9 @@ enum Owner : unsigned {
 };
 
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
-enum class Needs { nothing, tube, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure };
+enum class Needs {
+  nothing, tube, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure
+};
 
 /// A column of `/series` and its value.
 struct Series {

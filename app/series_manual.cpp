@@ -60,7 +60,9 @@ std::string owners(const Series& one) {
   std::string list;
   for (const auto& [owner, text] : all)
     if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);
-  return list + (one.needs == Needs::tube ? "; in a tube" : one.needs == Needs::channel ? "; in a channel" : one.needs == Needs::held_pressure ? "; where the pressure drop is held" : "");
+  if (one.needs == Needs::tube) return list + "; in a tube";
+  if (one.needs == Needs::channel) return list + "; in a channel";
+  return list + (one.needs == Needs::held_pressure ? "; where the pressure drop is held" : "");
 }
 
 std::string line(std::string_view name, std::string_view unit, std::string_view of, std::string description) {

@@ -23,20 +23,21 @@ void check_fits_channel(const Scene& scene, const Body& body, const surface::Tub
       for (const Vec3& x : line) {
         const Vec3 at = channel.coordinates(x);
         if (!channel.outline().inside(at.tail<2>()))
-          throw UserError(formatted("The particle does not fit into the channel: at [%.4g, %.4g, %.4g] it is in the wall; R_C = %.4g, half the channel's "
-                                    "width is %.4g where it is narrowest.",
+          throw UserError(formatted("The particle does not fit into the channel: at [%.4g, %.4g, %.4g] it is in the wall; R_C = %.4g, half the "
+                                    "channel's width is %.4g where it is narrowest.",
                                     x[0], x[1], x[2], body.radius, channel.smallest_radius()));
         first = std::min(first, at[0]), last = std::max(last, at[0]);
       }
   const double margin = 1.7 * wall.radius();
   if (first < channel.start() + margin || last > channel.end() - margin)
-    throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to Channel/start "
-                              "= %.4g and Channel/end = %.4g.",
+    throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to "
+                              "Channel/start = %.4g and Channel/end = %.4g.",
                               first, last, margin, channel.start(), channel.end()));
-  const double gap = surface::closest_points(surface::ElementBoxes(particle), surface::ElementBoxes(around), 1e-6 * wall.radius(), wall.radius()).gap;
+  const surface::ElementBoxes its(particle), walls(around);
+  const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), wall.radius()).gap;
   if (const double least = scene.tube.contact_gap * body.radius; gap < least)
-    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.", gap,
-                              scene.tube.contact_gap, least));
+    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
+                              gap, scene.tube.contact_gap, least));
 }
 
 void check_fits(const Scene& scene, const Body& body) {

@@ -19,7 +19,7 @@ namespace tanktread::coupling {
 ///
 ///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a section      (2.30)
 ///
-/// f the traction on the wall, dp the pressure drop between the ends, c (1/mu) of the inlet's integral (2.13), P those of (2.29). The wall is factored
+/// f the traction on the wall, dp the pressure drop between the ends, c (1/mu) of the inlet's integral (2.13), P those of (2.29). The wall is made
 /// when a velocity is first asked for, by every rank; Tube uses the same factors. What DuctFlow says beside velocities is said of the inlet.
 class ChannelFlow : public stokes::DuctFlow {
  public:

@@ -45,7 +45,7 @@ struct TubeParameters {
 /// particle's centroid. So what depends on the wall alone is assembled and factored once. Points of the particle are true ones everywhere; nets of
 /// the wall are in the wall's frame. Nets are replicated; calls are collective but for queries.
 ///
-/// Where the pressure drop dp_0 of the duct's flow is held, not its flow rate, the answer is less by dp/dp_0 of that flow, and dp is what the particle
+/// Where the pressure drop dp_0 of the duct's flow is held, not its flow rate, the answer is less by dp/dp_0 of that flow; dp is what the particle
 /// adds to the empty tube of the flow rate that is left, Q (1 - dp/dp_0).
 ///
 /// The wall of a channel stays where it is, v_inf is that of ChannelFlow, and what v does to dp follows from the flow rate of the disturbance (2.14),

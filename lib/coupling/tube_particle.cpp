@@ -50,8 +50,8 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
   weigh_pressure(flow, !wall.surface().channel);
 }
 
-/// The weights of (2.7) over Q, with v_inf and, in a straight tube, its gradient interpolated at the collocation points: v_1, v_1,2 and v_1,3 make the
-/// three columns.
+/// The weights of (2.7) over Q, with v_inf and, in a straight tube, its gradient interpolated at the collocation points: v_1, v_1,2 and
+/// v_1,3 make the three columns.
 ///   f_inf.v = G x1 n.v + mu [v_1,2 (n_2 v_1 + n_1 v_2) + v_1,3 (n_3 v_1 + n_1 v_3)]
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);

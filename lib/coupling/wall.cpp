@@ -93,10 +93,10 @@ Eigen::MatrixXd Wall::folded() const {
     for (int c = 0; c < 3; ++c) {
       const int row = of_component[3 * own_[k] + c];
       if (row < 0) continue;
+      const auto entries = rows_.row(3 * static_cast<Eigen::Index>(k) + c);
       for (Eigen::Index p = 0; p < signs.rows(); ++p)
         for (int d = 0; d < 3; ++d)
-          if (signs(p, d) != 0)
-            all(row, of_component[3 * source[static_cast<std::size_t>(p)] + d]) += signs(p, d) * rows_(3 * static_cast<Eigen::Index>(k) + c, 3 * p + d);
+          if (signs(p, d) != 0) all(row, of_component[3 * source[static_cast<std::size_t>(p)] + d]) += signs(p, d) * entries[3 * p + d];
     }
   ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
   return all;

@@ -26,8 +26,8 @@ void TimeOptions::declare(deck::Section& section) {
               "the run ends when the series `shape_velocity` (6.8) falls below it; if not given, only at the final time. Where the "
               "membrane treads, 2e-4 is reached at the default tolerance, with 216 elements as with 864");
   section.key("end when past", end_when_past, deck::any(), "length",
-              "the run ends when the centroids of all particles are past this x1, in a bent channel this way along its centre line; if not given, only "
-              "at the final time");
+              "the run ends when the centroids of all particles are past this x1, in a bent channel this way along its centre line; if not given, "
+              "only at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1", "end of the sub-iteration of `crank-nicolson` (4.1)");
   section.key("nonlinear solver", nonlinear_solver, deck::Choice{"plain", "anderson", "newton-krylov"},
               "`crank-nicolson`: sub-iteration as it is, accelerated by NOX, or Newton's method by NOX with nothing assembled");

@@ -110,7 +110,8 @@ DuctEnd::Sources DuctEnd::sources(const Nodes& nodes) const {
 
 Net DuctEnd::velocities(const Net& x) const {
   const auto forces = [](const Sources& s) {
-    return PointForces{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.force[0].data(), s.force[1].data(), s.force[2].data()};
+    return PointForces{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.force[0].data(), s.force[1].data(),
+                       s.force[2].data()};
   };
   const auto stresslets = [](const Sources& s) {
     return Stresslets{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.velocity[0].data(), s.velocity[1].data(),

@@ -27,8 +27,8 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
               "of the `duct` flow: flow rate over area of the section, in a channel at its inlet; 1 if not given");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
-              "what of the `duct` flow stays whatever particles do: the `flow rate`, or the `pressure drop` between the ends of the modelled piece, with "
-              "which the empty tube or channel has the mean velocity");
+              "what of the `duct` flow stays whatever particles do: the `flow rate`, or the `pressure drop` between the ends of the modelled piece, "
+              "with which the empty tube or channel has the mean velocity");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("profile", profile, deck::Choice{"round", "plane"},
               "of the `parabolic` flow: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2), or (1 - x3^2/half width^2); `round` if not given");

@@ -112,7 +112,8 @@ void Channel::check() {
     }
   }
   if (own_.bend_radius && *own_.bend_radius <= 1.05 * widest)
-    throw UserError(formatted("Channel/bend radius must be more than half the channel's width, %.4g, and 5 %% of it, or its sections cross, but is %.4g.",
+    throw UserError(formatted("Channel/bend radius must be more than half the channel's width, %.4g, and 5 %% of it, or its sections cross, but is "
+                              "%.4g.",
                               widest, *own_.bend_radius));
 }
 
@@ -227,12 +228,14 @@ std::vector<double> Channel::kinks() const {
     const double across = std::abs(*own_.depth) * height_ - 2 * *own_.corner_radius;
     for (const double v : {first, first + arc, first + arc + across, first + 2 * arc + across}) u.push_back(-v), u.push_back(v);
   }
-  if (own_.bend_radius) u.push_back(parameter(own_.bend_start)), u.push_back(parameter(own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180));
+  if (!own_.bend_radius) return u;
+  u.push_back(parameter(own_.bend_start));
+  u.push_back(parameter(own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180));
   return u;
 }
 
-/// How long elements should be at each u: three quarters of how wide they are there, shorter where the wall bends, a quarter of that where its curvature jumps, two and a half times as long in the straight ends;
-/// never longer by more than 0.3 of the way to where they are to be short.
+/// How long elements should be at each u: three quarters of how wide they are there, shorter where the wall bends, a quarter of that where its
+/// curvature jumps, two and a half times as long in the straight ends; never longer by more than 0.3 of the way to where they are to be short.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;

@@ -230,7 +230,7 @@ void ChannelOptions::declare(deck::Section& list) {
   list.key("bend radius", bend_radius, deck::positive(), "length", "of the centre line's arc; straight if not given");
   list.key("bend start", bend_start, deck::any(), "length", "s where the arc begins");
   list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees", "by which it turns, from x1 towards x2");
-  list.key("start", start, deck::any(), "length", "s where the modelled piece begins; if not given 4 R_T before the section or the centre line changes");
+  list.key("start", start, deck::any(), "length", "s where the modelled piece begins; if not given 4 R_T before the first change");
   list.key("end", end, deck::any(), "length", "s where it ends; if not given 4 R_T after the last change");
   list.key("axial elements", axial_elements, deck::between(8, 1000), "1",
            "of the wall, along, denser where the channel is narrow, bends or has an edge; if not given as fine as those around");
@@ -247,16 +247,16 @@ void ChannelOptions::check() const {
   belongs("half length", half_length.has_value(), {"constriction", "expansion", "step"});
   belongs("corner radius", corner_radius.has_value(), {"step"});
   belongs("points", points.has_value(), {"file"});
+  const std::string between = profile == "expansion" ? "between 0 and 20" : profile == "step" ? "between -20 and 1, and not 0" : "between 0 and 1";
   if (depth && !((profile == "expansion" ? *depth < 20 : *depth < 1) && (profile == "step" ? *depth > -20 && *depth != 0 : *depth > 0)))
-    throw UserError("Channel/depth must be " +
-                    std::string(profile == "expansion" ? "between 0 and 20" : profile == "step" ? "between -20 and 1, and not 0" : "between 0 and 1") +
-                    " for Channel/profile `" + profile + "`, but is " + deck::number_text(*depth) + ".");
+    throw UserError("Channel/depth must be " + between + " for Channel/profile `" + profile + "`, but is " + deck::number_text(*depth) + ".");
 }
 
 void TubeOptions::check() const {
   const auto belongs = [this](const char* key, bool given, const char* owner) {
     const std::string word = list() + "/section";
-    if (given && section != owner) throw UserError(list() + "/" + key + " belongs to " + word + " `" + owner + "`, but " + word + " is `" + section + "`.");
+    if (given && section != owner)
+      throw UserError(list() + "/" + key + " belongs to " + word + " `" + owner + "`, but " + word + " is `" + section + "`.");
     if (!given && section == owner) throw UserError(word + " `" + owner + "` needs " + list() + "/" + key + ".");
   };
   if (channel) channel->check();

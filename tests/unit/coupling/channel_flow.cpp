@@ -30,12 +30,12 @@ TEST(ChannelFlow, IsTheDuctsWhereItIsStraight) {
   EXPECT_LT((v - exact).norm() / exact.norm(), 3e-4);
   EXPECT_NEAR(flow.extra_pressure_drop(), 0, 1e-3 * flow.pressure_drop());
   const Mat3 gradient = flow.gradients(points())[1], exact_gradient = duct.gradients(points())[1];
-  EXPECT_LT((gradient - exact_gradient).norm() / exact_gradient.norm(), 1e-2);
+  EXPECT_LT((gradient - exact_gradient).norm() / exact_gradient.norm(), 3e-2);
 }
 
 TEST(ChannelFlow, PassesEverySectionAlike) {
   const ChannelFlow flow(channel("constriction", 16), 1, 1, {});
-  for (const double s : {-1.2, -0.5, 0., 0.3, 0.8}) EXPECT_NEAR(flow.flow_rate_at(s) / flow.flow_rate(), 1, 1e-3) << s;
+  for (const double s : {-1.2, -0.5, 0., 0.3, 0.8}) EXPECT_NEAR(flow.flow_rate_at(s) / flow.flow_rate(), 1, 4e-4) << s;
   EXPECT_GT(flow.extra_pressure_drop(), 0);
 }
 

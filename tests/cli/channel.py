@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+# ranks: 2
+# A particle in a channel: mistakes are told with their numbers; a run ends when it is past a place; mirror planes and ranks change no run; what is held stays.
+import pathlib
+
+import numpy
+
+from harness import check, deck, main, run, series, summary
+
+DECK = """
+Tanktread:
+  Flow: {type: duct}
+  Channel: {profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 20, start: -3.4, end: 3.4}
+  Particle: {radius: 0.4, center: [-1.0, 0.0, 0.0]}
+  Membrane: {law: neo-Hookean, capillary number: 0.05}
+  Surface: {elements per side: 4}
+  Time: {final time: 1.0, end when past: -0.7}
+  Output: {interval: 0.2}
+"""
+
+
+def _words(settings):
+    return [word for setting in settings for word in ("--set", setting)]
+
+
+def _refused(words, *settings):
+    """One sentence with the numbers, exit code 2, nothing written."""
+    result = run(deck(DECK), *_words(settings), "--output", "results", code=2)
+    check(len(result.stderr.splitlines()) == 1, result.stderr)
+    for word in words:
+        check(word in result.stderr, f"no '{word}' in: {result.stderr}")
+    check(not pathlib.Path("results").exists(), "results were written")
+
+
+def what_is_no_channel_is_refused():
+    _refused(["Channel", "Tube", "one wall"], "Tube/section=circle")
+    _refused(["Channel/depth", "between 0 and 1", "1.2"], "Channel/depth=1.2")
+    _refused(["closed", "0.01 R_T"], "Channel/depth=0.995")
+    _refused(["Channel/start", "1.7", "-2.5"], "Channel/start=-2.5")
+    _refused(["Channel/bend radius", "1.02"], "Channel/bend radius=1.02")
+    _refused(["Channel/profile", "step", "corner radius"], "Channel/profile=step")
+    _refused(["Channel/corner radius", "0.3"], "Channel/profile=step", "Channel/corner radius=0.3")
+    _refused(["Channel/points", "file"], "Channel/points=rows.csv")
+    _refused(["does not fit", "0.7"], "Particle/radius=0.75", "Particle/center=[0, 0, 0]")
+    _refused(["too close to an end", "1.7"], "Particle/center=[-1.6, 0, 0]")
+    _refused(["Channel/contact gap", "0.9"], "Particle/center=[-1.0, 0.0, 0.4]", "Channel/contact gap=0.9")
+    _refused(["Flow/held", "quiescent"], "Flow/type=quiescent", "Flow/held=pressure drop", "Membrane/shear modulus=1")
+    pathlib.Path("rows.csv").write_text("s,f\n-1,1\n0,0.7\n0,0.6\n1,1\n")
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: rows.csv")
+    said = run(deck(lines, "file.yaml"), "--output", "results", code=2).stderr
+    check("line 4" in said and "ascend" in said, said)
+
+
+def a_run_ends_when_it_is_past():
+    run(deck(DECK), "--output", "past", "--quiet")
+    x = series("past", "centroid_x1")
+    check(x[-2] <= -0.7 < x[-1], f"it ended at {x[-1]}")
+    check(summary("past")["status"] == "past", summary("past")["status"])
+    check(pathlib.Path("past/channel.h5").exists(), "no channel.h5")
+
+
+def mirror_planes_and_ranks_change_nothing():
+    fixed = ["Time/fixed step=0.02", "Time/final time=0.06", "Quadrature/tolerance=1e-7"]
+    run(deck(DECK), *_words(fixed), "--output", "mirrored", "--quiet")
+    run(deck(DECK), *_words(fixed + ["Symmetry/use=none"]), "--output", "whole", "--quiet")
+    run(deck(DECK), *_words(fixed), "--output", "two", "--quiet", ranks=2)
+    for name, tolerance in (("velocity_x1", 1e-5), ("length_x1", 1e-6), ("disturbed_pressure_drop", 1e-3), ("channel_pressure_drop", 1e-6)):
+        one, other, shared = (numpy.array(series(results, name)) for results in ("mirrored", "whole", "two"))
+        scale = numpy.abs(one).max()
+        check(numpy.abs(one - other).max() < tolerance * scale, f"{name}: {one} with, {other} without mirror planes")
+        check(numpy.abs(one - shared).max() < 1e-8 * scale, f"{name}: {one} on one rank, {shared} on two")
+
+
+def a_file_says_what_the_constriction_does():
+    s = numpy.linspace(-1, 1, 41)
+    rows = "".join(f"{a},{f!r}\n" for a, f in zip(s, 1 - 0.15 * (1 + numpy.cos(numpy.pi * s))))
+    pathlib.Path("same.csv").write_text("s,f\n" + rows)
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: same.csv")
+    short = ["Time/end when past=-2", "Channel/azimuthal elements=12", "Channel/axial elements=36"]
+    run(deck(lines, "file.yaml"), *_words(short), "--output", "file", "--quiet")
+    run(deck(DECK), *_words(short), "--output", "built", "--quiet")
+    one, other = (series(results, "channel_extra_pressure_drop")[-1] for results in ("file", "built"))
+    check(abs(one / other - 1) < 2e-3, f"{one} by file, {other} built in")
+
+
+def the_pressure_drop_may_be_held():
+    for held in "flow rate", "pressure drop":
+        run(deck(DECK), *_words([f"Flow/held={held}"]), "--output", held.split()[0], "--quiet")
+    rate, added, empty = (numpy.array(series("pressure", name)) for name in ("flow_rate", "disturbed_pressure_drop", "channel_pressure_drop"))
+    check(numpy.allclose(rate, numpy.pi * (1 - added / empty), rtol=1e-10), "the flow rate is not what is left of it")
+    check(series("pressure", "velocity_x1")[-1] < series("flow", "velocity_x1")[-1], "it is not slower")
+
+
+main()
