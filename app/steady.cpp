@@ -213,7 +213,7 @@ class SteadyRun {
     const auto clock = phases_.time("spectrum");
     const coupling::Capsule& capsule = *system_->particle->capsule();
     const Body& body = system_->particle->body();
-    const coupling::ShapeCoordinates shapes(body.space, capsule.particles(), body.symmetry, state_.x);
+    const coupling::ShapeCoordinates shapes(body.space, capsule.particles(), body.symmetry, state_.x, capsule.projection());
     motion::SpectrumOptions options = scene_.spectrum;
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),

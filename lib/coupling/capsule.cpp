@@ -26,6 +26,12 @@ CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& spac
 
 bool slides(const Particle& particle) { return particle.slides(); }
 
+std::optional<VelocityProjection> chosen_projection(const spline::Space& space, const Net& unstressed, const CapsuleParameters& of,
+                                                    const Ranks& ranks) {
+  if (of.solvers.projection == "collocation") return {};
+  return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
+}
+
 bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
@@ -43,7 +49,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       mass_matrix_(space),
       membrane_(space, unstressed, materials(parameters_.particles)),
       tangent_(membrane_),
-      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, parameters.quadrature),
+      projection_(chosen_projection(space, unstressed, parameters, ranks)),
+      layer_(stokes::Layer::Kernel::single_layer, space, projection_ ? projection_->sites() : space.collocation, parameters.quadrature),
       collocation_(parameters.solvers.direct, parameters.symmetry),
       mass_(parameters.solvers.direct, parameters.symmetry),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
@@ -59,14 +66,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   ranks_.own(own_points_, symmetry);
   collocation_.factor(collocation_matrix(space));
   mass_.factor(mass_matrix_.update(unstressed));
-  layer_.set_reference(unstressed);
-  layer_.set_symmetry(symmetry);
-  layer_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
-  if (auto contrasts = viscosity_contrasts(particles()); !contrasts.empty()) {
-    double_layer_.emplace(stokes::Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, std::move(contrasts));
-    double_layer_->share(ranks.rank(), ranks.size(), symmetry.fundamental());
-  }
+  make_layers();
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (by_sites()) sites_ = collocation_matrix(space);
@@ -79,10 +80,33 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   for (const Particle& particle : particles())
     volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
   if (std::ranges::any_of(particles(), coupling::slides))
-    interface_.emplace(space, unstressed, particles(), parameters.quadrature, own_points_, share.elements, collocation_, mass_.reference(), ranks_);
+    interface_.emplace(space, unstressed, particles(), parameters.quadrature, own_points_, share.elements, collocation_, mass_.reference(), ranks_,
+                       projection_ ? &*projection_ : nullptr);
 }
 
 Capsule::~Capsule() = default;
+
+/// The layers of velocities, and those of the Jacobian where they are at other places.
+void Capsule::make_layers() {
+  using stokes::Layer;
+  const surface::Symmetry& symmetry = parameters_.symmetry;
+  const std::vector<double> contrasts = viscosity_contrasts(particles());
+  const auto make = [&](std::optional<Layer>& layer, Layer::Kernel kernel, const stokes::Sites& sites, const std::vector<double>& factor) {
+    layer.emplace(kernel, space_, sites, parameters_.quadrature, factor);
+  };
+  layer_.set_reference(unstressed_);
+  layer_.set_symmetry(symmetry);
+  if (projection_) {
+    make(site_layer_, Layer::Kernel::single_layer, space_.collocation, {});
+    site_layer_->set_reference(unstressed_);
+  }
+  if (!contrasts.empty()) make(double_layer_, Layer::Kernel::double_layer, projection_ ? projection_->sites() : space_.collocation, contrasts);
+  if (!contrasts.empty() && projection_) make(site_double_layer_, Layer::Kernel::double_layer, space_.collocation, contrasts);
+  std::vector<int> everybody = symmetry.fundamental();
+  if (projection_) everybody.resize(projection_->sites().size()), std::iota(everybody.begin(), everybody.end(), 0);
+  layer_.share(ranks_.rank(), ranks_.size(), everybody);
+  if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
+}
 
 /// Sums for the own points run over fundamental elements, those that touch the points or their images; or, where an element is an image of itself,
 /// over all that touch the points.
@@ -144,6 +168,12 @@ void Capsule::gather(bool shared, Net& net) {
   if (!shared) return replicate(net);
   Net* const one[] = {&net};
   ranks_.add(one);
+}
+
+/// The same at the targets of velocities.
+void Capsule::gather_targets(bool shared, Net& net) {
+  if (!projection_) return gather(shared, net);
+  ranks_.add({net.data(), static_cast<std::size_t>(net.size())});
 }
 
 /// A^-1 of each field, in place; ranks share the columns.
@@ -228,6 +258,17 @@ void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
     const auto rows = [&](const Net& net) { return particle.block.rows(net).array(); };
     particle.block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * particle.block.rows(c);
   }
+}
+
+/// Of a symmetric scene the rotations that its images leave as they are.
+std::vector<Net> Capsule::relabellings(const Net& x) {
+  if (!interface_) return {};
+  std::vector<int> axes;
+  for (int k = 0; k < 3; ++k) {
+    const auto keeps = [k](const surface::Image& g) { return g.signs.prod() * g.signs[k] > 0; };
+    if (std::ranges::all_of(parameters_.symmetry.images(), keeps)) axes.push_back(k);
+  }
+  return interface_->rotations(x, axes);
 }
 
 Net Capsule::symmetric(Net field) const {
@@ -316,16 +357,21 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   return v;
 }
 
-/// A f, at the sites; nothing is summed of no load.
+/// Of a velocity at the targets.
+Net Capsule::control_values(Net at_targets) {
+  return projection_ ? projection_->control_values(at_targets) : solved(collocation_, std::move(at_targets));
+}
+
+/// A f, at the targets; nothing is summed of no load.
 Net Capsule::single_layer_of(const Net& x, const Net& f) {
-  Net u = Net::Zero(x.rows(), 3);
+  Net u = zero_at_targets();
   if (f.isZero(0)) return u;
   {
     const auto clock = phases_.time("single layer");
     layer_.place(x, measure());
-    layer_.apply(f, own_points_, u);
+    layer_.apply(f, own_targets(), u);
   }
-  gather(layer_.shared(), u);
+  gather_targets(layer_.shared(), u);
   return u;
 }
 
@@ -334,18 +380,19 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
     const bool known = tube_ && flow_.duct();
-    u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(sites_ * x)) - u / parameters_.viscosity;
+    const Eigen::SparseMatrix<double>& values = projection_ ? projection_->values() : sites_;
+    u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(values * x)) - u / parameters_.viscosity;
     if (tube_ && schur()) {
       Tube::Response response = tube_->respond(f);
       u += response.velocity;
       if (!has_velocity_system()) latest_.response = std::move(response);
     }
     const auto clock = phases_.time("projection");
-    return solved(collocation_, std::move(u));
+    return control_values(std::move(u));
   }
   Net v = ambient(x);
   const auto clock = phases_.time("projection");
-  v -= solved(collocation_, std::move(u)) / parameters_.viscosity;
+  v -= control_values(std::move(u)) / parameters_.viscosity;
   return v;
 }
 
@@ -373,9 +420,6 @@ Net Capsule::viscous_load(const membrane::ViscousLoad& c, const Net& v) {
   const auto clock = phases_.time("projection");
   return solved(mass_.reference(), std::move(load));
 }
-
-/// B v = v - R^-1 D v, from what the double layers give at the sites.
-Net Capsule::viscous(const Net& v, const Net& dv) const { return v - collocation_.solve(dv); }
 
 void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   ++work_.velocity_solves;
@@ -414,16 +458,16 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
   const bool assembled = double_layer_ && !cell_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
-  if (assembled) double_layer_->assemble(own_points_, double_rows_);
+  if (assembled) double_layer_->assemble(own_targets(), double_rows_);
   const bool single_assembled = viscous_ && !cell_ && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
-  if (single_assembled) layer_.assemble(own_points_, single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // of own points, for everybody
-    Net at_sites(n, 3);
+  if (single_assembled) layer_.assemble(own_targets(), single_rows_);
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // of own targets, for everybody
+    Net at_targets = zero_at_targets();
     const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
-    for (size_t k = 0; k < own_points_.size(); ++k) at_sites.row(own_points_[k]) = rows.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    replicate(at_sites);
-    return at_sites;
+    for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();
+    gather_targets(false, at_targets);
+    return at_targets;
   };
   const auto load_of = [&](const Net& v) {  // what the velocity adds to the load, empty where it adds nothing
     Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
@@ -432,15 +476,15 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
     if (!double_layer_ && !viscous_) return v;
-    Net hv = Net::Zero(n, 3);
+    Net hv = zero_at_targets();
     if (assembled) {
       hv = times(double_rows_, v);
     } else if (double_layer_) {
-      double_layer_->apply(v, own_points_, hv);
-      gather(double_layer_->shared(), hv);
+      double_layer_->apply(v, own_targets(), hv);
+      gather_targets(double_layer_->shared(), hv);
     }
     if (load.size() > 0) hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
-    Net bv = viscous(v, hv);
+    Net bv = v - (projection_ ? projection_->control_values(hv) : collocation_.solve(hv));
     rigid_.complete(v, bv);
     return bv;
   };
@@ -574,7 +618,8 @@ double Capsule::membrane_dissipation(const Net& x, const Net& v, std::size_t p) 
 
 stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layer_.evaluations();
-  if (double_layer_) sum += double_layer_->evaluations();
+  for (const auto* other : {&double_layer_, &site_layer_, &site_double_layer_})
+    if (*other) sum += (*other)->evaluations();
   if (tube_) sum += tube_->kernel_evaluations();
   return sum;
 }

@@ -21,6 +21,7 @@
 #include "coupling/ranks.hpp"
 #include "coupling/rigid_particles.hpp"
 #include "coupling/tube.hpp"
+#include "coupling/velocity_projection.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
@@ -100,6 +101,7 @@ class Capsule : public Dynamics {
   Net missed(const Net& dv, const Net& delta) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
+  std::vector<Net> relabellings(const Net& x) override;
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
@@ -152,6 +154,7 @@ class Capsule : public Dynamics {
   Tube::Checks checks(const Net& x);  ///< of that answer
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
+  const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< none: velocities are collocated
   const surface::Geometry& geometry() const { return geometry_; }
   const Phases& layer_phases() const { return layer_.phases(); }  ///< where the time of the single layer goes
   stokes::Measure measure() const { return parameters_.strong_load ? stokes::Measure::current : parameters_.measure; }  ///< of the load
@@ -171,9 +174,14 @@ class Capsule : public Dynamics {
   void place(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f);
   void own(const surface::Share& share);
+  void make_layers();
   void replicate(Net& net);
   void replicate_sums(Net& net);
   void gather(bool shared, Net& net);
+  void gather_targets(bool shared, Net& net);
+  const std::vector<int>& own_targets() const { return projection_ ? projection_->own() : own_points_; }
+  Net zero_at_targets() const { return Net::Zero(projection_ ? projection_->values().rows() : space_.n_points, 3); }
+  Net control_values(Net at_targets);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
@@ -182,7 +190,6 @@ class Capsule : public Dynamics {
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
-  Net viscous(const Net& v, const Net& dv) const;
   Net frozen_single_layer(const Net& f);
   Net viscous_load(const membrane::ViscousLoad& c, const Net& v);
   const Net& viscous_work(const Net& x, const Net& v);
@@ -211,8 +218,10 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
-  stokes::Layer layer_;
-  std::optional<stokes::Layer> double_layer_;  // where a lambda is not 1; of the factors 1 - lambda
+  std::optional<VelocityProjection> projection_;  // where velocities are not collocated
+  stokes::Layer layer_;                           // at the targets of velocities
+  std::optional<stokes::Layer> double_layer_;     // where a lambda is not 1; of the factors 1 - lambda
+  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // at the collocation sites, for the Jacobian, where targets are others
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov velocity_solver_, step_solver_, inner_solver_;

@@ -13,8 +13,9 @@ void Capsule::freeze(const Net& at) {
   if (cell_) put_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
-  const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer_.assemble(targets, of...); };
-  layer_.place(x, stokes::Measure::reference);
+  stokes::Layer& layer = site_layer_ ? *site_layer_ : layer_;
+  const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer.assemble(targets, of...); };
+  layer.place(x, stokes::Measure::reference);
   if (parameters_.solvers.frozen_operator == "nodal") {
     const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
     const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
@@ -28,9 +29,10 @@ void Capsule::freeze(const Net& at) {
     tube_->freeze();
   }
   if (!double_layer_) return;
-  double_layer_->place(x);
+  stokes::Layer& double_layer = site_double_layer_ ? *site_double_layer_ : *double_layer_;
+  double_layer.place(x);
   frozen_double_.assemble(own_points_, space_.n_points,
-                          [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer_->assemble(targets, rows); });
+                          [&](std::span<const int> targets, stokes::Rows<float>& rows) { double_layer.assemble(targets, rows); });
 }
 
 double Capsule::frozen_bytes() const {
@@ -107,7 +109,7 @@ Net Capsule::frozen_viscous(const Net& v) {
     hv -= frozen_single_layer(load) / parameters_.viscosity;
   }
   rigid_.clear(hv);
-  if (!tube_) return viscous(v, hv);
+  if (!tube_) return v - collocation_.solve(hv);
   return v - collocation_.solve(hv + tube_->frozen_response(load, v));
 }
 

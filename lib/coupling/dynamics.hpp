@@ -2,6 +2,7 @@
 // What a time integrator sees of the coupled system: dx/dt = v(x) and its quasi-Newton Jacobian.
 
 #include <limits>
+#include <vector>
 
 #include "base/types.hpp"
 #include "coupling/secants.hpp"
@@ -45,6 +46,9 @@ class Dynamics {
 
   /// Moves x onto the volume to be kept, if the constraint is `exact`; otherwise does nothing. Not finite where that cannot be done.
   virtual void restore_volume(Net& x) = 0;
+
+  /// Fields that move points along surfaces and change no shape: rotations of the mesh of each drop that it slides on.
+  virtual std::vector<Net> relabellings(const Net& /*x*/) { return {}; }
 
   /// Rids a rate of change of what round-off adds where the scene is symmetric. A velocity is rid of it already; a difference of shapes is not,
   /// and what is extrapolated from it grows from step to step.

@@ -17,9 +17,11 @@ namespace tanktread::coupling {
 
 InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles,
                                  const quadrature::Options& quadrature, const std::vector<int>& own_points, const std::vector<int>& own_elements,
-                                 const membrane::SymmetricSolver& collocation, const membrane::SymmetricSolver& mass, const Ranks& ranks)
+                                 const membrane::SymmetricSolver& collocation, const membrane::SymmetricSolver& mass, const Ranks& ranks,
+                                 const VelocityProjection* projection)
     : space_(space),
       sites_(collocation_matrix(space)),
+      projection_(projection),
       collocation_(collocation),
       mass_(mass),
       ranks_(ranks),
@@ -28,13 +30,16 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   for (const Particle& particle : particles) {
     if (!particle.slides()) continue;
     const spline::Block& block = particle.block;
-    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}});
+    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
+    const auto holds = [&](int e) { return e >= block.first_element && e < block.first_element + block.n_elements; };
     std::ranges::copy_if(own_points, std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
+    if (projection_)
+      for (int i = 0; i < static_cast<int>(projection_->sites().size()); ++i)
+        if (holds(projection_->sites()[static_cast<size_t>(i)].front().element)) drop.places.push_back(i);
     if (!drop.relaxed) continue;
     relaxed_ = true;
-    const int end = block.first_element + block.n_elements;
-    std::ranges::copy_if(own_elements, std::back_inserter(own_elements_), [&](int e) { return e >= block.first_element && e < end; });
+    std::ranges::copy_if(own_elements, std::back_inserter(own_elements_), holds);
     std::vector<int> targets;
     for (const int i : drop.points) targets.push_back(i - block.first_point);
     stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, quadrature);
@@ -93,15 +98,16 @@ struct Moving {
   Net places, normals, velocities;
 };
 
-/// The rigid motion W at the sites that the mesh of a drop shares (4.14).
-Net shared_motion(const Moving& drop) {
+/// The rigid motion W about the mean of the control points that the mesh of a drop shares (4.14).
+RigidMotion shared_motion(const Moving& drop) {
   const Eigen::RowVector3d middle = drop.x.colwise().mean();
   const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
   const Vec3 rotation = mean_rotation(from_mean, drop.b, drop.v);
-  Net w = rotated(rotation, y).rowwise() + mean_motion(from_mean, drop.b, drop.v - rotated(rotation, from_mean));
-  w += rotated(rotation_of_shape(y, drop.normals, drop.b, drop.velocities - w), y);
-  return w;
+  const Eigen::RowVector3d mean = mean_motion(from_mean, drop.b, drop.v - rotated(rotation, from_mean));
+  const Net rest = drop.velocities - (rotated(rotation, y).rowwise() + mean);
+  return {mean.transpose(), rotation + rotation_of_shape(y, drop.normals, drop.b, rest)};
 }
+
 /// The rotation that takes one net about its mean nearest to another.
 Mat3 rotation_between(const Net& from, const Net& to) {
   const Mat3 moments = (to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean());
@@ -120,27 +126,75 @@ Net InterfaceMotion::normals_at(const Net& x) const {
   return normals;
 }
 
-/// R^-1 of W + n n.(v - W) + (1 - n n).w at the sites, W at x with b = dV/dx there, w from the density f (empty: none).
-Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const {
-  Net u = sites_ * v;
-  const Net places = sites_ * x;
+/// w at own collocation sites, from the density f.
+Net InterfaceMotion::sliding(const Net& x, const Net& f) const {
+  Net w = Net::Zero(x.rows(), 3);
   for (const Drop& drop : drops_) {
+    if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
-    const Net shared = shared_motion({block.rows(x), block.rows(b), block.rows(v), block.rows(places), block.rows(normals), block.rows(u)});
-    const Mat3 turn = drop.relaxed ? rotation_between(block.rows(mesh_.unstressed()), block.rows(x)) : Mat3(Mat3::Identity());
-    const Net density = drop.relaxed ? Net(block.rows(f) * turn) : Net();  // on the initial shape, as A0 is
+    const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
+    const Net density = block.rows(f) * turn;  // on the initial shape, as A0 is
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
-    for (size_t k = 0; k < drop.points.size(); ++k) {
-      const int i = drop.points[k];
-      const Vec3 n = normals.row(i).transpose();
-      Vec3 with = shared.row(i - block.first_point).transpose();
-      if (drop.relaxed) with -= drop.speed * turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there);
-      auto row = u.row(i);
-      row = (with + n * n.dot(row.transpose() - with)).transpose();
-    }
+    for (size_t k = 0; k < drop.points.size(); ++k)
+      w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();
   }
+  return w;
+}
+
+/// Control values of W + n n.(v - W) + (1 - n n).w, W at x with b = dV/dx there, w from the density f (empty: none).
+Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const {
+  Net u = sites_ * v, w = sliding(x, f);
+  const Net places = sites_ * x;
+  std::vector<RigidMotion> shared;
+  for (const Drop& drop : drops_) {
+    const auto own = [&](const Net& net) { return drop.block.rows(net); };
+    shared.push_back(shared_motion({own(x), own(b), own(v), own(places), own(normals), own(u)}));
+  }
+  const auto cross = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
+    for (size_t d = 0; d < drops_.size(); ++d) {
+      const Vec3 middle = drops_[d].block.rows(x).colwise().mean().transpose();
+      for (const int i : drops_[d].*rows) {
+        const Vec3 whole = shared[d].velocity + shared[d].angular_velocity.cross(Vec3(at.row(i).transpose()) - middle);
+        const Eigen::RowVector3d with = whole.transpose() + along.row(i);
+        velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);
+      }
+    }
+  };
+  if (projection_) {
+    const Eigen::SparseMatrix<double>& values = projection_->values();
+    ranks_.replicate(w);
+    u = values * v;
+    const Net n = projection_->normals(x);
+    Net along = values * collocation_.solve(w);
+    for (Eigen::Index i = 0; i < along.rows(); ++i) along.row(i) -= n.row(i).dot(along.row(i)) * n.row(i);
+    const Net slid = projection_->control_values(along);
+    cross(values * x, n, Net::Zero(n.rows(), 3), &Drop::places, u);
+    const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
+    return projection_->control_values(u - leak.asDiagonal() * n) + slid;
+  }
+  cross(places, normals, w, &Drop::points, u);
   ranks_.replicate(u);
   return collocation_.solve(u);
+}
+
+std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> axes) const {
+  if (axes.empty()) return {};
+  const Net normals = projection_ ? projection_->normals(x) : normals_at(x);
+  const Net places = (projection_ ? projection_->values() : sites_) * x;
+  std::vector<Net> all;
+  for (const Drop& drop : drops_) {
+    const Vec3 middle = drop.block.rows(x).colwise().mean().transpose();
+    for (const int k : axes) {
+      Net field = Net::Zero(places.rows(), 3);
+      for (const int i : projection_ ? drop.places : drop.points) {
+        const Vec3 turn = Vec3::Unit(k).cross(Vec3(places.row(i).transpose()) - middle), n = normals.row(i).transpose();
+        field.row(i) = (turn - n.dot(turn) * n).transpose();
+      }
+      if (!projection_) ranks_.replicate(field);
+      all.push_back(projection_ ? projection_->control_values(field) : collocation_.solve(field));
+    }
+  }
+  return all;
 }
 
 Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {

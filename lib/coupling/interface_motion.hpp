@@ -9,6 +9,7 @@
 #include "base/types.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/velocity_projection.hpp"
 #include "membrane/membrane.hpp"
 #include "membrane/symmetric_solver.hpp"
 #include "quadrature/options.hpp"
@@ -31,13 +32,17 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 /// capsule with Ca = mu rate R_C / (mu speed). A0 never changes, knows one drop alone, and turns with the mesh, by Q. Elsewhere u = v.
 class InterfaceMotion {
  public:
-  /// `initial`: the net that the meshes relax towards; `mass`: the factored M0 of it.
+  /// `initial`: the net that the meshes relax towards; `mass`: the factored M0 of it. `projection`: of u; none: it is collocated.
   InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles, const quadrature::Options& quadrature,
                   const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::SymmetricSolver& collocation,
-                  const membrane::SymmetricSolver& mass, const Ranks& ranks);
+                  const membrane::SymmetricSolver& mass, const Ranks& ranks, const VelocityProjection* projection = nullptr);
 
   /// Control-point velocity u at x for the fluid's velocity v (control values), with b = dV/dx. Collective.
   Net velocity(const Net& x, const Net& b, const Net& v);
+
+  /// Control values of (1 - n n).(e_k x y) on each drop, k of `axes`, y from the mean of its control points: the mesh turns on an interface that
+  /// stays. Collective.
+  std::vector<Net> rotations(const Net& x, std::span<const int> axes) const;
 
   /// Keeps x, b = dV/dx, normals and the tangent of E1 at x for `derivative`. Collective.
   void linearise(const Net& x, const Net& b);
@@ -51,8 +56,10 @@ class InterfaceMotion {
     bool relaxed;
     double speed;
     std::vector<int> points;      // own ones
+    std::vector<int> places;      // of the projection
     stokes::Rows<double> layer;   // their rows of A0, in full: what the mesh does must not depend on units or axes
   };
+  Net sliding(const Net& x, const Net& f) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const;
   Net normals_at(const Net& x) const;  ///< at the sites of all drops; zeros elsewhere. Collective
 
@@ -61,6 +68,7 @@ class InterfaceMotion {
   bool relaxed_ = false;           // any of them
   std::vector<int> own_elements_;  // of those
   Eigen::SparseMatrix<double> sites_;  // R
+  const VelocityProjection* projection_;
   const membrane::SymmetricSolver &collocation_, &mass_;
   const Ranks& ranks_;
   membrane::Membrane mesh_;

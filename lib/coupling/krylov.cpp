@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <iterator>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -15,6 +13,7 @@
 #include <Thyra_LinearOpWithSolveFactoryHelpers.hpp>
 
 #include "base/errors.hpp"
+#include "coupling/chosen_preconditioner.hpp"
 #include "coupling/thyra_blocks.hpp"
 #include "deck/foreign.hpp"
 #include "deck/words.hpp"
@@ -54,10 +53,6 @@ struct Timers : Teuchos::TimeMonitor {
     stopped = counters().size();
   }
 };
-
-Eigen::Index size(const Blocks& blocks) {
-  return std::accumulate(blocks.begin(), blocks.end(), Eigen::Index(0), [](Eigen::Index sum, const UnknownBlock& block) { return sum + block.size; });
-}
 
 /// |b - A x| of each block over |b|.
 std::vector<std::pair<std::string, double>> residuals_of(const LinearSystem& system, const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
@@ -100,102 +95,18 @@ BelosFactory belos_factory(const IterativeOptions& options) {
   return {factory, flexible};
 }
 
-namespace {
-
-/// Products y = A z of the solves before, the latest first, y made orthonormal: as a preconditioner Y^T and then Z, and another for the rest   (2.24)
-class RecycledProducts {
- public:
-  /// A product of the present solve, which counts from the next one on.
-  void record(const Eigen::VectorXd& z, const Eigen::VectorXd& y) { present_.push_back({z, y}); }
-
-  /// Ends the present solve.
-  void refresh() {
-    double zy = 0, yy = 0;
-    for (const auto& [z, y] : present_) zy += z.dot(y), yy += y.squaredNorm();
-    if (zy > 0) scale_ = zy / yy;
-    std::vector<Product> all = std::move(present_);
-    all.insert(all.end(), std::make_move_iterator(kept_.begin()), std::make_move_iterator(kept_.end()));
-    present_.clear(), kept_.clear();
-    for (Product& product : all)
-      if (kept_.size() < most) keep(std::move(product));
-  }
-
-  /// out = Z Y^T in + P (in - Y Y^T in)
-  void apply(const Eigen::VectorXd& in, const Apply& other, Eigen::Map<Eigen::VectorXd> out) const {
-    Eigen::VectorXd rest = in, known = Eigen::VectorXd::Zero(in.size());
-    for (const auto& [z, y] : kept_) {
-      const double share = y.dot(in);
-      rest -= share * y;
-      known += share * z;
-    }
-    out = scale_ * rest;
-    if (other) other(rest.data(), out.data());
-    out += known;
-  }
-
-  double scale() const { return scale_; }
-
- private:
-  struct Product {
-    Eigen::VectorXd z, y;
-  };
-
-  void keep(Product product) {
-    const double size = product.y.norm();
-    for (int twice = 0; twice < 2; ++twice)
-      for (const auto& [z, y] : kept_) {
-        const double share = y.dot(product.y);
-        product.y -= share * y;
-        product.z -= share * z;
-      }
-    const double rest = product.y.norm();
-    if (rest > 0.3 * size) kept_.push_back({product.z / rest, product.y / rest});
-  }
-
-  static constexpr std::size_t most = 10;
-  std::vector<Product> present_, kept_;
-  double scale_ = 1;  // s of the least |z - s y|: one over the size of the operator
-};
-
-}  // namespace
-
 struct Krylov::Impl {
   BelosFactory belos;
-  std::string kind;  // of the preconditioner
-  RecycledProducts recycled;
+  ChosenPreconditioner chosen;
   Blocks blocks;
   Teuchos::RCP<const Space> space;
   Teuchos::RCP<FunctionOperator> product, preconditioner;
   Teuchos::RCP<Thyra::LinearOpWithSolveBase<double>> solver;
 
-  /// The system with the preconditioner that was chosen for it, which refers to `system`.
-  LinearSystem preconditioned(const LinearSystem& system) {
-    LinearSystem result = system;
-    const Eigen::Index n = size(system.blocks);
-    if (kind == "none") result.precondition = {};
-    if (kind == "neumann" || kind == "recycled") {
-      result.product = [this, &system, n](const double* in, double* out) {
-        system.product(in, out);
-        recycled.record(Eigen::Map<const Eigen::VectorXd>(in, n), Eigen::Map<Eigen::VectorXd>(out, n));
-      };
-    }
-    if (kind == "neumann")
-      result.precondition = [this, &system, n](const double* in, double* out) {
-        const double s = recycled.scale();
-        system.product(in, out);
-        Eigen::Map<Eigen::VectorXd>(out, n) = s * (2 * Eigen::Map<const Eigen::VectorXd>(in, n) - s * Eigen::Map<Eigen::VectorXd>(out, n));
-      };
-    if (kind == "recycled")
-      result.precondition = [this, &system, n](const double* in, double* out) {
-        recycled.apply(Eigen::Map<const Eigen::VectorXd>(in, n), system.precondition, {out, n});
-      };
-    return result;
-  }
-
   void prepare(const LinearSystem& system) {
     if (space.is_null() || blocks != system.blocks || preconditioner.is_null() == bool(system.precondition)) {
       blocks = system.blocks;
-      recycled = {};
+      chosen.forget();
       space = vector_space(blocks);
       product = Teuchos::rcp(new FunctionOperator(space));
       preconditioner = system.precondition ? Teuchos::rcp(new FunctionOperator(space)) : Teuchos::null;
@@ -220,13 +131,13 @@ std::vector<std::string> Krylov::names() {
 
 Krylov::Krylov(const IterativeOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->belos = belos_factory(options);
-  impl_->kind = options.preconditioner;
+  impl_->chosen = ChosenPreconditioner(options.preconditioner);
 }
 
 Krylov::~Krylov() = default;
 
 SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
-  impl_->prepare(impl_->preconditioned(system));
+  impl_->prepare(impl_->chosen.join(system));
   const auto unknowns = vector_of(impl_->space, x), right = vector_of(impl_->space, b);
   if (numbers_of(*right).squaredNorm() == 0) {
     x.setZero();
@@ -243,7 +154,7 @@ SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, 
   } catch (const Thyra::CatastrophicSolveFailure&) {  // what Belos makes of numbers that are not finite, or of a basis that breaks down
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  impl_->recycled.refresh();
+  impl_->chosen.refresh();
   report.converged = report.converged && x.allFinite();
   const bool in_doubt = report.converged && tolerance < least_recursive_residual;
   if (report.converged && !in_doubt) return report;

@@ -17,6 +17,7 @@
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
 
 #include "base/errors.hpp"
+#include "coupling/chosen_preconditioner.hpp"
 #include "coupling/thyra_blocks.hpp"
 
 namespace tanktread::coupling {
@@ -33,8 +34,16 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;
   using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<double>;
 
-  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, const Net& start)
-      : g_(g), norm_(norm), space_(vector_space({{"places", start.size()}})) {}
+  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, const Net& start, const std::string& preconditioner)
+      : g_(g), norm_(norm), space_(vector_space({{"places", start.size()}})), chosen_(preconditioner) {
+    if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new FunctionOperator(space_));
+  }
+
+  /// What Newton's systems are preconditioned with, from the right.
+  Teuchos::RCP<const Thyra::LinearOpBase<double>> preconditioner() const {
+    if (preconditioner_.is_null()) return Thyra::identity<double>(space_);
+    return preconditioner_;
+  }
 
   Teuchos::RCP<const Space> get_x_space() const override { return space_; }
   Teuchos::RCP<const Space> get_f_space() const override { return space_; }
@@ -64,17 +73,24 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (!f_.allFinite()) return out.setFailed();
     if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_)));
     if (out.get_W_op().is_null()) return;
-    dynamic_cast<FunctionOperator&>(*out.get_W_op()).function = [this, x, f = f_](const double* in_numbers, double* out_numbers) {
+    chosen_.refresh();
+    newton_ = {{{"places", x.size()}}, [this, x, f = f_](const double* in_numbers, double* out_numbers) {
       const Net direction = Eigen::Map<const Net>(in_numbers, x.rows(), 3);
       const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
       const Net y = x + e * direction;
       Eigen::Map<Net>(out_numbers, x.rows(), 3) = (g_(y) - y - f) / e;
-    };
+    }, {}};
+    const LinearSystem joined = chosen_.join(newton_);
+    dynamic_cast<FunctionOperator&>(*out.get_W_op()).function = joined.product;
+    if (!preconditioner_.is_null()) preconditioner_->function = joined.precondition;
   }
 
   const FixedPoint::Map& g_;
   const FixedPoint::Norm& norm_;
   Teuchos::RCP<const Space> space_;
+  mutable ChosenPreconditioner chosen_;
+  Teuchos::RCP<FunctionOperator> preconditioner_;
+  mutable LinearSystem newton_;
   mutable Net x_, f_;  // where it was evaluated last
 };
 
@@ -149,11 +165,13 @@ struct FixedPoint::Impl {
   Teuchos::ParameterList given, list;
   Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
   Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver;
+  std::string preconditioner;
 };
 
 FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear)
     : impl_(std::make_unique<Impl>()) {
   impl_->linear_solver = belos_factory(linear).factory;
+  impl_->preconditioner = linear.preconditioner;
   impl_->list = defaults(method);
   if (list) impl_->list.setParameters(impl_->given = unread_copy(*list));
 }
@@ -162,15 +180,15 @@ FixedPoint::~FixedPoint() = default;
 
 std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_->given, *impl_->last) : std::string(); }
 
-NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x) const {
+NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest) const {
   using Teuchos::RCP;
   using Weights = Thyra::VectorBase<double>;
-  const auto model = Teuchos::rcp(new Model(g, norm, x));
+  const auto model = Teuchos::rcp(new Model(g, norm, x, impl_->preconditioner));
   const auto start = vector_of(model->get_x_space(), numbers(x));
   const RCP<Thyra::LinearOpBase<double>> derivative = model->create_W_op();
-  const auto identity = Teuchos::rcp(new Thyra::DefaultPreconditioner<double>);
-  identity->initializeRight(Thyra::identity<double>(model->get_x_space()));
-  const RCP<Thyra::PreconditionerBase<double>> preconditioner = identity;
+  const auto from_right = Teuchos::rcp(new Thyra::DefaultPreconditioner<double>);
+  from_right->initializeRight(model->preconditioner());
+  const RCP<Thyra::PreconditionerBase<double>> preconditioner = from_right;
   const RCP<Thyra::PreconditionerFactoryBase<double>> no_factory;
   const RCP<const Weights> unweighted;
   const bool scaled = false, updated = false;
@@ -181,7 +199,7 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   auto& anderson = list->sublist("Anderson Parameters");
   if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   try {
-    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(norm, tolerance, most)), list);
+    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(rest ? rest : norm, tolerance, most)), list);
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
     x = net(solver->getSolutionGroup().getX());
     return {solver->getNumIterations(), converged};

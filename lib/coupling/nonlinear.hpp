@@ -28,13 +28,14 @@ class FixedPoint {
   using Norm = std::function<double(const Net&)>;
 
   /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or `newton-krylov` without a matrix: products with dg/dx by differences of g, Belos'
-  /// solver `linear` without preconditioner. `list` goes to NOX as it is, after our defaults.
+  /// solver `linear` with its preconditioner, own meaning none. `list` goes to NOX as it is, after our defaults.
   FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"});
   ~FixedPoint();
 
-  /// From x on, until norm(g(x) - x) <= tolerance or `most` iterations are over. Collective. A value of g that is not finite ends the iteration.
+  /// From x on, until rest(g(x) - x) <= tolerance, rest being `norm` where it is not given, or `most` iterations are over. Collective. A value of g
+  /// that is not finite ends the iteration.
   /// Throws UserError where NOX refuses the list.
-  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x) const;
+  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest = {}) const;
 
   /// The path of a parameter of the given list that the last solve has not looked at; empty: none.
   std::string unread() const;

@@ -56,6 +56,10 @@ void SolverOptions::declare(deck::Section& section) {
               "in a tube: `schur` solves for the particle's velocity alone, wall and pressure drop eliminated by the factored wall (nothing is "
               "left to solve at viscosity ratio 1); the others solve for all blocks (2.5)-(2.8) at once, preconditioned by the factored wall or "
               "(`block`) not at all");
+  section.key("projection", projection, deck::Choice{"collocation", "least squares"},
+              "of velocities onto the splines: one place a control point, or the best fit to four places an element, whose error falls with the "
+              "sixth power of the element in place of the fourth, for four times the kernel evaluations; the latter not in a tube or with rigid "
+              "bodies");
   section.key("frozen operator", frozen_operator, deck::Choice{"nodal", "assembled"},
               "the single layer that the Jacobian (4.3) keeps: one node a control point, summed in every product, with corrections for near ones; or "
               "assembled, 12 bytes a pair of points");

@@ -7,31 +7,80 @@
 
 namespace tanktread::coupling {
 
-ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x)
-    : symmetry_(symmetry), sites_(collocation_matrix(space)), collocation_({}, symmetry) {
+ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
+                                   const VelocityProjection* projection)
+    : symmetry_(symmetry), sites_(collocation_matrix(space)), collocation_({}, symmetry), projection_(projection) {
   collocation_.factor(sites_);
   for (const int i : symmetry_.fundamental()) {
     const auto holds = [i](const Particle& particle) { return particle.block.holds(i); };
     if (std::ranges::find_if(particles, holds)->slides()) {
-      all_.push_back({i, site_normal(space, x, space.collocation[static_cast<std::size_t>(i)])});
+      all_.push_back({i, projection_ ? Vec3(Vec3::Zero()) : site_normal(space, x, space.collocation[static_cast<std::size_t>(i)])});
       continue;
     }
     for (int c = 0; c < 3; ++c)
       if (symmetry_.signs().rows() == 0 || symmetry_.signs()(i, c) != 0) all_.push_back({i, Vec3::Unit(c)});
   }
+  if (projection_) {
+    normals_ = projection_->normals(x);
+    for (std::size_t i = 0; i < projection_->sites().size(); ++i) {
+      const int e = projection_->sites()[i].front().element;
+      const auto holds = [e](const Particle& one) { return e >= one.block.first_element && e < one.block.first_element + one.block.n_elements; };
+      if (!std::ranges::find_if(particles, holds)->slides()) normals_.row(static_cast<Eigen::Index>(i)).setZero();
+    }
+  }
+  for (const Particle& particle : particles)
+    if (particle.slides()) carry_whole(particle.block);
+}
+
+/// Translations of one drop become what they are, tangential parts included.
+void ShapeCoordinates::carry_whole(const spline::Block& block) {
+  for (int c = 0; c < 3; ++c) {
+    Net field = Net::Zero(sites_.rows(), 3);
+    field.middleRows(block.first_point, block.n_points).col(c).setOnes();
+    Net symmetric = field;
+    symmetry_.complete(symmetric);
+    if (symmetric != field) continue;
+    Eigen::VectorXd y = coordinates(field);
+    for (const Translation& other : translations_) {
+      const double part = other.coordinates.dot(y);
+      y -= part * other.coordinates, field -= part * other.field;
+    }
+    const double size = y.norm();
+    translations_.push_back({y / size, field / size, {}});
+  }
+  for (Translation& one : translations_) one.rest = one.field - across(one.coordinates);
 }
 
 Net ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
+  Net d = across(y);
+  for (const Translation& one : translations_) d += one.coordinates.dot(y) * one.rest;
+  return d;
+}
+
+/// The field with these coordinates that has no others.
+Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
-  for (Eigen::Index k = 0; k < size(); ++k) at_sites.row(all_[k].site) += y[k] * all_[k].direction.transpose();
+  Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());
+  for (Eigen::Index k = 0; k < size(); ++k)
+    if (projected(all_[k]))
+      outward[all_[k].site] = y[k];
+    else
+      at_sites.row(all_[k].site) += y[k] * all_[k].direction.transpose();
   symmetry_.complete(at_sites);
-  return collocation_.solve(at_sites);
+  Net d = collocation_.solve(at_sites);
+  if (projection_) {
+    for (Eigen::Index a = 0; a < outward.size(); ++a) outward[a] = outward[symmetry_.source()[static_cast<std::size_t>(a)]];
+    d += projection_->control_values((projection_->values() * outward).asDiagonal() * normals_);
+  }
+  return d;
 }
 
 Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
   const Net at_sites = sites_ * field;
-  Eigen::VectorXd y(size());
-  for (Eigen::Index k = 0; k < size(); ++k) y[k] = at_sites.row(all_[k].site).dot(all_[k].direction);
+  Eigen::VectorXd y(size()), outward;
+  if (projection_) outward = projection_->scalar_values((projection_->values() * field).cwiseProduct(normals_).rowwise().sum());
+  for (Eigen::Index k = 0; k < size(); ++k)
+    y[k] = projected(all_[k]) ? outward[all_[k].site] : at_sites.row(all_[k].site).dot(all_[k].direction);
   return y;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/types.hpp"
 #include "coupling/particle.hpp"
+#include "coupling/velocity_projection.hpp"
 #include "membrane/symmetric_solver.hpp"
 #include "spline/space.hpp"
 #include "surface/symmetry.hpp"
@@ -19,10 +20,15 @@ namespace tanktread::coupling {
 ///
 ///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
 ///
+/// and of that part of such a y that a translation has, the translation itself, which moves the mesh along the interface as well.
+/// Where velocities are projected, y are the control values of a scalar field there, that of the best fit to n.d; what moves the mesh along would
+/// otherwise show in them by the fourth power of the element.
+///
 /// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone.
 class ShapeCoordinates {
  public:
-  ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x);
+  ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
+                   const VelocityProjection* projection = nullptr);
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(all_.size()); }
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates
@@ -31,12 +37,23 @@ class ShapeCoordinates {
  private:
   struct Coordinate {
     int site;
-    Vec3 direction;
+    Vec3 direction;  // 0: of the projected field
   };
+  static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
+  struct Translation {
+    Eigen::VectorXd coordinates;  // orthonormal
+    Net field, rest;              // with these coordinates; less the one across the interface
+  };
+  void carry_whole(const spline::Block& block);
+  Net across(const Eigen::VectorXd& y) const;
+
   std::vector<Coordinate> all_;
+  std::vector<Translation> translations_;  // of drops
   surface::Symmetry symmetry_;
   Eigen::SparseMatrix<double> sites_;  // R
   membrane::SymmetricSolver collocation_;
+  const VelocityProjection* projection_;
+  Net normals_;  // at its sites, of drops
 };
 
 }  // namespace tanktread::coupling

@@ -29,6 +29,7 @@ class GuardedDynamics : public coupling::Dynamics {
   Net missed(const Net& dv, const Net& delta) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
+  std::vector<Net> relabellings(const Net& x) override { return motion_.relabellings(x); }
   Net symmetric(Net rate) const override { return motion_.symmetric(std::move(rate)); }
   double norm(const Net& displacement) const override;
 

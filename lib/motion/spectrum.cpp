@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/QR>
+
 #include "base/errors.hpp"
 #include "coupling/agreement.hpp"
 #include "coupling/eigenvalues.hpp"
@@ -31,14 +33,30 @@ const char* name(ModeKind kind) {
   return names[static_cast<int>(kind)];
 }
 
-Eigen::VectorXd linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference,
-                           const Eigen::VectorXd& y) {
-  const Net d = shapes.displacement(y);
-  const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / dynamics.norm(d);
-  const double e = difference * radius / d.rowwise().norm().maxCoeff();
-  const Net change = (dynamics.velocity(x + e * d) - dynamics.velocity(x - e * d)) / (2 * e);
+Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference)
+    : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference) {
+  const std::vector<Net> fields = dynamics.relabellings(x);
+  if (fields.empty()) return;
+  Eigen::MatrixXd all(x.size(), static_cast<Eigen::Index>(fields.size()));
+  for (Eigen::Index k = 0; k < all.cols(); ++k) all.col(k) = fields[static_cast<std::size_t>(k)].reshaped();
+  relabelling_ = all.colPivHouseholderQr().solve(dynamics.velocity(x).reshaped());
+}
+
+Net Linearised::velocity(const Net& x) const {
+  Net v = dynamics_.velocity(x);
+  if (relabelling_.size() == 0 || !v.allFinite()) return v;
+  const std::vector<Net> fields = dynamics_.relabellings(x);
+  for (std::size_t k = 0; k < fields.size(); ++k) v -= relabelling_[static_cast<Eigen::Index>(k)] * fields[k];
+  return v;
+}
+
+Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
+  const Net d = shapes_.displacement(y);
+  const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / dynamics_.norm(d);
+  const double e = difference_ * radius / d.rowwise().norm().maxCoeff();
+  const Net change = (velocity(x_ + e * d) - velocity(x_ - e * d)) / (2 * e);
   if (!change.allFinite()) throw RunFailure("the velocity of a shape close to the one that is linearised about cannot be had");
-  return shapes.coordinates(change);
+  return shapes_.coordinates(change);
 }
 
 namespace {
@@ -111,7 +129,8 @@ using Pairs = std::vector<coupling::Eigenpair>;
 Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
   Eigen::MatrixXd jacobian(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(dynamics, shapes, x, options.difference, Eigen::VectorXd::Unit(n, k));
+  const Linearised linearised(dynamics, shapes, x, options.difference);
+  for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(Eigen::VectorXd::Unit(n, k));
   coupling::take_first({jacobian.data(), static_cast<std::size_t>(jacobian.size())});
   return coupling::eigenpairs(std::move(jacobian));
 }
@@ -121,6 +140,7 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
               const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
   const double step = 1 / options.shift.value();
+  const Linearised linearised(dynamics, shapes, x, options.difference);
   dynamics.freeze(x);
   dynamics.linearise(x);
   const Eigen::Index n = shapes.size();
@@ -130,7 +150,7 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
       {{"shape", n}},
       [&](const double* in, double* out) {
         const Eigen::VectorXd y = Numbers(in, n);
-        Eigen::Map<Eigen::VectorXd>(out, n) = y - step * linearised(dynamics, shapes, x, options.difference, y);
+        Eigen::Map<Eigen::VectorXd>(out, n) = y - step * linearised(y);
       },
       [&](const double* in, double* out) {
         const Net r = shapes.displacement(Numbers(in, n));

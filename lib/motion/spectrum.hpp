@@ -45,8 +45,25 @@ struct Mode {
 /// J y for the coordinates y of a displacement of x, by a central difference of velocities:
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
-Eigen::VectorXd linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference,
-                           const Eigen::VectorXd& y);
+///
+/// v without the relabellings (Dynamics::relabellings) that it consists of at a shape at rest: modes are changes of shape as seen from outside.
+class Linearised {
+ public:
+  /// About x, which the motion outlives, as all else here. Collective.
+  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference);
+
+  /// J y. Throws RunFailure where a velocity cannot be had. Collective.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& y) const;
+
+ private:
+  Net velocity(const Net& x) const;
+
+  coupling::Dynamics& dynamics_;
+  const coupling::ShapeCoordinates& shapes_;
+  const Net& x_;
+  double difference_;
+  Eigen::VectorXd relabelling_;  // parts of v(x)
+};
 
 /// The leading modes of the motion about x, as `options` ask, whose shift is given. `flux`: dV/dx, which tells the mode that only the conserved
 /// volume keeps at rate 0. `solver`: of the shift-inverted systems. Collective. Throws RunFailure where a velocity or the eigenvalues cannot be had.

@@ -22,16 +22,11 @@ void SteadyOptions::declare(deck::Section& section) {
 
 namespace {
 
-/// Control values of orthonormal fields that span rigid motions of x.
-std::vector<Net> fields(const std::vector<coupling::RigidMotion>& motions, const Net& x) {
-  std::vector<Net> all;
-  for (const coupling::RigidMotion& motion : motions) {
-    Net field = coupling::rigid_velocity(x, motion, Vec3::Zero());
-    const double size = field.norm();
-    for (const Net& other : all) field -= other.cwiseProduct(field).sum() * other;
-    if (field.norm() > 1e-6 * size) all.push_back(field / field.norm());
-  }
-  return all;
+/// Joins to orthonormal fields the part of another that they lack, where that is more than this share of it.
+void join(std::vector<Net>& all, Net field, double least) {
+  const double size = field.norm();
+  for (const Net& other : all) field -= other.cwiseProduct(field).sum() * other;
+  if (field.norm() > least * size) all.push_back(field / field.norm());
 }
 
 }  // namespace
@@ -39,12 +34,20 @@ std::vector<Net> fields(const std::vector<coupling::RigidMotion>& motions, const
 SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start)
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
+std::vector<Net> SteadyEquations::neutral(const Net& x) {
+  constexpr double rounding = 1e-6, between_meshes = 0.05;  // a mesh that turns with an axisymmetric drop is the same but for the mesh's error
+  std::vector<Net> all;
+  for (const coupling::RigidMotion& motion : free_) join(all, coupling::rigid_velocity(x, motion, Vec3::Zero()), rounding);
+  for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
+  return all;
+}
+
 Net SteadyEquations::residual(const Net& x) {
   Net volume = x;
   dynamics_.restore_volume(volume);
   const Net v = dynamics_.velocity(x);
   Net r = step_ * v + (volume - x);
-  for (const Net& field : fields(free_, x)) r -= (step_ * field.cwiseProduct(v).sum() + field.cwiseProduct(x - start_).sum()) * field;
+  for (const Net& field : neutral(x)) r -= (step_ * field.cwiseProduct(v).sum() + field.cwiseProduct(x - start_).sum()) * field;
   return r;
 }
 
@@ -92,15 +95,18 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   dynamics.freeze(x);
   Net best = x;
   double rest = std::numeric_limits<double>::infinity();
+  const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";
   const auto corrected = [&](const Net& y) -> Net {
-    const Net delta = equations.precondition(y, equations.residual(y));
+    const Net r = equations.residual(y), delta = equations.precondition(y, r);
     const double size = dynamics.norm(delta);
     if (size < rest) rest = size, best = y;
-    return y + delta;
+    return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
+  const coupling::FixedPoint::Norm left = [&](const Net& r) { return dynamics.norm(equations.precondition(best, r)); };  // correction that r asks for
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady));
-  const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x);
+  const coupling::FixedPoint::Norm none;
+  const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, bare ? left : none);
   x = std::move(best);
   dynamics.restore_volume(x);
   return {found.iterations, found.converged, rest};

@@ -35,8 +35,8 @@ struct SteadyReport {
   double rest = 0;  ///< the correction that was left
 };
 
-/// What a shape x at rest obeys that x0 leads to: with Q the projection onto the rigid motions about the origin in `free`, which lead from one such
-/// shape to others, and x_V what the volume makes of x,
+/// What a shape x at rest obeys that x0 leads to: with Q the projection onto what leads from one such shape to others, the rigid motions about the
+/// origin in `free` and what relabels the points of a surface (Dynamics::relabellings), and x_V what the volume makes of x,
 ///
 ///   G(x) = (1 - Q) v(x) + (x_V - x)/s - Q (x - x0)/s = 0                                                           (4.17)
 class SteadyEquations {
@@ -47,6 +47,7 @@ class SteadyEquations {
   Net residual(const Net& x);                          ///< s G(x), not finite where it cannot be had. Collective
   Net precondition(const Net& x, const Net& r);  ///< (1 - s J)^{-1} r with the frozen Jacobian (4.3), linearised at x. Collective
   double unit_length() const;                          ///< of a displacement, in the norm of all its numbers, where it is 1 in that of the motion
+  std::vector<Net> neutral(const Net& x);  ///< orthonormal fields that Q projects onto. Collective
   coupling::Dynamics& dynamics() { return dynamics_; }
   double step() const { return step_; }
 

@@ -60,6 +60,10 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
 /// Parts below this share of the element's side are not cut again: the target is as good as on the element.
 constexpr double smallest = 1e-8;
 
+/// A part whose squares of the sides differ by less than this factor is cut both ways: of one that is square, as symmetric shapes have them, rounding
+/// would choose the side, and with it what the rule errs by.
+constexpr double square = 1.01;
+
 /// Far more than a target on the element takes (some hundreds): the shape is beyond repair.
 constexpr int most_parts = 100'000;
 
@@ -84,15 +88,14 @@ void graded(std::span<const double> bezier, int degree, const Vec3& target, cons
     const int n_s = std::max(order_for(error, seen.rho_u), order_for(demand.tolerance, rho_smooth / p.width));
     const int n_t = std::max(order_for(error, seen.rho_v), order_for(demand.tolerance, rho_smooth / p.height));
     const bool enough = std::max(n_s, n_t) <= largest && bulge <= flat_enough * seen.distance;
-    const bool wide = flat.u.squaredNorm() > flat.v.squaredNorm();
     if (enough || std::max(p.width, p.height) < smallest) {
       add(p, std::min(n_s, largest), std::min(n_t, largest), rule);
-    } else if (wide) {
-      parts.push_back({p.s + p.width / 2, p.t, p.width / 2, p.height});
-      parts.push_back({p.s, p.t, p.width / 2, p.height});
     } else {
-      parts.push_back({p.s, p.t + p.height / 2, p.width, p.height / 2});
-      parts.push_back({p.s, p.t, p.width, p.height / 2});
+      const double longer = flat.u.squaredNorm() / flat.v.squaredNorm();
+      const int in_s = longer > 1 / square ? 2 : 1, in_t = longer < square ? 2 : 1;
+      const double width = p.width / in_s, height = p.height / in_t;
+      for (int j = in_t; j-- > 0;)
+        for (int i = in_s; i-- > 0;) parts.push_back({p.s + i * width, p.t + j * height, width, height});
     }
   }
 }

@@ -51,7 +51,7 @@ Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, cons
 
 void Layer::set_symmetry(const surface::Symmetry& symmetry) {
   surface_.set_symmetry(symmetry);
-  fundamental_sites_ = symmetry.fundamental();
+  if (surface_.n_sites == surface_.n_points) fundamental_sites_ = symmetry.fundamental();
   tree_rows_.clear();
 }
 

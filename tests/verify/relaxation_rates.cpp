@@ -1,5 +1,6 @@
 // Spheres in a fluid at rest: how fast their harmonics relax, against Lamb's solution (4.18) for drops and the 2 x 2 system (4.19) of capsules.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -45,7 +46,7 @@ struct Sphere {
           return settings;
         }()) {
     const Net& x = scene.body().rest;
-    const coupling::ShapeCoordinates shapes(scene.body().space, scene.capsule->particles(), scene.body().symmetry, x);
+    const coupling::ShapeCoordinates shapes(scene.body().space, scene.capsule->particles(), scene.body().symmetry, x, scene.capsule->projection());
     motion::SpectrumOptions options;
     options.number = static_cast<int>(shapes.size());
     modes = motion::spectrum(*scene.capsule, shapes, x, scene.capsule->geometry().volume_gradient(x), options, {});
@@ -91,6 +92,29 @@ TEST_P(OfDrops, ConvergeToLambsSolution) {
   const double fine = std::abs(Sphere(drop, 8).second_harmonic(exact) / exact - 1);
   EXPECT_LT(fine, 3e-4);
   EXPECT_GT(std::log2(coarse / fine), 3);  // 4 between n = 6 and 12
+}
+
+TEST_P(OfDrops, ConvergeFasterWhereVelocitiesAreProjected) {
+  const double lambda = GetParam(), exact = drop_rate(2, lambda);
+  const std::vector<std::string> drop = {"Membrane/law=surface tension", "Membrane/surface tension=1", "Solvers/projection=least squares",
+                                         "Particle/viscosity ratio=" + std::to_string(lambda)};
+  const double coarse = std::abs(Sphere(drop, 4).second_harmonic(exact) / exact - 1);
+  const double fine = std::abs(Sphere(drop, 6).second_harmonic(exact) / exact - 1);
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_GT(std::log(coarse / fine) / std::log(1.5), 5);
+}
+
+TEST(RelaxationRates, OfTranslationsOfADropAreZero) {
+  for (const char* projection : {"collocation", "least squares"}) {
+    const Sphere sphere({"Membrane/law=surface tension", "Membrane/surface tension=1", "Symmetry/use=none",
+                         std::string("Solvers/projection=") + projection}, 3);
+    const auto translates = [](const motion::Mode& mode) { return mode.kind == motion::ModeKind::translation; };
+    EXPECT_EQ(std::ranges::count_if(sphere.modes, translates), 3) << projection;
+    for (const motion::Mode& mode : sphere.modes)
+      if (translates(mode)) {
+        EXPECT_NEAR(std::abs(mode.rate), 0, 1e-8) << projection;
+      }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(RelaxationRates, OfDrops, testing::Values(0.1, 1., 10.));
