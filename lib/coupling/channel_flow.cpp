@@ -55,23 +55,25 @@ Net ChannelFlow::ends(const Net& x) const { return ends_[0].velocities(x) + ends
 Net ChannelFlow::tightened(const Net& traction, double pressure_drop, bool with_ends) const {
   const std::shared_ptr<Wall> wall = this->wall();
   const spline::Space& space = surface_->space;
-  const auto n = static_cast<Eigen::Index>(space.elements.size());
   stokes::Sites centres;
-  Net x(n, 3), v(n, 3), mean = Net::Zero(space.n_points, 3);
-  std::vector<int> all(static_cast<std::size_t>(n));
-  for (Eigen::Index e = 0; e < n; ++e) {
-    all[static_cast<std::size_t>(e)] = static_cast<int>(e);
-    centres.push_back({{static_cast<int>(e), 0.5, 0.5}});
-    x.row(e) = surface::value(space, surface_->net, centres.back().front()).transpose();
-  }
+  std::vector<int> row(space.elements.size(), -1), all;  // of elements that fundamental points are on
+  for (const int i : wall->symmetry().fundamental())
+    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)])
+      if (int& own = row[static_cast<std::size_t>(site.element)]; own < 0) {
+        all.push_back(own = static_cast<int>(centres.size()));
+        centres.push_back({{site.element, 0.5, 0.5}});
+      }
+  Net x(static_cast<Eigen::Index>(centres.size()), 3), v = x, mean = Net::Zero(space.n_points, 3);
+  for (const int k : all) x.row(k) = surface::value(space, surface_->net, centres[static_cast<std::size_t>(k)].front()).transpose();
   stokes::Layer on_wall(stokes::Layer::Kernel::single_layer, space, centres, sharper());
   on_wall.place(surface_->net);
   on_wall.apply(traction, all, v);
   v = (pressure_drop * wall->inlet().integral(x) - v) / viscosity();
   if (with_ends) v += ends(x);
-  for (int i = 0; i < space.n_points; ++i) {
+  for (const int i : wall->symmetry().fundamental()) {
     const std::vector<spline::Site>& around = space.collocation[static_cast<std::size_t>(i)];
-    for (const spline::Site& site : around) mean.row(i) += mean_of_wave / static_cast<double>(around.size()) * v.row(site.element);
+    const double share = mean_of_wave / static_cast<double>(around.size());
+    for (const spline::Site& site : around) mean.row(i) += share * v.row(row[static_cast<std::size_t>(site.element)]);
   }
   return traction + viscosity() * wall->solve(mean);
 }
@@ -80,7 +82,12 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   if (solved_) return *solved_;
   const std::shared_ptr<Wall> wall = this->wall();
   Solved solved;
-  const Net without = tightened(viscosity() * wall->solve(ends(wall->sites())), 0, true), with = tightened(wall->pumped(), 1, false);
+  const std::vector<int>& rows = wall->symmetry().fundamental();
+  Net at_rows(static_cast<Eigen::Index>(rows.size()), 3), of_ends = Net::Zero(wall->sites().rows(), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) at_rows.row(static_cast<Eigen::Index>(k)) = wall->sites().row(rows[k]);
+  const Net found = ends(at_rows);
+  for (std::size_t k = 0; k < rows.size(); ++k) of_ends.row(rows[k]) = found.row(static_cast<Eigen::Index>(k));
+  const Net without = tightened(viscosity() * wall->solve(of_ends), 0, true), with = tightened(wall->pumped(), 1, false);
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points at = section(middle, 1).points();
   const Vec3 along = channel_->section(middle).along;

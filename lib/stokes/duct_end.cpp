@@ -13,12 +13,23 @@ namespace {
 using surface::Vec2;
 
 constexpr int far_around = 24, far_order = 5, close_order = 7;
-constexpr double far = 1.2;  // in radii of the end: where the far nodes do
+constexpr double far = 1.2, smallest = 1e-5;  // in radii of the end: where the far nodes do; cells that are not halved
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;
   axes << place.along, place.across, Vec3::UnitZ();
   return axes;
+}
+
+using Components = std::vector<double>[3];
+
+PointForces forces(const Components& x, const Components& f) {
+  return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
+}
+
+Stresslets stresslets(const Components& x, const Components& v, const Components& n) {
+  return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), v[0].data(), v[1].data(), v[2].data(), n[0].data(), n[1].data(),
+          n[2].data()};
 }
 
 }  // namespace
@@ -31,7 +42,13 @@ DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inwa
       throw UserError("Channel/outline must be seen from its centroid without hiding itself at the ends of a channel.");
   }
   Nodes nodes;
-  for (const Cell& cell : cells(far_around)) add(cell, far_order, nodes);
+  cells_ = cells(far_around);
+  for (const Cell& cell : cells_) {
+    add(cell, far_order, nodes);
+    Nodes own;
+    add(cell, close_order, own);
+    close_.push_back(sources(own));
+  }
   far_ = sources(nodes);
 }
 
@@ -66,21 +83,24 @@ void DuctEnd::add(const Cell& cell, int order, Nodes& nodes) const {
   }
 }
 
-/// `at`: height above the plane, and the place in it.
-void DuctEnd::add_graded(const Cell& cell, const Vec3& at, double smallest, Nodes& nodes) const {
+/// Whether a point is closer to a cell than the cell is long, and which way that is longer; `at`: height above the plane, and the place in it.
+bool DuctEnd::close(const Cell& cell, const Vec3& at, bool& around) const {
   const Vec2 a = ray(cell, cell.t[0], cell.r[0]), b = ray(cell, cell.t[1], cell.r[0]), c = ray(cell, cell.t[0], cell.r[1]),
              d = ray(cell, cell.t[1], cell.r[1]), middle = ray(cell, (cell.t[0] + cell.t[1]) / 2, (cell.r[0] + cell.r[1]) / 2);
-  const double around = (d - c).norm(), outward = (c - a).norm(), size = std::max(around, outward);
+  const double wide = (d - c).norm(), outward = (c - a).norm(), size = std::max(wide, outward);
   const double reach = std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm(), (d - middle).norm()});
-  const double distance = std::hypot(at[0], std::max(0., (at.tail<2>() - middle).norm() - reach));
-  if (distance > size || size < smallest) return add(cell, close_order, nodes);
-  const bool halve_around = around > outward;
+  around = wide > outward;
+  return std::hypot(at[0], std::max(0., (at.tail<2>() - middle).norm() - reach)) <= size && size > smallest * flow_.radius();
+}
+
+void DuctEnd::add_graded(const Cell& cell, const Vec3& at, Nodes& nodes) const {
+  bool around = false;
+  if (!close(cell, at, around)) return add(cell, close_order, nodes);
   for (const int k : {0, 1}) {
     Cell half = cell;
-    double(&range)[2] = halve_around ? half.t : half.r;
-    const double whole[2] = {range[0], range[1]};
-    range[1 - k] = (whole[0] + whole[1]) / 2;
-    add_graded(half, at, smallest, nodes);
+    double(&range)[2] = around ? half.t : half.r;
+    range[1 - k] = (range[0] + range[1]) / 2;
+    add_graded(half, at, nodes);
   }
 }
 
@@ -108,39 +128,39 @@ DuctEnd::Sources DuctEnd::sources(const Nodes& nodes) const {
   return all;
 }
 
+void DuctEnd::add(const Sources& s, const Vec3& target, Eigen::Ref<Eigen::Matrix<double, 1, 3>> u) {
+  double by_forces[3], by_stresslets[3];
+  const double none[3] = {};
+  node_sum(forces(s.x, s.force), target.data(), by_forces);
+  node_sum(stresslets(s.x, s.velocity, s.normal), target.data(), none, by_stresslets);
+  for (int c = 0; c < 3; ++c) u[c] += by_forces[c] + by_stresslets[c];
+}
+
 Net DuctEnd::velocities(const Net& x) const {
-  const auto forces = [](const Sources& s) {
-    return PointForces{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.force[0].data(), s.force[1].data(),
-                       s.force[2].data()};
-  };
-  const auto stresslets = [](const Sources& s) {
-    return Stresslets{static_cast<int>(s.x[0].size()), s.x[0].data(), s.x[1].data(), s.x[2].data(), s.velocity[0].data(), s.velocity[1].data(),
-                      s.velocity[2].data(), s.normal[0].data(), s.normal[1].data(), s.normal[2].data()};
-  };
   const Mat3 turn = axes(place_);
-  const double radius = flow_.radius();
   Net u = Net::Zero(x.rows(), 3);
   std::vector<Vec3> at;
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const Vec3 target = x.row(i).transpose(), local = turn.transpose() * (target - place_.centre);
-    if (std::abs(local[0]) > far * radius) {
+    if (std::abs(local[0]) > far * flow_.radius()) {
       at.push_back(target), rows.push_back(i);
       continue;
     }
     Nodes nodes;
-    for (const Cell& cell : cells(far_around)) add_graded(cell, local, 1e-7 * radius, nodes);
-    const Sources close = sources(nodes);
-    double by_forces[3], by_stresslets[3];
-    const double none[3] = {};
-    node_sum(forces(close), target.data(), by_forces);
-    node_sum(stresslets(close), target.data(), none, by_stresslets);
-    for (int c = 0; c < 3; ++c) u(i, c) = by_forces[c] + by_stresslets[c];
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+      bool around = false;
+      if (close(cells_[k], local, around))
+        add_graded(cells_[k], local, nodes);
+      else
+        add(close_[k], target, u.row(i));
+    }
+    if (!nodes.area.empty()) add(sources(nodes), target, u.row(i));
   }
   std::vector<double> one(3 * at.size()), other(3 * at.size());
   const std::vector<Vec3> none(at.size(), Vec3::Zero());
-  far_sums(forces(far_), at, one.data());
-  far_sums(stresslets(far_), at, none, other.data());
+  far_sums(forces(far_.x, far_.force), at, one.data());
+  far_sums(stresslets(far_.x, far_.velocity, far_.normal), at, none, other.data());
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c) u(rows[k], static_cast<Eigen::Index>(c)) = one[3 * k + c] + other[3 * k + c];
   return u;
@@ -148,7 +168,7 @@ Net DuctEnd::velocities(const Net& x) const {
 
 DuctEnd::Points DuctEnd::points() const {
   Nodes nodes;
-  for (const Cell& cell : cells(far_around)) add(cell, close_order, nodes);
+  for (const Cell& cell : cells_) add(cell, close_order, nodes);
   const auto n = static_cast<Eigen::Index>(nodes.area.size());
   Points points{Net(n, 3), Eigen::Map<const Eigen::VectorXd>(nodes.area.data(), n)};
   for (Eigen::Index k = 0; k < n; ++k) {

@@ -43,18 +43,22 @@ class DuctEnd {
     std::vector<double> y[2], area;
   };
   void add(const Cell& cell, int order, Nodes& nodes) const;
-  void add_graded(const Cell& cell, const Vec3& at, double smallest, Nodes& nodes) const;
+  void add_graded(const Cell& cell, const Vec3& at, Nodes& nodes) const;
   surface::Vec2 ray(const Cell& cell, double t, double r) const;
   struct Sources {
     std::vector<double> x[3], force[3], velocity[3], normal[3];
   };
   Sources sources(const Nodes& nodes) const;
+  static void add(const Sources& sources, const Vec3& target, Eigen::Ref<Eigen::Matrix<double, 1, 3>> u);
+  bool close(const Cell& cell, const Vec3& at, bool& around) const;
   std::vector<Cell> cells(int around) const;
 
   DuctFlow flow_;
   surface::Channel::Section place_;
   double inward_;
   Sources far_;
+  std::vector<Cell> cells_;
+  std::vector<Sources> close_;  // of each cell, for points that are near the plane but not near it
 };
 
 }  // namespace tanktread::stokes
