@@ -32,16 +32,6 @@ std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 
 }  // namespace
 
-/// Targets of one call, and where they are.
-struct Layer::Targets {
-  std::span<const int> rows, far_rows;  ///< rows of u with near rules, and with far sums
-  const Net& at;                        ///< places
-  const Net& f0;                        ///< what is taken from the density of a double layer
-  std::span<const int> in_tree;         ///< all targets that clusters are made of, ascending
-  bool sites;                           ///< they are sites of the surfaces
-  const Near* kept = nullptr;
-};
-
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
   if (sums_by_tree(space, options)) tree_.emplace(single() ? options.tolerance : options.tolerance / 2);  // measured: it errs by half of its share
@@ -76,6 +66,7 @@ void Layer::share(int part, int parts, std::vector<int> everybody) {
   if (!tree_ || parts == 1) return;
   everybody_ = std::move(everybody);
   tree_->share(part, parts);
+  if (images_) images_->share(part, parts);
   tree_rows_.clear();
 }
 
@@ -90,6 +81,7 @@ void Layer::place(const Net& x, Measure measure) {
   if (single() && measure == Measure::reference) weight_ = weight_unstressed_;
   if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
   if (cell_) place_in_cell();
+  if (images_) images_->place(surface_.node);
 }
 
 void Layer::place_in_cell() {
@@ -183,6 +175,7 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 void Layer::integrate(const Targets& targets, Net& u) {
   add_far(targets, u);
   if (cell_) add_rest(targets, u);
+  if (images_) add_images(targets, u);
   {
     const auto clock = phases_.time("near");
     if (targets.kept) add_kept(targets, u);

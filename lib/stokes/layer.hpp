@@ -10,6 +10,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/far_kernel.hpp"
+#include "stokes/image_sum.hpp"
 #include "stokes/kernels.hpp"
 #include "stokes/layer_surface.hpp"
 #include "stokes/periodic_sum.hpp"
@@ -70,6 +71,10 @@ class Layer {
   /// and int T n is that of (2.3). Again for each cell of one that deforms. What is assembled leaves images out.
   void repeat(const PeriodicCell& cell);
 
+  /// States that there is a plane wall, which all shapes to come are in front of: G and T are those that vanish on it, (2.35) and (2.36). Not on a
+  /// lattice. What is assembled of near control points alone leaves the wall out.
+  void set_wall(const PlaneWall& wall);
+
   /// Shares the far sums of the sites `everybody`, where they are taken by clusters, among callers 0 .. parts - 1: from now on `apply` fills these
   /// rows with what adds up to the layer over all callers; near and singular panels are counted by the caller whose targets they concern.
   void share(int part, int parts, std::vector<int> everybody);
@@ -107,6 +112,9 @@ class Layer {
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
+  /// The same of what the wall adds alone.
+  void assemble_images(std::span<const int> sites, Rows<double>& a);
+
   /// Of A only the blocks A_iB of near control points: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j]. Single layer. Targets side
   /// by side should be neighbours: sixteen of them share the panels that carry their near points.
   void assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries);
@@ -126,7 +134,15 @@ class Layer {
   const Phases& phases() const { return phases_; }
 
  private:
-  struct Targets;
+  /// Targets of one call, and where they are.
+  struct Targets {
+    std::span<const int> rows, far_rows;  ///< rows of u with near rules, and with far sums
+    const Net& at;                        ///< places
+    const Net& f0;                        ///< what is taken from the density of a double layer
+    std::span<const int> in_tree;         ///< all targets that clusters are made of, ascending
+    bool sites;                           ///< they are sites of the surfaces
+    const Near* kept = nullptr;
+  };
   template <class Real>
   class RowSums;
 
@@ -155,6 +171,13 @@ class Layer {
   void add_kept(const Targets& targets, Net& u) const;
   const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
   void panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
+  void add_images(const Targets& targets, Net& u);
+  void add_near_images(const Targets& targets, Net& u);
+  void take_image_stress();
+  Vec3 beyond_image_sum(int e, const PointTable& table, const Vec3& below, const Vec3& at, const Vec3& f0);
+  void image_moments(int e, const Vec3& at, std::vector<Mat3>& moments);
+  template <class Real>
+  void add_image_rows(std::span<const int> targets, const Net* at, Rows<Real>& a);
   Mat3 identities(int site) const;
   void subtract_identities(std::span<const int> sites, Net& u);
   template <class Real>
@@ -179,6 +202,8 @@ class Layer {
   std::vector<Vec3> near_images_{Vec3::Zero()};                    // of panels that a target may be close to
   std::vector<Vec3> rest_at_;                                      // targets in the cell
   std::vector<Mat3> rest_stress_;                                  // what the rest of a lattice takes from values there
+  std::optional<ImageSum> images_;                                 // in a plane wall
+  std::vector<Mat3> image_stress_;                                 // what they take from values at the targets
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows that far sums are shared of; empty: they are not
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows wanted of it; none: it is to be placed

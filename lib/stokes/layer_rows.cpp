@@ -188,6 +188,7 @@ void Layer::assemble_rows(std::span<const int> targets, const Net* at, Rows<Real
       write_rows(3 * static_cast<int>(first + l), surface_.n_points, &rows.sums[l], a);
     }
   }
+  if (images_) add_image_rows(targets, at, a);
   if (single() && surface_.options.rule == "desingularised") subtract_identities(targets, a);
 }
 

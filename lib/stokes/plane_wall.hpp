@@ -1,0 +1,30 @@
+#pragma once
+// A plane wall that the fluid sticks to.
+
+#include <Eigen/Geometry>
+
+#include "base/types.hpp"
+
+namespace tanktread::stokes {
+
+/// Through `point`, with `normal` into the fluid; it may move along itself at one velocity.
+class PlaneWall {
+ public:
+  PlaneWall(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal.normalized()) {
+    const Vec3 first = normal_.cwiseAbs() == Vec3(0, 0, 1) ? Vec3::UnitX() : Vec3(normal_.unitOrthogonal());
+    axes_ << first.transpose(), normal_.cross(first).transpose(), normal_.transpose();
+  }
+
+  const Vec3& point() const { return point_; }
+  const Vec3& normal() const { return normal_; }    ///< of length 1
+  const Mat3& axes() const { return axes_; }        ///< rows: two along the wall, the normal
+  double height(const Vec3& x) const { return normal_.dot(x - point_); }  ///< over the wall, below 0 behind it
+  Vec3 mirrored(const Vec3& x) const { return x - 2 * height(x) * normal_; }
+  Vec3 in_axes(const Vec3& x) const { return axes_ * (x - point_); }  ///< seen from the point, in the wall's axes
+
+ private:
+  Vec3 point_, normal_;
+  Mat3 axes_;
+};
+
+}  // namespace tanktread::stokes
