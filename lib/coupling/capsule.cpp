@@ -70,7 +70,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   make_layers();
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
-  if (by_sites()) sites_ = collocation_matrix(space);
+  if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
@@ -104,6 +104,8 @@ void Capsule::make_layers() {
   if (!contrasts.empty() && projection_) make(site_double_layer_, Layer::Kernel::double_layer, space_.collocation, contrasts);
   std::vector<int> everybody = symmetry.fundamental();
   if (projection_) everybody.resize(projection_->sites().size()), std::iota(everybody.begin(), everybody.end(), 0);
+  if (parameters_.wall) layer_.set_wall(*parameters_.wall);
+  if (parameters_.wall && double_layer_) double_layer_->set_wall(*parameters_.wall);
   layer_.share(ranks_.rank(), ranks_.size(), everybody);
   if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
 }
@@ -329,7 +331,8 @@ Net Capsule::evaluate(Net x, const Net& guess) {
 /// system of all (solve_velocity).
 Net Capsule::evaluate_here(Net x, const Net& guess) {
   rigid_.place(x);
-  if (!x.allFinite() || (tube_ && !enter_tube(x))) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
+    return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
@@ -407,6 +410,15 @@ bool Capsule::enter_tube(const Net& x) {
     return (place - outline.centroid()).norm() >= inner_radius_ && !outline.inside(place);
   });
   return !ranks_.any(outside);
+}
+
+/// Whether all sites are, if there is one.
+bool Capsule::in_front_of_wall(const Net& x) {
+  if (!parameters_.wall) return true;
+  const Net at = sites_ * x;
+  for (Eigen::Index i = 0; i < at.rows(); ++i)
+    if (!(parameters_.wall->height(at.row(i).transpose()) > 0)) return false;
+  return true;
 }
 
 /// M0^-1 C v, with C as it was updated last.

@@ -59,6 +59,7 @@ struct CapsuleParameters {
   SolverOptions solvers;
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< at time zero, of a lattice that the flow carries along; none: unbounded space, or a tube
+  std::optional<stokes::PlaneWall> wall;     ///< that everything is in front of; none: unbounded space, a lattice or a tube
   surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
 };
 
@@ -79,6 +80,9 @@ struct CapsuleParameters {
 ///
 /// On a lattice the layers are those of all images (Layer::repeat). Every particle is evaluated where its mean is in the cell around the origin, and
 /// moves on where it is, with what the flow is faster there. Frozen operators leave images out.
+///
+/// Beside a plane wall the layers are those of their images too (Layer::set_wall); the frozen operator by one node a control point leaves
+/// images out.
 ///
 /// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the
 /// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
@@ -201,6 +205,7 @@ class Capsule : public Dynamics {
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
+  bool in_front_of_wall(const Net& x);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
   bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
 
@@ -232,7 +237,7 @@ class Capsule : public Dynamics {
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
-  Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube
+  Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube or a wall
   std::optional<stokes::PeriodicCell> cell_;  // now
   double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
   std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised

@@ -1,5 +1,8 @@
 #include <limits>
 #include <numbers>
+#include <vector>
+
+#include <Eigen/LU>
 
 #include "coupling/rigid_body.hpp"
 
@@ -14,7 +17,7 @@ FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radi
       tolerance_(solvers.tolerance),
       unknowns_(Eigen::VectorXd::Zero(body.surface().size() + 6)) {}
 
-/// Everything in the body's axes. Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
+/// Everything in the body's axes.
 const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Mat3 turn = rotation_of(place);
@@ -24,14 +27,28 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
     solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
     return solution_;
   }
+  Net f;
+  RigidMotion own;
+  body_.wall() ? solve_beside_wall(place, f, own) : solve_in_tube(place, f, own);
+  place_ = place;
+  solution_.motion = {turn * own.velocity, turn * own.angular_velocity};
+  solution_.density = f * turn.transpose();
+  solution_.stresslet = -turn * body_.stresslet(f, centre_) * turn.transpose();
+  solution_.pressure_drop = body_.pressure_drop(f);
+  return solution_;
+}
+
+/// Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
+void FreeBodyInTube::solve_in_tube(const Net& place, Net& f, RigidMotion& own) const {
+  const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();
   const double unit = viscosity_ / radius_, force_unit = 6 * std::numbers::pi * viscosity_ * radius_;
   const auto motion_of = [&](const double* m) { return RigidMotion{Eigen::Map<const Vec3>(m), Eigen::Map<const Vec3>(m + 3) / radius_}; };
   const auto apply = [&](const double* in, double* out) {
-    const Net f = unit * Eigen::Map<const Net>(in, n, 3);
-    Eigen::Map<Net>(out, n, 3) = body_.velocity(f) - rigid_velocity(surface_, motion_of(in + 3 * n), centre_);
-    Eigen::Map<Vec3>(out + 3 * n) = body_.force(f) / force_unit;
-    Eigen::Map<Vec3>(out + 3 * n + 3) = body_.torque(f, centre_) / (force_unit * radius_);
+    const Net of = unit * Eigen::Map<const Net>(in, n, 3);
+    Eigen::Map<Net>(out, n, 3) = body_.velocity(of) - rigid_velocity(surface_, motion_of(in + 3 * n), centre_);
+    Eigen::Map<Vec3>(out + 3 * n) = body_.force(of) / force_unit;
+    Eigen::Map<Vec3>(out + 3 * n + 3) = body_.torque(of, centre_) / (force_unit * radius_);
   };
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * n + 6);
   Eigen::Map<Net>(rhs.data(), n, 3) = -body_.ambient(flow_);
@@ -39,15 +56,41 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   const SolveReport report = krylov_.solve({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, {}}, rhs, unknowns_, tolerance_);
   iterations_ += report.iterations;
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
+  f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);
+  own = motion_of(unknowns_.data() + 3 * n);
+}
 
-  const Net f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);
-  const RigidMotion own = motion_of(unknowns_.data() + 3 * n);
-  place_ = place;
-  solution_.motion = {turn * own.velocity, turn * own.angular_velocity};
-  solution_.density = f * turn.transpose();
-  solution_.stresslet = -turn * body_.stresslet(f, centre_) * turn.transpose();
-  solution_.pressure_drop = body_.pressure_drop(f);
-  return solution_;
+/// f of the body at rest and of six unit motions; their sum has the force and torque given, but for what collocation lacks of them, which one more
+/// change of the motion makes up for.
+void FreeBodyInTube::solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const {
+  using Six = Eigen::Matrix<double, 6, 1>;
+  const Mat3 turn = rotation_of(place);
+  const auto integrals = [&](const Net& of) {
+    Six both;
+    both << body_.force(of), body_.torque(of, centre_);
+    return both;
+  };
+  std::vector<Net> z;
+  Eigen::Matrix<double, 6, 6> resistance;
+  for (int k = 0; k < 6; ++k) {
+    z.push_back(body_.force_density(rigid_velocity(surface_, unit_motion(k), centre_)));
+    resistance.col(k) = integrals(z.back());
+  }
+  f = body_.force_density(-body_.ambient(flow_));
+  const auto move = [&](const Six& missing) {
+    const Six change = resistance.partialPivLu().solve(missing);
+    for (int k = 0; k < 6; ++k) f += change[k] * z[static_cast<std::size_t>(k)];
+    own.velocity += change.head<3>();
+    own.angular_velocity += change.tail<3>();
+  };
+  Six given;
+  given << turn.transpose() * driven_.force, turn.transpose() * driven_.torque;
+  move(given - integrals(f));
+  const auto relative = [&](const Net& x) -> Net {
+    const Net in_space = ((x.rowwise() - centre_.transpose()) * turn.transpose()).rowwise() + place.row(0);
+    return rigid_velocity(x, own, centre_) - flow_.velocities(in_space) * turn;
+  };
+  move(-body_.residual_work(relative, f, z));
 }
 
 }  // namespace tanktread::coupling

@@ -12,7 +12,8 @@
 namespace tanktread::coupling {
 
 Resistance::Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
-                       const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube)
+                       const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube,
+                       const std::optional<stokes::PlaneWall>& wall)
     : space_(space),
       surface_(surface),
       viscosity_(viscosity),
@@ -22,6 +23,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
       layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
       collocation_(solvers.direct),
       tube_(tube),
+      wall_(wall),
       place_(surface),
       krylov_(solvers.of(solvers.traction)),
       tolerance_(solvers.tolerance) {
@@ -48,12 +50,47 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
     tube_->set_reference(surface);
     tube_->place(surface);
   }
+  if (!wall_) return;
+  images_.emplace(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
+  images_->set_wall(*wall_);
+  images_->set_reference(surface);
+  place_images();
 }
 
 void Resistance::place(const Net& x, const Mat3& turn) {
   place_ = x;
   turn_ = turn;
   if (tube_) tube_->place(x);
+  if (wall_) place_images();
+}
+
+void Resistance::place_images() {
+  const auto clock = phases_.time("assembly");
+  const Net at = sites_ * place_;
+  in_front_ = true;
+  for (Eigen::Index i = 0; i < at.rows(); ++i) in_front_ = in_front_ && wall_->height(at.row(i).transpose()) > 0;
+  if (!in_front_) return;
+  images_->place(place_, stokes::Measure::reference);
+  images_->assemble_images(own_points_, image_rows_);
+  factor();
+}
+
+void Resistance::factor() {
+  constexpr int most_points = 1500;
+  factors_.reset();
+  if (space_.n_points > most_points) return;
+  const Eigen::Index n = 3 * static_cast<Eigen::Index>(space_.n_points);
+  stokes::Rows<double> all = stokes::Rows<double>::Zero(n, n);
+  for (std::size_t k = 0; k < own_points_.size(); ++k) {
+    const auto from = 3 * static_cast<Eigen::Index>(k), to = 3 * static_cast<Eigen::Index>(own_points_[k]);
+    all.middleRows<3>(to) = rows_.middleRows<3>(from);
+    for (Eigen::Index column = 0; column < n; column += 3)
+      all.block<3, 3>(to, column) += turn_.transpose() * image_rows_.block<3, 3>(from, column) * turn_;
+  }
+  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
+  const Net normal = sites_ * normal_;
+  all += weight_ * Eigen::Map<const Eigen::VectorXd>(normal.data(), n) * Eigen::Map<const Eigen::RowVectorXd>(flux_.data(), n);
+  factors_.emplace(all);
 }
 
 Net Resistance::ambient(const stokes::AmbientFlow& flow) const { return collocation_.solve(Net(flow.velocities(sites_ * place_) * turn_)); }
@@ -64,9 +101,16 @@ double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure
 Net Resistance::apply(const Net& f) const {
   const Eigen::Map<const Eigen::VectorXd> flat(f.data(), f.size());
   Net u(f.rows(), 3);
-  for (size_t k = 0; k < own_points_.size(); ++k)
+  const Net in_space = wall_ ? Net(f * turn_.transpose()) : Net();
+  for (size_t k = 0; k < own_points_.size(); ++k) {
+    const auto row = 3 * static_cast<Eigen::Index>(k);
     for (int i = 0; i < 3; ++i)  // row by row: the sum of a row does not depend on how many rows this rank has
-      u(own_points_[k], i) = rows_.row(3 * static_cast<Eigen::Index>(k) + i).dot(flat);
+      u(own_points_[k], i) = rows_.row(row + i).dot(flat);
+    if (!wall_) continue;
+    Vec3 images;
+    for (int i = 0; i < 3; ++i) images[i] = image_rows_.row(row + i).dot(Eigen::Map<const Eigen::VectorXd>(in_space.data(), in_space.size()));
+    u.row(own_points_[k]) += images.transpose() * turn_;
+  }
   ranks_.replicate(u);
   if (tube_) u -= viscosity_ * tube_->respond(f * turn_.transpose()).velocity * turn_;
   return collocation_.solve(u) + weight_ * flux_.cwiseProduct(f).sum() * normal_;
@@ -78,7 +122,11 @@ Net Resistance::force_density(const Net& u) {
   const auto operation = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = apply(Eigen::Map<const Net>(in, n, 3)); };
   const Net rhs = viscosity_ * u;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
-  const LinearSystem system{{{"traction", 3 * n}}, operation, {}};
+  const auto precondition = [&](const double* in, double* out) {
+    const Net at_sites = sites_ * Eigen::Map<const Net>(in, n, 3);
+    Eigen::Map<Eigen::VectorXd>(out, 3 * n) = factors_->solve(Eigen::Map<const Eigen::VectorXd>(at_sites.data(), 3 * n));
+  };
+  const LinearSystem system{{{"traction", 3 * n}}, operation, factors_ ? Apply(precondition) : Apply()};
   const SolveReport report = krylov_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), f, tolerance_);
   iterations_ += last_iterations_ = report.iterations;
   require_convergence(report, "the first-kind system of the rigid surface", tolerance_);
@@ -86,7 +134,8 @@ Net Resistance::force_density(const Net& u) {
 }
 
 stokes::Evaluations Resistance::kernel_evaluations() const {
-  return layer_.evaluations() + residual_evaluations_;
+  const stokes::Evaluations known = layer_.evaluations() + residual_evaluations_;
+  return images_ ? known + images_->evaluations() : known;
 }
 
 Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
@@ -95,9 +144,11 @@ Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>
   const Eigen::SparseMatrix<double> at_sites = value_matrix(space_, sites);
   const std::vector<int> own = ranks_.share(static_cast<int>(sites.size()));
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space_, sites, quadrature_);
-  layer.place(surface_);
+  if (wall_) layer.set_wall(*wall_);
+  layer.place(wall_ ? place_ : surface_);
   Net v = Net::Zero(at_sites.rows(), 3);
-  layer.apply(f, own, v);
+  layer.apply(wall_ ? Net(f * turn_.transpose()) : f, own, v);
+  if (wall_) v *= turn_;
   if (tube_) {
     Net answer(v.rows(), 3);
     tube_->velocity_at(at_sites * place_, tube_->respond(f * turn_.transpose()), own, answer);

@@ -2,9 +2,11 @@
 // A rigid surface in a fluid: the force density that gives a velocity on it.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "base/dense_factors.hpp"
 #include "base/timing.hpp"
 #include "base/types.hpp"
 #include "coupling/krylov.hpp"
@@ -25,14 +27,18 @@ namespace tanktread::coupling {
 /// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is R^-1 A + s c b^T / (b.c), which is regular and gives the f with
 /// no net normal force, int f.n dG = 0, and takes up whatever flux the discrete u has.                                  (2.10)
 ///
+/// Beside a plane wall what images add to A is assembled at each place (Layer::assemble_images), and the operator factored there: through the film
+/// GMRES alone would not get.
+///
 /// In a tube A f - mu u(f) takes the place of A f, u the answer of the wall and the pressure drop (2.5); then the place counts. Fields stay in the
 /// axes that the body has in `surface`, wherever it has gone.
 class Resistance {
  public:
   /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own, and serve for any place and orientation.
-  /// `tube`: around the body, or nothing; it must outlive this.
+  /// `tube`: around the body, or nothing; it must outlive this. `wall`: that the body is in front of, or nothing.
   Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
-             const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube = nullptr);
+             const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube = nullptr,
+             const std::optional<stokes::PlaneWall>& wall = {});
 
   /// Where the body is now: control net in space, and the rotation from `surface` to it.
   void place(const Net& x, const Mat3& turn);
@@ -49,8 +55,10 @@ class Resistance {
   /// The other way round, up to the multiple of n of (2.10): (1/mu) A f.
   Net velocity(const Net& f) { return apply(f) / viscosity_; }
 
-  /// Whether the surface, where it is placed, is inside of the tube, if there is one.
-  bool inside() const { return !tube_ || tube_->gap() > 0; }
+  /// Whether the surface, where it is placed, is inside of the tube or in front of the wall, if there is one.
+  bool inside() const { return (!tube_ || tube_->gap() > 0) && in_front_; }
+
+  const std::optional<stokes::PlaneWall>& wall() const { return wall_; }
 
   /// The pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
@@ -74,6 +82,8 @@ class Resistance {
   const Net& surface() const { return surface_; }
 
  private:
+  void place_images();
+  void factor();
   Net apply(const Net& f) const;
 
   const spline::Space& space_;
@@ -91,6 +101,11 @@ class Resistance {
   double weight_ = 0;  // s / (b.c)
   stokes::Rows<double> rows_;
   Tube* tube_;
+  std::optional<stokes::PlaneWall> wall_;
+  std::optional<stokes::Layer> images_;  // in space
+  stokes::Rows<double> image_rows_;      // the same
+  bool in_front_ = true;
+  std::optional<DenseFactors> factors_;  // of R times the operator that is solved; of a body of few points
   Net place_;                     // in space
   Mat3 turn_ = Mat3::Identity();  // from surface_ to place_
   Krylov krylov_;

@@ -1,5 +1,5 @@
 #pragma once
-// A rigid body that a given force and torque act on, or none, carried by an unbounded flow or in a tube.
+// A rigid body that a given force and torque act on, or none, carried by an unbounded flow, in a tube or beside a plane wall.
 
 #include <vector>
 
@@ -84,15 +84,16 @@ class FreeBody : public LoneRigidBody {
   Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion relative to the flow, for each strain and quadratic field
 };
 
-/// A free body in a tube: at each place the traction and the rigid motion are solved for together,
+/// A free body in a tube, or beside a plane wall: at each place the traction and the rigid motion are solved for together,
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// with u the answer of wall and pressure drop. Belos starts from the solution before. Calls are collective, and those at one place
-/// after another cost one solve. The motion is not finite where the body reaches into the wall.
+/// with u the answer of wall and pressure drop; Belos starts from the solution before. Beside a plane wall A has its images, the unit motions are
+/// solved for one by one, and what force and torque of f lack is made up for (2.11). Calls are collective, and those at one place after another cost
+/// one solve. The motion is not finite where the body reaches into the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
-  /// `body`: with its tube. `solvers`: of the system above.
+  /// `body`: with its tube or wall. `solvers`: of the system above.
   FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const SolverOptions& solvers, const Rigid& driven = {});
 
@@ -113,6 +114,8 @@ class FreeBodyInTube : public LoneRigidBody {
     double pressure_drop = 0;
   };
   const Solution& solution(const Net& place) const;
+  void solve_in_tube(const Net& place, Net& f, RigidMotion& own) const;
+  void solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const;
 
   Resistance& body_;
   double viscosity_;

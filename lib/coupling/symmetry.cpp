@@ -37,11 +37,12 @@ static bool keeps(const Net& forces, const surface::Image& image) {
 }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const Vec3& body_force, const Net& patch_forces) {
+                           const stokes::AmbientFlow& flow, const Vec3& body_force, const Net& patch_forces, const Vec3& wall_normal) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return image.signs.cwiseProduct(body_force) == body_force && keeps(patch_forces, image) &&
+    return image.signs.cwiseProduct(body_force) == body_force && image.signs.cwiseProduct(wall_normal) == wall_normal &&
+           keeps(patch_forces, image) &&
            std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }

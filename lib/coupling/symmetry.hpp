@@ -26,11 +26,12 @@ struct SymmetryOptions {
 /// Whether v(c + S y) = S v(c + y), with S = diag(signs) and c the middle of the net, at its control points, gradients included.
 bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net);
 
-/// The reflections that flow, in every direction that it takes, body force, virtual work of forces on patches, space and all nets have in common,
-/// or the identity alone where the options say so.
+/// The reflections that flow, in every direction that it takes, body force, the normal of a plane wall, virtual work of forces on
+/// patches, space and all nets have in common, or the identity alone where the options say so.
 /// What else bounds the fluid has to be looked at here too.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const Vec3& body_force = Vec3::Zero(), const Net& patch_forces = {});
+                           const stokes::AmbientFlow& flow, const Vec3& body_force = Vec3::Zero(), const Net& patch_forces = {},
+                           const Vec3& wall_normal = Vec3::Zero());
 
 /// The same in a channel: mirror planes and half turns that leave its wall as it is.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,

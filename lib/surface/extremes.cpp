@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/LU>
@@ -45,8 +46,8 @@ Vec2 uphill(const Height& h, const Vec2& at) {
   return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
 }
 
-/// The largest value that can be climbed to from a point of the patch.
-double summit(const Patch& patch, int c, double sign, Vec2 at) {
+/// The largest value that can be climbed to from a point of the patch, and where it is.
+std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) {
   Height here = height(patch, c, sign, at);
   for (int iteration = 0; iteration < 50; ++iteration) {
     Vec2 step = uphill(here, at);
@@ -62,7 +63,16 @@ double summit(const Patch& patch, int c, double sign, Vec2 at) {
     }
     if (moved < 1e-9) break;  // the height errs by the square of this
   }
-  return here.value;
+  return {here.value, at};
+}
+
+/// Where the Bezier point is that has the largest sign * x_c.
+Vec2 start(const Patch& patch, int c, double sign) {
+  const int p = patch.degree;
+  int highest = 0;
+  for (int b = 0; b < patch.n_bezier(); ++b)
+    if (sign * patch.coordinate(c, b) > sign * patch.coordinate(c, highest)) highest = b;
+  return {double(highest % (p + 1)) / p, double(highest / (p + 1)) / p};
 }
 
 /// The largest of sign * x_c, which is `reached` at least, where sign * x_c stays below bounds[e] on element e.
@@ -74,12 +84,7 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   std::ranges::sort(candidates, std::ranges::greater(), [&](int e) { return bounds[e]; });
   for (const int e : candidates) {
     if (bounds[e] <= best) break;
-    const Patch& patch = surface[e];
-    const int p = patch.degree;
-    int highest = 0;
-    for (int b = 0; b < patch.n_bezier(); ++b)
-      if (sign * patch.coordinate(c, b) > sign * patch.coordinate(c, highest)) highest = b;
-    best = std::max(best, summit(patch, c, sign, Vec2(double(highest % (p + 1)) / p, double(highest / (p + 1)) / p)));
+    best = std::max(best, summit(surface[e], c, sign, start(surface[e], c, sign)).first);
   }
   return best;
 }
@@ -206,6 +211,19 @@ Range coordinate_range(const Patches& surface, int c) {
     above[e] = bounds.largest;
   }
   return {-largest_coordinate(surface, c, -1, -reached.smallest, below), largest_coordinate(surface, c, 1, reached.largest, above)};
+}
+
+Vec3 lowest(const Patches& surface, int c) {
+  std::vector<std::pair<double, int>> bounds;
+  for (int e = 0; e < surface.size(); ++e) bounds.emplace_back(hull(surface[e], c).smallest, e);
+  std::ranges::sort(bounds);
+  Vec3 best = Vec3::Constant(infinity);
+  for (const auto& [bound, e] : bounds) {
+    if (bound >= best[c]) break;
+    const Vec2 at = summit(surface[e], c, -1, start(surface[e], c, -1)).second;
+    if (const Vec3 there = place(surface[e], at[0], at[1]); there[c] < best[c]) best = there;
+  }
+  return best;
 }
 
 Range section_distances(const Patches& surface, const Vec3& centre) {

@@ -59,6 +59,9 @@ Range hull(const Patch& patch, int c);
 /// Smallest and largest coordinate x_{c+1} on the surface, to round-off. Of a whole surface, the wider of its parts.
 Range coordinate_range(const Patches& surface, int c);
 
+/// The place of the surface with the smallest coordinate x_{c+1}, to round-off.
+Vec3 lowest(const Patches& surface, int c);
+
 /// Shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface. To round-off where the surface
 /// has a simple extremum; no symmetry is assumed. Of a whole surface, the wider of its parts; of nothing when the plane misses it.
 Range section_distances(const Patches& surface, const Vec3& centre);
