@@ -4,6 +4,7 @@
 
 #include "app/initial_shape.hpp"
 #include "app/member.hpp"
+#include "app/plane_wall.hpp"
 #include "app/tube.hpp"
 #include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
@@ -64,6 +65,7 @@ Body body(const Scene& scene) {
   b.modulus = scene.modulus();
   b.law = law(scene.membrane, b.modulus);
   check_fit(scene, b);
+  if (scene.wall.present) check_in_front(scene, b);
   if (scene.name.empty()) b.wall = wall(scene, b);
   b.symmetry = symmetry(scene, b, b.initial);
   const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
@@ -76,7 +78,8 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   if (scene.particle.rigid() || (body.wall && !channel) || scene.domain.present) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, scene.body_force(), patch_forces(scene, body));
-  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force(), patch_forces(scene, body));
+  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force(), patch_forces(scene, body),
+                            scene.wall.present ? scene.wall.normal : Vec3::Zero());
 }
 
 Net patch_forces(const Scene& scene, const Body& body) {

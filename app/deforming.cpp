@@ -12,6 +12,7 @@
 #include "app/gaps.hpp"
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
+#include "app/plane_wall.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -118,6 +119,7 @@ class Deforming : public ParticleSystem {
     if (const auto& cell = capsule_->cell(); cell && cell->n() == 3)
       add_bulk_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), force_on_fluid(state.x), whole);
     if (all_ || capsule_->cell()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
+    if (scene_.wall.present) add_wall(*scene_.wall.plane(), members_, state.x, whole);
     std::vector<double> row = tanktread::row(series(scene_, of_run), whole);
     row.insert(row.end(), of_particles.begin(), of_particles.end());
     return row;
@@ -197,7 +199,7 @@ class Deforming : public ParticleSystem {
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    if (all_) widths = films(members_, p, state.x);
+    if (all_ || scene_.wall.present) widths = films(members_, p, state.x);
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, capsule_->measure() == stokes::Measure::reference, widths);
     remark_on(member, change, state.time);
     if (!change.body) return;

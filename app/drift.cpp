@@ -7,7 +7,7 @@ namespace tanktread {
 
 bool holds_centre(const Scene& scene) {
   if (scene.particle.drift) return *scene.particle.drift == "held";
-  if (scene.tube.present) return false;
+  if (scene.tube.present || scene.wall.present) return false;
   if (scene.flow.type == "parabolic") return false;
   const stokes::AmbientFlow flow(scene.flow);
   const Vec3& center = scene.particle.shape.center;

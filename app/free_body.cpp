@@ -6,6 +6,7 @@
 
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
+#include "app/plane_wall.hpp"
 #include "app/tube.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
@@ -17,10 +18,10 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), body_(tanktread::body(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
-        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get()) {
+      : scene_(scene), ranks_(ranks), body_(refined(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
+        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get(), scene.wall.plane()) {
     const Vec3& centre = scene.particle.shape.center;
-    if (tube_)
+    if (tube_ || scene.wall.present)
       free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers,
                                                          rigid(scene, body_));
     else
@@ -52,7 +53,7 @@ class Free : public ParticleSystem {
     coupling::Work work = before_;
     work.evaluations += free_->evaluations();
     work.assemblies += 1;
-    work.solves += tube_ ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
+    work.solves += tube_ || scene_.wall.present ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
     work.solver_iterations += iterations();
     return work;
   }
@@ -67,6 +68,7 @@ class Free : public ParticleSystem {
     now.step = report;
     now.wall_seconds = wall_seconds;
     if (tube_) now.pressure_drop = free_->pressure_drop(state.x), now.gap = tube_->gap(), add_tube(*tube_, free_->force_density(state.x), now);
+    if (const auto wall = scene_.wall.plane()) add_wall(*wall, body_, free_->surface(state.x), now);
     add_turning(state.x, report.step, now);
     now.work = work();
     return tanktread::row(series(scene_, of_free), now);
@@ -81,6 +83,12 @@ class Free : public ParticleSystem {
   }
 
  private:
+  static Body refined(const Scene& scene) {
+    Body body = tanktread::body(scene);
+    refine_at_wall(scene, body);
+    return body;
+  }
+
   /// Tank-treading and phase of a body that turns as one: (6.6) is its angular velocity about the normal of the plane.
   void add_turning(const Net& place, double step, Moment& now) {
     const FlowPlane& plane = body_.plane;

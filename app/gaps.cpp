@@ -70,6 +70,15 @@ Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, c
   return found;
 }
 
+/// Widths of films of which a plane wall is the other side, where they are smaller.
+void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
+  for (int e = 0; e < surface.size(); ++e)
+    for (int k = 0; k < 9; ++k) {
+      const double height = wall.height(surface::place(surface[e], k % 3 / 2., k / 3 / 2.));
+      if (height <= reach) widths[e] = std::min(widths[e], std::max(height, 0.));
+    }
+}
+
 /// Whether a point that is not on a surface is inside: its solid angle there is 4 pi, outside 0.
 bool encloses(const surface::Patches& patches, const Vec3& point) {
   constexpr int n = 8;
@@ -139,7 +148,10 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   double longest = 0;  // the diagonal of the largest element
   for (int e = 0; e < own.size(); ++e)
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
-  return surface::film_widths(own, others, std::pow(longest / *options.film_resolution, 2) / options.radius);
+  const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;
+  std::vector<double> widths = surface::film_widths(own, others, reach);
+  if (const auto wall = members[p].scene.wall.plane()) narrow(own, *wall, reach, widths);
+  return widths;
 }
 
 }  // namespace tanktread

@@ -41,6 +41,10 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
                                                cell->volume()));
       return;
     }
+    if (scene.wall.present) {
+      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: no wall unknowns, its images with every node");
+      return;
+    }
     lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
     return;
   }
@@ -121,7 +125,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
 /// What is solved for of a rigid particle, prescribed or free.
 std::string rigid_line(const Scene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
+  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
   return std::string("rigid and free, no membrane: six rigid motions") +
          (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") + ", solved once, are all that it can meet";
 }
@@ -162,7 +166,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("forces", forces_line(scene));
   lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("assembled", formatted("%.1f MB ", 72e-6 * n * n) + on_ranks(ranks));
+  lines.emplace_back("assembled", formatted("%.1f MB ", (scene.wall.present ? 144e-6 : 72e-6) * n * n) + on_ranks(ranks));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   lines.emplace_back("symmetry", "none used");

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "app/plan.hpp"
+#include "app/plane_wall.hpp"
 #include "app/results.hpp"
 #include "app/signals.hpp"
 #include "app/tube.hpp"
@@ -101,11 +102,13 @@ int resist(const Scene& scene, const RunRequest& request) {
   coupling::Ranks ranks;
   Phases phases = started();
   std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
-  const Body body = tanktread::body(scene);
+  Body body = tanktread::body(scene);
+  refine_at_wall(scene, body);
   const output::Entries<std::string> chosen = plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
-  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get());
+  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get(),
+                                  scene.wall.plane());
   clock.reset();
   stop_where_told();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
@@ -115,6 +118,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const std::vector<Series> all = series(scene, of_prescribed);
   Moment now = moment(scene, body, resistance, solution, kernel, seconds);
   if (around) add_tube(*around, solution.density, now);
+  if (const auto wall = scene.wall.plane()) add_wall(*wall, body, body.rest, now);
   const std::vector<double> only = row(all, now);
 
   clock.emplace(phases, "output");

@@ -199,8 +199,8 @@ void check_motion(const Scene& scene) {
                                                                 "Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
   if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section, or Channel.");
-  if (scene.adaptation.film_resolution && scene.name.empty())
-    throw UserError("Adaptation/film resolution is for several particles: there are no films between others.");
+  if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present)
+    throw UserError("Adaptation/film resolution is for several particles, or beside a Wall: there are no films between others.");
   if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed && scene.runs_in_time())
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
 }
@@ -250,6 +250,13 @@ void check_contradictions(const Scene& scene) {
          "Domain/periodic `" + scene.domain.periodic + "`",
          told ? motion : weight ? "Particle/density difference" : "Particle/force",
          "the velocity of a net force in every cell is known in a lattice of three directions only");
+  const bool wall = scene.wall.present;
+  refuse(wall && tube, "Wall", "Tube", "images are of one plane in a fluid that is unbounded otherwise");
+  refuse(wall && scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
+  refuse(wall && scene.quadrature.rule != "adaptive", "Wall", "Quadrature/rule `" + scene.quadrature.rule + "`",
+         "a film at a wall takes rules by tolerance, `adaptive`");
+  refuse(wall && steady, sought, "Wall", "beside a wall nothing that deforms keeps its distance from it");
+  refuse(wall && held, "Wall", "Particle/drift `held`", "its distance from the wall matters");
   refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");
   refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
   refuse(scene.viscous_membrane() && tube && scene.solvers.tube != "schur", "Membrane viscosity", "Solvers/tube `" + scene.solvers.tube + "`",
@@ -261,7 +268,7 @@ void check_contradictions(const Scene& scene) {
   refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
   refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
   refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");
-  refuse(rigid && adapts && alone, "Adaptation/enabled", motion, "the mesh of a rigid particle stays as it is");
+  refuse(rigid && adapts && alone && !scene.wall.present, "Adaptation/enabled", motion, "the mesh of a rigid particle stays as it is");
   refuse(rigid && particle.shape.initial, "Particle/initial shape", motion, "a rigid particle has the shape that it has");
   refuse(rigid && scene.time.steady_tolerance, "Time/steady tolerance", motion, "it ends runs of a particle that deforms");
   refuse(adapts && !scene.lands_on_snapshots(), "Output/between steps `interpolate`", "Adaptation/enabled",
@@ -316,6 +323,8 @@ void Scene::declare(deck::Section& root) {
     tube.present = true;
   domain.present =
       root.optional_section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
+  wall.present = root.optional_section("Wall", wall, "a plane wall that the fluid sticks to; none without this list");
+  if (wall.present && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");
@@ -363,6 +372,7 @@ void Scene::check() const {
   check_motion(*this);
   if (tube.present) tube.check();
   if (domain.present) domain.check(flow);
+  if (wall.present) wall.check(flow);
   particle.shape.check();
   surface.check();
   check_viscosity_ratio(*this);
@@ -414,12 +424,12 @@ bool Scene::lands_on_snapshots() const {
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 
 bool may_change_on_resume(const std::string& path) {
-  if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Contact/limit") return true;
+  if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Wall/contact gap" || path == "Contact/limit") return true;
   if (path.starts_with("Particles/")) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
     return of_particle.starts_with("Interface/") || of_particle.starts_with("Adaptation/");
   }
-  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel"})
+  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

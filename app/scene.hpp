@@ -8,6 +8,7 @@
 
 #include "app/copies.hpp"
 #include "app/domain.hpp"
+#include "app/wall_options.hpp"
 #include "coupling/options.hpp"
 #include "coupling/symmetry.hpp"
 #include "deck/expectation.hpp"
@@ -71,6 +72,7 @@ struct Scene : ParticleKind {
   std::vector<ParticleKind> particles;  ///< Particles/<name>; none: the one particle that the scene itself is of
   ContactOptions contact;
   DomainOptions domain;
+  WallOptions wall;
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;

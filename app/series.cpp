@@ -115,13 +115,17 @@ constexpr Statement table[] = {
     {"disturbed_pressure_drop", "", "force/length^2", "pressure drop that the particle adds (2.7)", timed | of_prescribed,
      [](const Moment& m, int) { return m.pressure_drop; }, Needs::tube},
     {"gap", "", "length", "smallest distance between particle and wall", timed | of_prescribed,
-     [](const Moment& m, int) { return m.gap; }, Needs::tube},
+     [](const Moment& m, int) { return m.gap; }, Needs::tube_or_wall},
     {"flow_rate", "", "length^3/time", "through the tube, where Flow/held is `pressure drop`", timed | of_prescribed,
      [](const Moment& m, int) { return m.flow_rate; }, Needs::held_pressure},
     {"channel_pressure_drop", "", "force/length^2", "between the ends of the empty channel (2.30)", timed | of_prescribed,
      [](const Moment& m, int) { return m.channel_pressure_drop; }, Needs::channel},
     {"channel_extra_pressure_drop", "", "force/length^2", "the same, over that of a straight tube of the inlet's section and as long",
      timed | of_prescribed, [](const Moment& m, int) { return m.channel_extra_pressure_drop; }, Needs::channel},
+    {"nearest_to_wall_", axes, "length", "place of a particle's surface that is nearest to the plane wall, component #", timed | of_prescribed,
+     [](const Moment& m, int c) { return m.at_wall.place[c]; }, Needs::wall},
+    {"particle_at_wall", "", "1", "number of the particle that is nearest to it, from 1 in the order of the deck", of_several,
+     [](const Moment& m, int) { return double(m.at_wall.first); }, Needs::wall},
     {"smallest_gap", "", "length", "smallest distance between two of several particles", of_several,
      [](const Moment& m, int) { return m.nearest.gap; }},
     {"first_of_gap", "", "1", "number of the first of these two, from 1 in the order of the deck", of_several,
@@ -205,6 +209,8 @@ bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::tube) return scene.tube.present;
   if (needs == Needs::held_pressure) return scene.tube.present && scene.flow.held == "pressure drop";
   if (needs == Needs::channel) return scene.tube.channel.has_value();
+  if (needs == Needs::wall) return scene.wall.present;
+  if (needs == Needs::tube_or_wall) return scene.tube.present || scene.wall.present;
   if (needs == Needs::viscous_membrane) return scene.viscous_membrane();
   if (needs == Needs::strain) return strains(scene);
   if (needs == Needs::cell || needs == Needs::cell_strain)
@@ -226,7 +232,7 @@ const std::vector<Series>& all_series() {
 std::vector<Series> series(const Scene& scene, Owner owner) {
   unsigned owners = owner;
   if (owner == of_run && !scene.particles.empty()) owners |= of_several;
-  if (owner == of_free && scene.tube.present) owners |= of_free_in_tube;
+  if (owner == of_free && (scene.tube.present || scene.wall.present)) owners |= of_free_in_tube;
   std::vector<Series> found;
   for (const Series& one : all_series())
     if ((one.owners & owners) && holds(scene, one.needs)) found.push_back(one);

@@ -45,8 +45,9 @@ struct Moment {
   std::complex<double> rate;  ///< of one mode
   double leading_rate = 0, unstable_modes = 0;  ///< of a spectrum
   double parameter = 0, fold = 0;               ///< of a branch
-  double pressure_drop = 0, gap = 0;  ///< in a tube
+  double pressure_drop = 0, gap = 0;  ///< in a tube; the latter beside a wall too
   double flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;  ///< in a tube; of an empty channel
+  Nearest at_wall;                    ///< of a plane wall: the particle's number, and its place there
   Nearest nearest;                    ///< among others
   Mat3 particle_stress = Mat3::Zero();  ///< in a cell: sum of stresslets over its volume; in the axes of the plane of the flow: `turned_stress`
   Mat3 turned_stress = Mat3::Zero();
@@ -66,7 +67,8 @@ enum Owner : unsigned {
 
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
 enum class Needs {
-  nothing, tube, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force, exact_torque, exact_pressure
+  nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force,
+  exact_torque, exact_pressure
 };
 
 /// A column of `/series` and its value.

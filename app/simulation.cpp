@@ -15,6 +15,7 @@
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
 #include "app/plan.hpp"
+#include "app/plane_wall.hpp"
 #include "app/prescribed.hpp"
 #include "app/results.hpp"
 #include "app/signals.hpp"
@@ -110,7 +111,7 @@ class Run {
 
   /// Particles that start side by side need a mesh for the film between them.
   void prepare() {
-    if (scene_.particles.empty()) return;
+    if (scene_.particles.empty() && !scene_.wall.present) return;
     for (int k = 0; k < 8 && particle_->adapt(state_, totals_); ++k) results_.remesh(particle_->body(), particle_->bezier());
   }
 
@@ -272,7 +273,7 @@ class Run {
     signs.volume_error = std::max(largest("volume_error"), -smallest("volume_error"));
     signs.jacobian_ratio = quality_.jacobian_ratio;
     signs.aspect_ratio = quality_.aspect_ratio;
-    if (scene_.tube.present) signs.gap = entry("gap");
+    if (scene_.tube.present || (scene_.wall.present && !scene_.adaptation.enabled)) signs.gap = entry("gap");
     const std::vector<double> areas = entries_of_particles(series_, row_, "area");
     const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
     signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
@@ -313,6 +314,8 @@ class Run {
       if (!touching.empty()) fail(touching);
       warn_of_coarse_wall(entry("gap"));
     }
+    if (scene_.wall.present)
+      if (const std::string touching = contact_with_wall(scene_, entry("gap")); !touching.empty()) fail(touching);
     if (!scene_.particles.empty()) end_at_contact();
     if (coupling::largest(told_to_stop()) > 0) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;

@@ -1,0 +1,25 @@
+#pragma once
+// Particles beside the plane wall of a scene.
+
+#include <string>
+#include <vector>
+
+#include "app/member.hpp"
+#include "app/series.hpp"
+
+namespace tanktread {
+
+/// Throws UserError, with the numbers, where the body does not start in front of the scene's wall, `Wall/contact gap` at least away from it.
+void check_in_front(const Scene& scene, const Body& body);
+
+/// What the series beside a wall are taken from: the particles at x, or one alone.
+void add_wall(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x, Moment& now);
+void add_wall(const stokes::PlaneWall& wall, const Body& body, const Net& x, Moment& now);
+
+/// Why a run must end with a particle at this distance from the wall; empty if it need not.
+std::string contact_with_wall(const Scene& scene, double gap);
+
+/// Cuts the elements of a rigid body that stays alone beside a wall, at its present place, as Adaptation says.
+void refine_at_wall(const Scene& scene, Body& body);
+
+}  // namespace tanktread
