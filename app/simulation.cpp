@@ -273,7 +273,7 @@ class Run {
     signs.volume_error = std::max(largest("volume_error"), -smallest("volume_error"));
     signs.jacobian_ratio = quality_.jacobian_ratio;
     signs.aspect_ratio = quality_.aspect_ratio;
-    if (scene_.tube.present || (scene_.wall.present && !scene_.adaptation.enabled)) signs.gap = entry("gap");
+    if (scene_.tube.present || (scene_.wall.present && !first_.adaptation.enabled)) signs.gap = entry("gap");
     const std::vector<double> areas = entries_of_particles(series_, row_, "area");
     const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
     signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);

@@ -127,8 +127,8 @@ std::string Warnings::stretch(const StepFindings& signs) const {
 
 std::string Warnings::gap(const StepFindings& signs) const {
   if (!signs.gap || *signs.gap > signs.element / 2) return {};
-  return formatted("the gap to the wall (%.2g) is less than half an element (%.2g): set ", *signs.gap, signs.element) +
-         (scene_.tube.present ? "finer meshes of particle and tube" : finer_mesh(scene_)) + ", or Adaptation/enabled";
+  return formatted("the gap to the wall (%.2g) is less than half an element (%.2g): ", *signs.gap, signs.element) +
+         (scene_.tube.present ? "set finer meshes of particle and tube" : finer_mesh(scene_)) + ", or Adaptation/enabled";
 }
 
 std::string Warnings::volume(const StepFindings& signs) const {
