@@ -43,7 +43,7 @@ def main():
     gap.set_yscale("log")
     gap.set_ylabel("gap / R$_C$")
     speed.axhline(0, color=style.FAINT, linewidth=0.8)
-    speed.set_ylabel(runs[0].label("velocity", "centroid's velocity {}"))
+    speed.set_ylabel(runs[0].label("velocity", "centroid's {}"))
     for axis in gap, speed:
         axis.set_xlabel(tanktread.time_label(runs))
         axis.legend()
@@ -82,7 +82,7 @@ def sections(axis, run, moments):
     axis.autoscale_view()
     axis.set_ylim(bottom=-0.15)
     axis.set_aspect("equal")
-    axis.set_title(f"{run.name}: section across the wall, at times of the legend")
+    axis.set_title(f"{run.name}: section across the wall at several times")
     axis.set_xlabel("along the wall / R$_C$")
     axis.set_ylabel("above it / R$_C$")
     axis.legend(ncols=2, fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
