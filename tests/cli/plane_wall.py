@@ -115,7 +115,7 @@ def what_no_wall_can_do_is_refused():
         ({"Wall": "{point: [0, 0, 0.1995]}"}, ["too close to the wall", "0.00038", "Wall/contact gap"]),
         ({"Flow": "{type: duct}", "Tube": "{section: circle, radius: 5.0}"}, ["Wall", "contradict"]),
         ({"Quadrature": "{rule: fixed}"}, ["Wall", "fixed"]),
-        ({"Steady": "{}"}, ["Steady", "Wall"]),
+        ({"Steady": "{}", "Flow": "{type: quiescent}", "Membrane": "{law: surface tension, surface tension: 1.0}"}, ["Steady", "Wall"]),
     ):
         error = run(deck(_with(CAPSULE, **lists)), "--check", code=2).stderr
         check(all(word in error for word in words) and error.count("\n") == 1, lists, error)
