@@ -263,8 +263,8 @@ void check_contradictions(const Scene& scene) {
          "the system of all blocks leaves the membrane's own load out; `schur` has it");
   refuse(scene.flow.held != "flow rate" && scene.solvers.tube != "schur", "Flow/held `" + scene.flow.held + "`",
          "Solvers/tube `" + scene.solvers.tube + "`", "the system of all blocks holds the flow rate; `schur` may hold either");
-  refuse(scene.solvers.projection != "collocation" && (tube || rigid), "Solvers/projection `" + scene.solvers.projection + "`",
-         tube ? "Tube" : motion, "it is for what deforms away from walls");
+  refuse(scene.solvers.projection != "collocation" && (tube || wall || rigid), "Solvers/projection `" + scene.solvers.projection + "`",
+         tube ? "Tube" : wall ? "Wall" : motion, "it is for what deforms away from walls");
   refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
   refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
   refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");
