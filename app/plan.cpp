@@ -180,13 +180,18 @@ std::string particle_line(const Scene& one, int n_points, bool tree) {
                    one.particle.motion == Motion::free ? "free" : "moving as told", 3 * n_points);
 }
 
+std::string far_sum_line(const Scene& scene, bool tree) {
+  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node";
+  return sum + (scene.quadrature.far_in_single() ? ", terms in single precision" : "");
+}
+
 Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
   const bool tree = stokes::sums_by_tree(all.space, scene.quadrature, scene.domain.present ? 27 : 1);
   const double n = all.space.n_points;
   Lines lines = {{"particles", formatted("%zu, in one system", scene.particles.size())},
                  {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
   add_fluid(lines, scene, all, ranks);
-  lines.emplace_back("far sum", tree ? "by clusters of nodes and targets" : "every target meets every node");
+  lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint + ", of each");
   if (scene.runs_in_time())
@@ -220,7 +225,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("membrane", membrane_line(scene));
   lines.emplace_back("deformation", body.plane.description());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
-  lines.emplace_back("far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node");
+  lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("volume", scene.volume.constraint);
   if (scene.runs_in_time())

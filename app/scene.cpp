@@ -367,6 +367,7 @@ void Scene::check_several() const {
 }
 
 void Scene::check() const {
+  quadrature.check();
   if (!particles.empty()) return check_several();
   flow.check();
   check_motion(*this);

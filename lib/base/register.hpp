@@ -72,15 +72,25 @@ inline Register inverse_root(const Register& a, const Register& least = Register
   return a > least ? 1 / sqrt(a) : Register{};
 #endif
 }
-inline FloatRegister inverse_root(const FloatRegister& a) {
+inline FloatRegister inverse_root(const FloatRegister& a, const FloatRegister& least = FloatRegister{}) {
 #if defined(__AVX512F__)
-  const FloatRegister y = _mm512_maskz_rsqrt14_ps(_mm512_cmp_ps_mask(a, _mm512_setzero_ps(), _CMP_GT_OQ), a);
+  const FloatRegister y = _mm512_maskz_rsqrt14_ps(_mm512_cmp_ps_mask(a, least, _CMP_GT_OQ), a);
   return y * (1.5f - 0.5f * a * y * y);
 #else
   FloatRegister root;
   for (int l = 0; l < RegisterOf<float>::lanes; ++l) root[l] = std::sqrt(a[l]);
-  return a > 0 ? 1 / root : FloatRegister{};
+  return a > least ? 1 / root : FloatRegister{};
 #endif
+}
+
+/// A difference that is not merged with other sums, though a kernel's sums may be reordered.
+inline FloatRegister as_it_stands(FloatRegister difference) {
+#if defined(__x86_64__)
+  asm("" : "+v"(difference));
+#elif defined(__aarch64__)
+  asm("" : "+w"(difference));
+#endif
+  return difference;
 }
 
 /// Sum of the lanes, neighbours first.

@@ -16,7 +16,12 @@ struct Options {
   int points = 8;                 ///< Gauss points a direction of the last two
   std::string far_sum = "auto";   ///< `dense`: every target meets every far node; `tree`: clusters of them; `auto`: whichever is faster
 
+  std::string far_precision = "auto";  ///< of the terms of far sums: `single`, `double`; `auto`: single from `tolerance` 1e-3 on
+
+  bool far_in_single() const { return far_precision == "single" || (far_precision == "auto" && tolerance >= 1e-3); }
+
   void declare(deck::Section& section);
+  void check() const;
 };
 
 }  // namespace tanktread::quadrature

@@ -27,6 +27,9 @@ struct Stresslets {
   }
 };
 
+/// Of the terms of a far sum; what they are summed up to is double.
+enum class Precision { single, full };
+
 /// Targets that share one pass over the nodes.
 constexpr int far_block = 16;
 
@@ -36,15 +39,22 @@ constexpr int far_block = 16;
 void far_sum(const PointForces& forces, const double* target, double* u);
 
 /// u[3 k + c] of it for any number of targets.
-void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u);
+void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
 
 /// The same for one target x0[3], u[3]: what a pair with a better rule takes back.
 void node_sum(const PointForces& forces, const double* x0, double* u);
 
 /// u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 the place, 3, 4, 5 the velocity v0 there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
-void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u);
+void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
+
+/// The same sums in single precision: differences of places are good to 1e-7 of themselves, however close the places are, for what single precision
+/// leaves of a place counts as well; terms of `single_run` nodes are added up before they go to the sum in double. Off by 3e-8 of the sum of the terms'
+/// magnitudes (root mean square; at most 3e-7). What one target gets does not depend on the others.
+constexpr int single_run = 64;
+void far_sum_in_single(const PointForces& forces, const double* target, double* u);
+void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
 
 /// Points that carry up to six numbers each.
 struct Charges {
@@ -64,17 +74,19 @@ struct Charges {
 void stokeslet_sum(const Charges& points, const double* target, double* value);
 void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);
+void stokeslet_sum_in_single(const Charges& points, const double* target, double* value);
+void stresslet_sum_in_single(const Charges& points, const double* target, double* value);
 struct StokesletKernel {  ///< forces -> G f
   static constexpr int in = 3, out = 3;
-  static constexpr auto* sum = stokeslet_sum;
+  static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
 struct StressletKernel {  ///< S_jk + S_kj over 2 in the order 11, 22, 33, 12, 13, 23 -> T_ijk S_jk
   static constexpr int in = 6, out = 3;
-  static constexpr auto* sum = stresslet_sum;
+  static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };
 struct NormalStressKernel {  ///< n_k -> T_ijk n_k, ij in the order 11, 22, 33, 12, 13, 23
   static constexpr int in = 3, out = 6;
-  static constexpr auto* sum = normal_stress_sum;
+  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // once a shape
 };
 
 }  // namespace tanktread::stokes

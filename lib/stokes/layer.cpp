@@ -34,7 +34,7 @@ std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  if (sums_by_tree(space, options)) tree_.emplace(single() ? options.tolerance : options.tolerance / 2);  // measured: it errs by half of its share
+  if (sums_by_tree(space, options)) tree_.emplace(single() ? options.tolerance : options.tolerance / 2, precision());  // measured: it errs by half of its share
   fundamental_sites_.resize(sites.size());
   std::iota(fundamental_sites_.begin(), fundamental_sites_.end(), 0);
 }
@@ -56,7 +56,7 @@ void Layer::repeat(const PeriodicCell& cell) {
   constexpr int least_images = 27;
   if (cell_ && *cell_ == cell) return;
   if (!cell_) surface_.repeat();
-  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance);
+  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance, precision());
   cell_ = cell;
   near_images_ = cell.around({2, 2, 2});
   measure_.reset();
@@ -227,7 +227,7 @@ void Layer::add_far(const Targets& targets, Net& u) {
   for (const Vec3& image : images) {
     std::vector<Vec3> at = places;
     for (Vec3& x : at) x -= image;
-    single() ? far_sums(forces(far_places()), at, sums.data()) : far_sums(stresslets(far_places()), at, f0, sums.data());
+    single() ? far_sums(forces(far_places()), at, sums.data(), precision()) : far_sums(stresslets(far_places()), at, f0, sums.data(), precision());
     all += sums;
   }
   for (std::size_t k = 0; k < places.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));

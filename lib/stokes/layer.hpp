@@ -147,6 +147,7 @@ class Layer {
   class RowSums;
 
   bool single() const { return kernel_ == Kernel::single_layer; }
+  Precision precision() const { return surface_.options.far_in_single() ? Precision::single : Precision::full; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   PointForces forces(const std::vector<double> (&x)[3]) const;
   Stresslets stresslets(const std::vector<double> (&x)[3]) const;

@@ -8,6 +8,7 @@
 
 #include "base/types.hpp"
 #include "stokes/clusters.hpp"
+#include "stokes/far_kernel.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {
@@ -19,7 +20,7 @@ namespace tanktread::stokes {
 class TreeSum {
  public:
   /// `tolerance`: of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
-  explicit TreeSum(double tolerance);
+  explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
   /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all n targets. Row i + n k of the sums is that of
   /// the image of target i in reflections[k - 1]; the clusters of images are the images of clusters.
@@ -39,7 +40,7 @@ class TreeSum {
   /// Rows wanted of the sum for what the nodes carry; values[Kernel::out i + c].
   template <class Kernel>
   void sum(const std::array<const double*, 6>& carried, double* values) {
-    in_ = Kernel::in, out_ = Kernel::out, kernel_ = Kernel::sum;
+    in_ = Kernel::in, out_ = Kernel::out, kernel_ = precision_ == Precision::single ? Kernel::single : Kernel::sum;
     sum(carried, values);
   }
 
@@ -77,6 +78,7 @@ class TreeSum {
   Charges points() const;
   Charges nodes() const;
 
+  Precision precision_;
   int part_ = 0, parts_ = 1;
   int in_ = 3, out_ = 3;  // of the kernel
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;

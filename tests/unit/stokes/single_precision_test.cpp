@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "stokes/far_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// Nodes on a sphere about a place far from the origin, in any unit of length, that carry random numbers; targets beside some of them.
+struct Scene {
+  static constexpr int n = 1000;
+  std::vector<double> x[3], q[6];
+  double target[6 * far_block];
+
+  explicit Scene(double unit) {
+    std::mt19937 random(3);
+    std::normal_distribution<> normal;
+    for (int k = 0; k < n; ++k) {
+      const Vec3 at = unit * (Vec3(7, -2, 3) + Vec3(normal(random), normal(random), normal(random)).normalized());
+      for (int c = 0; c < 3; ++c) x[c].push_back(at[c]);
+      for (auto& component : q) component.push_back(normal(random));
+    }
+    for (int l = 0; l < far_block; ++l)
+      for (int c = 0; c < 3; ++c) {  // the first coincides with a node, the others come closer and closer to one
+        target[far_block * c + l] = x[c][static_cast<std::size_t>(10 * l)] + (l > 0 ? unit * normal(random) * std::pow(0.5, l) : 0);
+        target[far_block * (3 + c) + l] = normal(random);
+      }
+  }
+
+  PointForces forces() const { return {n, x[0].data(), x[1].data(), x[2].data(), q[0].data(), q[1].data(), q[2].data()}; }
+  Stresslets stresslets() const {
+    return {n, x[0].data(), x[1].data(), x[2].data(), q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()};
+  }
+  Charges charges() const {
+    return {n, x[0].data(), x[1].data(), x[2].data(), {q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()}};
+  }
+
+  /// sum |q| / r^power over the nodes that do not coincide with target l.
+  double magnitude(int l, int power) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      Vec3 r;
+      for (int c = 0; c < 3; ++c) r[c] = x[c][k] - target[far_block * c + l];
+      if (r.norm() > 0) sum += 10 / std::pow(r.norm(), power);
+    }
+    return sum;
+  }
+};
+
+/// Largest difference over what the terms add up to without their signs.
+double largest_error(const Scene& scene, int power, const double* single, const double* full) {
+  double largest = 0;
+  for (int l = 0; l < far_block; ++l)
+    for (int c = 0; c < 3; ++c)
+      largest = std::max(largest, std::abs(single[far_block * c + l] - full[far_block * c + l]) / scene.magnitude(l, power));
+  return largest;
+}
+
+// The bounds are 4 roundings of single precision, and 16 of a stresslet, which holds the fifth power of a rounded number. Without what single precision
+// leaves of a place they are exceeded a hundredfold.
+TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
+  const double rounding = 0x1p-24;
+  for (const double unit : {1e-9, 1e-6, 1., 1e9}) {
+    const Scene scene(unit);
+    double single[3 * far_block], full[3 * far_block];
+    far_sum_in_single(scene.forces(), scene.target, single), far_sum(scene.forces(), scene.target, full);
+    EXPECT_LT(largest_error(scene, 1, single, full), 4 * rounding) << unit;
+    stokeslet_sum_in_single(scene.charges(), scene.target, single);
+    EXPECT_LT(largest_error(scene, 1, single, full), 4 * rounding) << unit;
+    far_sum_in_single(scene.stresslets(), scene.target, single), far_sum(scene.stresslets(), scene.target, full);
+    EXPECT_LT(largest_error(scene, 2, single, full), 16 * rounding) << unit;
+    stresslet_sum_in_single(scene.charges(), scene.target, single), stresslet_sum(scene.charges(), scene.target, full);
+    EXPECT_LT(largest_error(scene, 2, single, full), 16 * rounding) << unit;
+  }
+}
+
+TEST(SinglePrecision, GivesATargetTheSameWhateverItsNeighboursAre) {
+  const Scene scene(1);
+  double together[3 * far_block], alone[3 * far_block], repeated[6 * far_block];
+  const auto same = [&](auto sum, const auto& nodes) {
+    sum(nodes, scene.target, together);
+    for (int l = 0; l < far_block; ++l) {
+      for (int c = 0; c < 6; ++c) std::fill_n(repeated + far_block * c, far_block, scene.target[far_block * c + l]);
+      sum(nodes, repeated, alone);
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(alone[far_block * c], together[far_block * c + l]) << l;
+    }
+  };
+  same([](const PointForces& nodes, const double* target, double* u) { far_sum_in_single(nodes, target, u); }, scene.forces());
+  same([](const Stresslets& nodes, const double* target, double* u) { far_sum_in_single(nodes, target, u); }, scene.stresslets());
+  same(stresslet_sum_in_single, scene.charges());
+}
+
+}  // namespace
+}  // namespace tanktread::stokes
