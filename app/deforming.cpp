@@ -113,7 +113,7 @@ class Deforming : public ParticleSystem {
       whole.velocity += now.velocity / static_cast<double>(members_.size());
     }
     if (body().wall) {
-      if (all_) check_spread(*body().wall, capsule_->geometry(), state.x);
+      check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
       add_tube(*capsule_, state.x, whole);
     }
     if (const auto& cell = capsule_->cell(); cell && cell->n() == 3)

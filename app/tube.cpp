@@ -86,10 +86,17 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   const surface::Outline& outline = body.duct->outline();
   const double centroid = surface::measures(body.space, body.rest).centroid[0];
   const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
-  const double length = x1.maxCoeff() - x1.minCoeff();
+  const double length = x1.maxCoeff() - x1.minCoeff(), period = scene.tube.periodic_length.value_or(0);
+  const int images = surface::train_images(scene.tube, outline.radius(), scene.quadrature.tolerance);
+  if (images > 0 && period <= length)
+    throw UserError(formatted("Tube/periodic length = %.4g must be more than the particles are long: from x1 = %.4g to %.4g seen from their centroid.",
+                              period, x1.minCoeff(), x1.maxCoeff()));
+  surface::TubeOptions options = scene.tube;
+  options.axial_elements += static_cast<int>(std::ceil(2 * images * period / surface::tube_length({}, outline.radius(), length) * options.axial_elements));
+  const double chain = length + 2 * images * period;
   auto wall = std::make_shared<surface::TubeWall>(
-      surface::tube_wall(outline, scene.tube, surface::tube_length(scene.tube, outline.radius(), length), length / 2));
-  surface::check_length(*wall, x1.minCoeff(), x1.maxCoeff());
+      surface::tube_wall(outline, options, surface::tube_length(scene.tube, outline.radius(), chain), chain / 2));
+  surface::check_length(*wall, x1.minCoeff() - images * period, x1.maxCoeff() + images * period);
   return wall;
 }
 
@@ -102,6 +109,8 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   if (std::ranges::any_of(scene.alone(), current)) parameters.measure = stokes::Measure::current;
   if (scene.tube.channel) parameters.symmetry = body.symmetry;
   parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
+  parameters.period = scene.tube.periodic_length.value_or(0);
+  parameters.copies = surface::train_images(scene.tube, body.duct->outline().radius(), scene.quadrature.tolerance);
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
   if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
@@ -112,7 +121,7 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
 void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now) {
   coupling::Tube& tube = *capsule.tube();
   now.tube = capsule.checks(x);
-  now.pressure_drop = capsule.response(x).pressure_drop;
+  now.pressure_drop = capsule.response(x).pressure_drop / tube.copies();
   now.gap = tube.gap();
   add_channel(tube, now);
 }
@@ -123,15 +132,20 @@ void add_tube(coupling::Tube& tube, const Net& density, Moment& now) {
 }
 
 void add_channel(const coupling::Tube& tube, Moment& now) {
-  now.flow_rate = tube.flow_rate(now.pressure_drop);
+  now.flow_rate = tube.flow_rate(now.pressure_drop * tube.copies());
   const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
   if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
 }
 
-void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
-  if (wall.channel) return;
+void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
+  if (wall.channel || (scene.particles.empty() && !scene.tube.periodic_length)) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
-  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out
+  const double period = scene.tube.periodic_length.value_or(0), chain = period * surface::train_images(scene.tube, wall.radius(), scene.quadrature.tolerance);
+  if (period > 0 && x1.maxCoeff() - x1.minCoeff() >= period)
+    throw RunFailure(formatted("the particles reach from x1 = %.4g to %.4g seen from their centroid, into their copies: Tube/periodic length = %.4g is too "
+                               "short",
+                               x1.minCoeff(), x1.maxCoeff(), period));
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + chain + wall.radius());  // nearer to an end the disturbance has not died out
   if (wall.length() < needed)
     throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
                                "an end, Tube/length = %.4g is too short",

@@ -31,8 +31,8 @@ void add_tube(coupling::Tube& tube, const Net& density, Moment& now);
 /// The flow rate, and the pressure drop of the empty channel if it is one.
 void add_channel(const coupling::Tube& tube, Moment& now);
 
-/// Throws RunFailure where particles at x have drawn apart by more than the wall is long.
-void check_spread(const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
+/// Throws RunFailure where particles at x have drawn apart by more than the wall is long, or are longer than the period of their train.
+void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 /// Why a run must end whose particle is at this distance from the wall: closer than `Tube/contact gap`. Empty if it need not.
 std::string contact(const Scene& scene, double gap);

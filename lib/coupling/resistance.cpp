@@ -95,7 +95,7 @@ void Resistance::factor() {
 
 Net Resistance::ambient(const stokes::AmbientFlow& flow) const { return collocation_.solve(Net(flow.velocities(sites_ * place_) * turn_)); }
 
-double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) : 0; }
+double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) / tube_->copies() : 0; }
 
 /// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
 Net Resistance::apply(const Net& f) const {

@@ -34,6 +34,7 @@ Tube::~Tube() = default;
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
+int Tube::copies() const { return 1 + static_cast<int>(particle_->shifts.size()); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
   return wall_->evaluations() + particle_->evaluations();
@@ -62,6 +63,7 @@ double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
 Net Tube::load_on_wall(const Net& f) {
   Net u(wall_->sites().rows(), 3);
   particle_->single.apply(f, wall_->sites(), wall_->own(), u);
+  particle_->add_copies(particle_->single, f, wall_->sites(), wall_->own(), u);
   wall_->ranks().replicate(u);
   return -u / viscosity();
 }
@@ -71,6 +73,7 @@ Net Tube::velocity_on_wall(const Net& v) {
   if (!particle_->dual) return u;
   const Net strength = particle_->strength(v);
   particle_->dual->apply(strength, particle_->nearest_values(strength), wall_->sites(), wall_->own(), u, particle_->kept(particle_->dual_on_wall));
+  particle_->add_copies(*particle_->dual, strength, wall_->sites(), wall_->own(), u);
   wall_->ranks().replicate(u);
   return u;
 }
@@ -80,6 +83,15 @@ Net Tube::wall_on_particle(const Net& traction) {
   wall_->layer().apply(traction, particle_->sites, particle_->own, u, particle_->kept(particle_->wall_on_sites));
   particle_->ranks.replicate(u);
   return -u / viscosity();
+}
+
+Net Tube::copies_on_particle(const Net& f, const Net& v) {
+  Net u = Net::Zero(particle_->sites.rows(), 3);
+  if (particle_->shifts.empty()) return u;
+  if (f.size() > 0) particle_->add_copies(particle_->single, -f / viscosity(), particle_->sites, particle_->own, u);
+  if (v.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(v), particle_->sites, particle_->own, u);
+  particle_->ranks.replicate(u);
+  return u;
 }
 
 Net Tube::wall_on_wall(const Net& traction) { return wall_->apply(traction) / viscosity(); }
@@ -102,6 +114,7 @@ Tube::Response Tube::respond(const Net& f, const Net& v) {
   if (f.size() > 0) on_wall += load_on_wall(f);
   response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
   response.velocity = wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
+  if (copies() > 1) response.velocity += copies_on_particle(f, v), response.load = f, response.moves = v;
   if (const double slower = slowed(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
 }
@@ -110,7 +123,8 @@ Tube::Response Tube::respond(const Net& f, const Net& v) {
 double Tube::slowed(double pressure_drop) const {
   if (!particle_->parameters.holds_pressure_drop) return 0;
   const auto* channel = dynamic_cast<const ChannelFlow*>(flow_.get());
-  return pressure_drop / (channel ? channel->pressure_drop() : flow_->pressure_gradient() * wall().length());
+  const double length = copies() > 1 ? copies() * particle_->parameters.period : wall().length();
+  return pressure_drop / (channel ? channel->pressure_drop() : flow_->pressure_gradient() * length);
 }
 
 void Tube::velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u) {
@@ -118,6 +132,8 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
   at.col(0).array() -= particle_->centroid;
   wall_->layer().apply(response.wall_traction, at, rows, u);
   for (const int i : rows) u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - u.row(i)) / viscosity();
+  if (response.load.size() > 0) particle_->add_copies(particle_->single, -response.load / viscosity(), at, rows, u);
+  if (response.moves.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(response.moves), at, rows, u);
   if (const double slower = slowed(response.pressure_drop); slower != 0) {
     const Net ambient = flow_->velocities(x);
     for (const int i : rows) u.row(i) -= slower * ambient.row(i);
@@ -144,6 +160,11 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
   wall_->ranks().replicate(on_wall);
   Net u(particle_->sites.rows(), 3);
   frozen.wall.apply(solve_wall(on_wall) + pressure * wall_->pumped(), u);
+  if (copies() > 1) {
+    part = Net::Zero(u.rows(), 3);
+    if (f.size() > 0) frozen.single_of_copies.apply(f, part), u += part;
+    if (v.size() > 0 && particle_->dual) frozen.dual_of_copies.apply(particle_->strength(v), part), u -= viscosity() * part;
+  }
   particle_->ranks.replicate(u);
   return -u / viscosity() + pressure * frozen.inlet - slowed(pressure) * frozen.ambient;
 }

@@ -61,9 +61,10 @@ double Tube::flow_of_velocity(const Net& v) const {
   std::vector<double> value[3];
   particle.dual->values(particle.strength(v), value);
   const auto &node = particle.dual->nodes(), &normal = particle.dual->normals();
-  for (std::size_t k = 0; k < value[0].size(); ++k)
-    flow += wall_->inlet().double_layer_flow(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
-                                             Vec3(normal[0][k], normal[1][k], normal[2][k]));
+  for (const double shift : particle.all_shifts())
+    for (std::size_t k = 0; k < value[0].size(); ++k)
+      flow += wall_->inlet().double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
+                                               Vec3(normal[0][k], normal[1][k], normal[2][k]));
   return flow;
 }
 
@@ -80,12 +81,13 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   if (f.size() > 0) {
     particle.single.values(f, value);
     const auto& node = particle.single.nodes();
-    for (std::size_t k = 0; k < value[0].size(); ++k) {
-      const Net at = (Net(1, 3) << node[0][k], node[1][k], node[2][k]).finished();
-      const Vec3 strength = particle.single.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
-      flow -= inlet.integral(at).row(0).dot(strength) / mu;
-      force -= strength[0];
-    }
+    for (const double shift : particle.all_shifts())
+      for (std::size_t k = 0; k < value[0].size(); ++k) {
+        const Net at = (Net(1, 3) << node[0][k] + shift, node[1][k], node[2][k]).finished();
+        const Vec3 strength = particle.single.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
+        flow -= inlet.integral(at).row(0).dot(strength) / mu;
+        force -= strength[0];
+      }
   }
   flow += flow_of_velocity(v);
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
@@ -94,8 +96,8 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   checks.flux = flow / flow_->flow_rate();
   checks.force = force / (area * flow_->pressure_gradient() * flow_->radius());
   checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
-  checks.pressure_by_flux = dp - flow / flow_of_pressure_;
-  checks.pressure_by_force = dp - force / force_of_pressure;
+  checks.pressure_by_flux = (dp - flow / flow_of_pressure_) / copies();
+  checks.pressure_by_force = (dp - force / force_of_pressure) / copies();
   return checks;
 }
 
@@ -111,10 +113,12 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   u -= part / mu;
   if (f.size() > 0) {
     particle.single.apply(f, at, all, part);
+    particle.add_copies(particle.single, f, at, all, part);
     u -= part / mu;
   }
   if (v.size() > 0 && particle.dual) {
     particle.dual->apply(particle.strength(v), at, all, part);
+    particle.add_copies(*particle.dual, particle.strength(v), at, all, part);
     u += part;
   }
   return u.rowwise().norm().maxCoeff();

@@ -23,6 +23,7 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
     ranks.own(own, space.n_points);
   }
   from_sites.factor(collocation);
+  for (int m = 1; m <= how.copies; ++m) shifts.insert(shifts.end(), {m * how.period, -m * how.period});
   set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
 }
 
@@ -48,6 +49,17 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
     wall_on_sites = wall.layer().near(sites, own);
   }
   weigh_pressure(flow, !wall.surface().channel);
+  pressure_of_load *= static_cast<double>(1 + shifts.size());
+  pressure_of_velocity *= static_cast<double>(1 + shifts.size());
+}
+
+void Tube::Particle::add_copies(Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u) {
+  Net part(at.rows(), 3), seen = at;
+  for (const double shift : shifts) {
+    seen.col(0) = at.col(0).array() - shift;
+    layer.apply(density, seen, rows, part);
+    for (const int i : rows) u.row(i) += part.row(i);
+  }
 }
 
 /// The weights of (2.7) over Q, with v_inf and, in a straight tube, its gradient interpolated at the collocation points: v_1, v_1,2 and
@@ -116,11 +128,25 @@ Net Tube::Particle::nearest_values(const Net& v) const {
 
 void Tube::Particle::freeze(Wall& wall) {
   using Targets = std::span<const int>;
-  frozen.single.assemble(wall.own(), space.n_points,
-                         [&](Targets targets, stokes::Rows<float>& rows) { single.assemble(wall.sites(), targets, rows); });
-  if (dual)
-    frozen.dual.assemble(wall.own(), space.n_points,
-                         [&](Targets targets, stokes::Rows<float>& rows) { dual->assemble(wall.sites(), targets, rows); });
+  const auto of_copies = [&](Layer& layer, const Net& at, bool itself) {
+    return [&, itself](Targets targets, stokes::Rows<float>& rows) {
+      rows.setZero(3 * static_cast<Eigen::Index>(targets.size()), 3 * space.n_points);
+      if (itself) layer.assemble(at, targets, rows);
+      stokes::Rows<float> part;
+      Net seen = at;
+      for (const double shift : shifts) {
+        seen.col(0) = at.col(0).array() - shift;
+        layer.assemble(seen, targets, part);
+        rows += part;
+      }
+    };
+  };
+  frozen.single.assemble(wall.own(), space.n_points, of_copies(single, wall.sites(), true));
+  if (dual) frozen.dual.assemble(wall.own(), space.n_points, of_copies(*dual, wall.sites(), true));
+  if (!shifts.empty()) {
+    frozen.single_of_copies.assemble(own, space.n_points, of_copies(single, sites, false));
+    if (dual) frozen.dual_of_copies.assemble(own, space.n_points, of_copies(*dual, sites, false));
+  }
   frozen.wall.assemble(own, wall.surface().space.n_points,
                        [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
   frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;

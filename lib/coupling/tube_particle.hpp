@@ -31,8 +31,18 @@ struct Tube::Particle {
   /// v at the collocation point of the particle that is nearest to each one of the wall.
   Net nearest_values(const Net& v) const;
 
+  /// Along x1, of all copies, the particle itself first.
+  std::vector<double> all_shifts() const {
+    std::vector<double> all{0};
+    all.insert(all.end(), shifts.begin(), shifts.end());
+    return all;
+  }
+
   /// (1 - lambda) v: the strength of the double layer.
   Net strength(const Net& v) const { return contrasts.asDiagonal() * v; }
+
+  /// Adds to rows of u what a layer of this density does from the other copies of a train.
+  void add_copies(stokes::Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u);
 
   stokes::Evaluations evaluations() const;
 
@@ -46,6 +56,7 @@ struct Tube::Particle {
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< where a lambda is not 1
   Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
+  std::vector<double> shifts;              ///< along x1, of the other copies of a train
 
   Net shape;                                                            ///< in the wall's frame
   double centroid = 0;                                                  ///< where that frame has its origin
@@ -57,7 +68,7 @@ struct Tube::Particle {
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
 
   struct Frozen {
-    FrozenOperator single, dual, wall;
+    FrozenOperator single, dual, wall, single_of_copies, dual_of_copies;
     Net inlet, ambient, pressure_of_load, pressure_of_velocity;
   };
   Frozen frozen;

@@ -201,7 +201,12 @@ void TubeOptions::declare(deck::Section& list) {
     list.key("length", length, deck::positive(), "length",
              "of the tube's piece that is modelled; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length "
              "and 4.6 R_T where that is more");
-    list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along");
+    list.key("periodic length", periodic_length, deck::positive(), "length",
+             "L: the particles repeat along x1 with this period, as a train without end; only once if not given");
+    list.key("images", images, deck::between(1, 100), "1",
+             "M: copies of a train modelled at either side, what is beyond errs by exp(-2.6 M L/R_T), on the axis by exp(-4.5 M L/R_T); if not given as many "
+             "as make the former less than `Quadrature/tolerance`");
+    list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along; of a train for each copy");
     list.key("grading", grading, deck::between(1.0, 20.0), "1",
              "g: the wall's elements along the tube are denser around the particle, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform");
   }

@@ -125,6 +125,8 @@ struct TubeOptions {
   std::optional<std::string> outline;        ///< path of the file of points
 
   std::optional<double> length;  ///< of the wall; 2 pi R_T, or more for a long particle, if not given
+  std::optional<double> periodic_length;  ///< L: the particles repeat along x1, a train; none: they do not
+  std::optional<int> images;              ///< M: copies modelled at either side; from the tolerance of integrals if not given
   int azimuthal_elements = 24;   ///< of the wall, around
   int axial_elements = 25;       ///< of the wall, along; three more control points
   double grading = 4;            ///< density of elements along the tube, at the particle over far away

@@ -196,6 +196,12 @@ double tube_length(const TubeOptions& options, double radius, double particle_le
   return options.length.value_or(std::max(2 * std::numbers::pi * radius, particle_length + 4.6 * radius));
 }
 
+int train_images(const TubeOptions& options, double radius, double tolerance) {
+  if (!options.periodic_length) return 0;
+  constexpr double decay = 2.57;  // of what a particle off the axis does, over R_T
+  return options.images.value_or(std::max(1, static_cast<int>(std::ceil(-std::log(tolerance) * radius / (decay * *options.periodic_length)))));
+}
+
 void check_length(const TubeWall& wall, double first, double last) {
   const double margin = 1.7 * wall.radius(), needed = 2 * (std::max(-first, last) + margin);
   if (wall.length() >= needed) return;

@@ -40,6 +40,10 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
 /// decays like exp(-4.5 x1/R_T)).
 double tube_length(const TubeOptions& options, double radius, double particle_length);
 
+/// How many copies of a train's particle are modelled at either side: those of the options, or such that exp(-2.57 M L/R_T) is below the tolerance.
+/// Nothing repeats: 0.
+int train_images(const TubeOptions& options, double radius, double tolerance);
+
 /// Throws UserError when the particle, from x1 = `first` to `last`, is closer than 1.7 R_T to an end of the wall: what is neglected
 /// there is 1e-5 at 1.7 R_T.
 void check_length(const TubeWall& wall, double first, double last);
