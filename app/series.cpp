@@ -112,7 +112,7 @@ constexpr Statement table[] = {
      moving, [](const Moment& m, int) { return m.intrinsic_viscosity; }, Needs::strain},
     {"migration_velocity", "", "length/time", "speed of the centroid in the x2 x3 plane, positive towards the axis of the tube",
      of_deforming | of_free, migration_velocity, Needs::tube},
-    {"disturbed_pressure_drop", "", "force/length^2", "pressure drop that the particle adds (2.7)", timed | of_prescribed,
+    {"disturbed_pressure_drop", "", "force/length^2", "pressure drop that the particle adds (2.7); of one period of a train", timed | of_prescribed,
      [](const Moment& m, int) { return m.pressure_drop; }, Needs::tube},
     {"gap", "", "length", "smallest distance between particle and wall", timed | of_prescribed,
      [](const Moment& m, int) { return m.gap; }, Needs::tube_or_wall},

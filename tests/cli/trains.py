@@ -24,7 +24,7 @@ def _one(*settings, viscosity_ratio=1, ranks=1):
 
 
 def two_in_a_period_twice_as_long_do_the_same():
-    """Alternating viscosity ratios would not; the chain is the same, so only the wall's mesh and what the caps do differ: fewer than 1e-6."""
+    """The chain is as long, or longer by half a period; so only the wall's mesh and what is left out differ."""
     for ratio in (1, 4):
         one = _one("Tube/images=4", viscosity_ratio=ratio)
         pair = HEAD + "  Particles:\n    defaults: {radius: 0.5, viscosity ratio: %d, %s}\n" % (ratio, BODY) + "".join(
