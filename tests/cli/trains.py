@@ -8,41 +8,41 @@ from harness import check, deck, main, run, series
 HEAD = """
 Tanktread:
   Flow: {type: duct}
-  Tube: {section: circle, azimuthal elements: 8, axial elements: 8, periodic length: 2.0, images: 2}
-  Time: {scheme: euler, fixed step: 0.01, final time: 0.01}
+  Tube: {section: circle, azimuthal elements: 12, axial elements: 20, periodic length: 2.0, images: 2}
+  Time: {fixed step: 0.1, final time: 0.2}
   Quadrature: {tolerance: 1.0e-5}
-  Output: {interval: 0.01}
+  Output: {interval: 0.2}
 """
-BODY = "Membrane: {law: neo-Hookean, capillary number: 0.1, pre-inflation: 0.05}, Surface: {elements per side: 2}"
-ONE = HEAD + "  Particle: {radius: 0.5, center: [0.0, 0.0, 0.2]}\n" + "".join(f"  {part}\n" for part in BODY.replace("}, ", "}\n").splitlines())
+BODY = "Membrane: {law: neo-Hookean, capillary number: 0.1, pre-inflation: 0.05}, Surface: {elements per side: 3}"
+ONE = HEAD + "  Particle: {radius: 0.4, center: [0.0, 0.0, 0.2]}\n" + "".join(f"  {part}\n" for part in BODY.replace("}, ", "}\n").splitlines())
 
 
 def _one(*settings, viscosity_ratio=1, ranks=1):
     words = [word for setting in (*settings, f"Particle/viscosity ratio={viscosity_ratio}") for word in ("--set", setting)]
     run(deck(ONE), *words, "--output", "one", "--overwrite", "--quiet", ranks=ranks)
-    return {name: series("one", name)[0] for name in ("velocity_x1", "velocity_x3", "disturbed_pressure_drop", "stresslet_13")}
+    return {name: series("one", name)[-1] for name in ("velocity_x1", "velocity_x3", "disturbed_pressure_drop", "stresslet_13")}
 
 
 def two_in_a_period_twice_as_long_do_the_same():
     """The chain is as long, or longer by half a period; so only the wall's mesh and what is left out differ."""
     for ratio in (1, 4):
         one = _one("Tube/images=4", viscosity_ratio=ratio)
-        pair = HEAD + "  Particles:\n    defaults: {radius: 0.5, viscosity ratio: %d, %s}\n" % (ratio, BODY) + "".join(
+        pair = HEAD + "  Particles:\n    defaults: {radius: 0.4, viscosity ratio: %d, %s}\n" % (ratio, BODY) + "".join(
             f"    {name}: {{center: [{x}, 0.0, 0.2]}}\n" for name, x in (("first", -1.0), ("second", 1.0)))
-        run(deck(pair, "pair.yaml"), "--set", "Tube/periodic length=4", "--set", "Tube/axial elements=16", "--output", "pair", "--overwrite", "--quiet")
+        run(deck(pair, "pair.yaml"), "--set", "Tube/periodic length=4", "--set", "Tube/axial elements=20", "--output", "pair", "--overwrite", "--quiet")
         for name in ("first", "second"):
             for what in ("velocity_x1", "velocity_x3"):
-                check(abs(series("pair", f"{name}/{what}")[0] - one[what]) < 1e-4, f"{name} {what} {one[what]}")
-        drop = series("pair", "disturbed_pressure_drop")[0]
+                check(abs(series("pair", f"{name}/{what}")[-1] - one[what]) < 1e-4, f"{name} {what} {one[what]}")
+        drop = series("pair", "disturbed_pressure_drop")[-1]
         check(abs(drop - 2 * one["disturbed_pressure_drop"]) < 1e-3 * drop, f"pressure drop {drop}, {one['disturbed_pressure_drop']}")
 
 
 def what_images_leave_out_decays():
-    """Like exp(-2.57 M L/R_T) off the axis: between M and M + 1 here by exp(-5.1)."""
-    most = _one("Tube/images=4")
-    errors = [abs(_one(f"Tube/images={m}")["velocity_x1"] - most["velocity_x1"]) for m in (1, 2)]
-    check(errors[0] > 1e-9, "images do nothing")
-    check(errors[1] < max(errors[0] * math.exp(-2.5), 1e-6), f"errors {errors}")
+    """Like exp(-2.57 M L/R_T) off the axis, a factor of 13 an image here; half of that asked, for the wall is meshed anew for each M."""
+    drop = [_one("Tube/periodic length=1", f"Tube/images={m}")["velocity_x1"] for m in (1, 2, 5)]
+    errors = [abs(one - drop[-1]) for one in drop]
+    check(errors[0] > 1e-4, f"one image is enough, {errors}")
+    check(errors[1] < errors[0] / 6.5, f"errors {errors}")
 
 
 def ranks_give_the_same():
@@ -52,7 +52,7 @@ def ranks_give_the_same():
 
 
 def mistakes_are_told():
-    for settings, words in [(["Tube/periodic length=0.9"], ["Tube/periodic length", "0.9", "long"]),
+    for settings, words in [(["Tube/periodic length=0.7"], ["Tube/periodic length", "0.7", "long"]),
                             (["Tube/images=0"], ["Tube/images", "0"])]:
         said = run(deck(ONE), *[w for s in settings for w in ("--set", s)], "--output", "bad", code=2).stderr
         for word in words:
