@@ -62,7 +62,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
     lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
                                        wall.space.description.c_str()));
   if (const int images = surface::train_images(scene.tube, body.duct->outline().radius(), scene.quadrature.tolerance); images > 0)
-    lines.emplace_back("train", formatted("period %.6g along x1, %d copies at either side, those beyond left out", *scene.tube.periodic_length, images));
+    lines.emplace_back("train", formatted("period %.6g, %d copies at either side, those beyond left out", *scene.tube.periodic_length, images));
   lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
                                        "and as much of rows on all together",
                                        unknowns, wall_solver(scene).c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : ""));
