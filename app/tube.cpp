@@ -89,8 +89,9 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   const double length = x1.maxCoeff() - x1.minCoeff(), period = scene.tube.periodic_length.value_or(0);
   const int images = surface::train_images(scene.tube, outline.radius(), scene.quadrature.tolerance);
   if (images > 0 && period <= length)
-    throw UserError(formatted("Tube/periodic length = %.4g must be more than the particles are long: from x1 = %.4g to %.4g seen from their centroid.", period,
-                              x1.minCoeff(), x1.maxCoeff()));
+    throw UserError(formatted("Tube/periodic length = %.4g must be more than the particles are long, which reach from x1 = %.4g to %.4g seen from "
+                              "their centroid.",
+                              period, x1.minCoeff(), x1.maxCoeff()));
   surface::TubeOptions options = scene.tube;
   const double chain = length + 2 * images * period, alone = surface::tube_length({}, outline.radius(), length);
   options.axial_elements += static_cast<int>(std::ceil((chain - length) / alone * options.axial_elements));
@@ -143,8 +144,8 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
   const double period = scene.tube.periodic_length.value_or(0);
   const double chain = period * surface::train_images(scene.tube, wall.radius(), scene.quadrature.tolerance);
   if (period > 0 && x1.maxCoeff() - x1.minCoeff() >= period)
-    throw RunFailure(formatted("the particles reach from x1 = %.4g to %.4g seen from their centroid, into their copies: Tube/periodic length = %.4g is "
-                               "too short",
+    throw RunFailure(formatted("the particles reach from x1 = %.4g to %.4g seen from their centroid, into their copies: Tube/periodic length = %.4g "
+                               "is too short",
                                x1.minCoeff(), x1.maxCoeff(), period));
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + chain + wall.radius());  // nearer to an end the disturbance has not died out
   if (wall.length() < needed)

@@ -204,7 +204,7 @@ void TubeOptions::declare(deck::Section& list) {
     list.key("periodic length", periodic_length, deck::positive(), "length",
              "L: the particles repeat along x1 with this period, as a train without end; only once if not given");
     list.key("images", images, deck::between(1, 100), "1",
-             "M: copies of a train modelled at either side, what is beyond errs by exp(-2.6 M L/R_T), on the axis by exp(-4.5 M L/R_T); if not given as "
+             "M: copies of a train modelled at either side; those beyond count for exp(-2.6 M L/R_T), on the axis exp(-4.5 M L/R_T); if not given as "
              "many as make the former less than `Quadrature/tolerance`");
     list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along; of a train for each copy");
     list.key("grading", grading, deck::between(1.0, 20.0), "1",
