@@ -17,14 +17,14 @@ void Options::declare(deck::Section& section) {
               "`dense`: every target meets every far node; `tree`: far apart they meet as clusters, to the same `tolerance`, in a time "
               "proportional to the number of elements; `auto`: the faster one");
   section.key("far precision", far_precision, deck::Choice{"auto", "single", "double"},
-              "of the terms of far sums: `single` is 1.5 times as fast, and off by some 1e-7 of the sum of their magnitudes, which makes 1e-8 of the shape: what "
-              "is promised to 1e-10 (symmetry, order, place) then holds to that; `auto`: `double` up to a `tolerance` of 1e-3");
+              "of the terms of far sums: `single` is 1.5 times as fast, and off by some 1e-7 of the sum of their magnitudes, which makes 1e-8 of the "
+              "shape: what is promised to 1e-10 (symmetry, order, place) then holds to that; `auto`: `double` up to a `tolerance` of 1e-3");
 }
 
 void Options::check() const {
   if (far_precision == "single" && tolerance < 1e-6)
-    throw UserError("Quadrature/far precision `single`, which is off by some 1e-7, cannot keep a Quadrature/tolerance of " + deck::number_text(tolerance) +
-                    ": ask for 1e-6 or more, or for `double`.");
+    throw UserError("Quadrature/far precision `single`, which is off by some 1e-7, cannot keep a Quadrature/tolerance of " +
+                    deck::number_text(tolerance) + ": ask for 1e-6 or more, or for `double`.");
 }
 
 }  // namespace tanktread::quadrature

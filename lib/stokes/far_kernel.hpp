@@ -50,8 +50,8 @@ void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
 /// The same sums in single precision: differences of places are good to 1e-7 of themselves, however close the places are, for what single precision
-/// leaves of a place counts as well; terms of `single_run` nodes are added up before they go to the sum in double. Off by 3e-8 of the sum of the terms'
-/// magnitudes (root mean square; at most 3e-7). What one target gets does not depend on the others.
+/// leaves of a place counts as well; terms of `single_run` nodes are added up before they go to the sum in double. Off by 3e-8 of the sum of
+/// the terms' magnitudes (root mean square; at most 3e-7). What one target gets does not depend on the others.
 constexpr int single_run = 64;
 void far_sum_in_single(const PointForces& forces, const double* target, double* u);
 void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);

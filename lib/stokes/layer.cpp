@@ -34,7 +34,8 @@ std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  if (sums_by_tree(space, options)) tree_.emplace(single() ? options.tolerance : options.tolerance / 2, precision());  // measured: it errs by half of its share
+  const double of_tree = single() ? options.tolerance : options.tolerance / 2;  // measured: it errs by half of its share
+  if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
   std::iota(fundamental_sites_.begin(), fundamental_sites_.end(), 0);
 }

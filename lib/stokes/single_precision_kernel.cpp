@@ -24,8 +24,8 @@ struct Split {
   }
 };
 
-/// A run of nodes and a block of targets as the first node of the run sees them. Scaled to the farthest target, so that powers of distances stay within
-/// single precision in any units.
+/// A run of nodes and a block of targets as the first node of the run sees them. Scaled to the farthest target, so that powers of distances stay
+/// within single precision in any units.
 struct Sight {
   Split<single_run> nodes;
   Split<far_block> targets;

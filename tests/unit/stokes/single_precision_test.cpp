@@ -60,8 +60,8 @@ double largest_error(const Scene& scene, int power, const double* single, const 
   return largest;
 }
 
-// The bounds are 4 roundings of single precision, and 16 of a stresslet, which holds the fifth power of a rounded number. Without what single precision
-// leaves of a place they are exceeded a hundredfold.
+// The bounds are 4 roundings of single precision, and 16 of a stresslet, which holds the fifth power of a rounded number. Without what single
+// precision leaves of a place they are exceeded a hundredfold.
 TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
   const double rounding = 0x1p-24;
   for (const double unit : {1e-9, 1e-6, 1., 1e9}) {
