@@ -27,7 +27,7 @@ SETTINGS = [
     (["Time/dt=0.1"], ["Time/dt", "Time/fixed step", "Time/initial step"]),
     (["Time/end time=3"], ["Time/end time", "was Time/final time meant?"]),
     (["Membrane/viscosity=1"], ["Membrane/viscosity", "Membrane/shear viscosity meant"]),
-    (["Wall/position=1"], ["Wall", "plane walls", "Tube"]),
+    (["Wall/position=1"], ["Wall/position", "not a key"]),
     (["Particles/one/radius=1"], ["Membrane and Particles contradict", "Particles/defaults"]),
     (["Steady/tolerance=1e-8"], ["Steady", "simple shear", "treads"]),
     (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
