@@ -47,13 +47,6 @@ void add_wall(const stokes::PlaneWall& wall, const std::vector<Member>& members,
 
 void add_wall(const stokes::PlaneWall& wall, const Body& body, const Net& x, Moment& now) { add(wall, body.space, x, 1, now); }
 
-std::string contact_with_wall(const Scene& scene, double gap) {
-  const std::vector<Scene> all = scene.alone();
-  const double least = scene.wall.contact_gap * std::ranges::min(all, {}, &Scene::radius).radius();
-  if (gap >= least) return {};
-  return formatted("a particle touches the wall: the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g,", gap, scene.wall.contact_gap, least);
-}
-
 void refine_at_wall(const Scene& scene, Body& body) {
   if (!scene.wall.present || !scene.adaptation.enabled) return;
   constexpr int most = 10;

@@ -16,9 +16,6 @@ void check_in_front(const Scene& scene, const Body& body);
 void add_wall(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x, Moment& now);
 void add_wall(const stokes::PlaneWall& wall, const Body& body, const Net& x, Moment& now);
 
-/// Why a run must end with a particle at this distance from the wall; empty if it need not.
-std::string contact_with_wall(const Scene& scene, double gap);
-
 /// Cuts the elements of a rigid body that stays alone beside a wall, at its present place, as Adaptation says.
 void refine_at_wall(const Scene& scene, Body& body);
 

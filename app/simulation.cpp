@@ -296,11 +296,22 @@ class Run {
     if (!error.empty()) fail(error);
   }
 
+  /// R_C of the smallest particle, over which gaps are measured.
+  double least_radius() const {
+    const std::vector<Scene> all = scene_.alone();
+    return std::ranges::min(all, {}, &Scene::radius).radius();
+  }
+
+  /// Of a particle with the wall, whose list in the deck this is.
+  void end_at_wall(const std::string& list, double contact_gap) {
+    const double gap = entry("gap"), least = contact_gap * least_radius();
+    if (gap >= least) return;
+    fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
+  }
+
   /// Of two of several particles.
   void end_at_contact() {
-    double radius = std::numeric_limits<double>::infinity();
-    for (const ParticleKind& one : scene_.particles) radius = std::min(radius, one.particle.shape.equivalent_radius());
-    const double gap = entry("smallest_gap"), least = scene_.contact.limit * radius;
+    const double gap = entry("smallest_gap"), least = scene_.contact.limit * least_radius();
     if (gap >= least) return;
     const auto name = [&](const char* which) { return scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name; };
     fail("Particles/" + name("first_of_gap") + " and Particles/" + name("second_of_gap") +
@@ -310,12 +321,10 @@ class Run {
   /// After a step that is done.
   std::string reason_to_stop() {
     if (scene_.tube.present) {
-      const std::string touching = contact(scene_, entry("gap"));
-      if (!touching.empty()) fail(touching);
+      end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
       warn_of_coarse_wall(entry("gap"));
     }
-    if (scene_.wall.present)
-      if (const std::string touching = contact_with_wall(scene_, entry("gap")); !touching.empty()) fail(touching);
+    if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (!scene_.particles.empty()) end_at_contact();
     if (coupling::largest(told_to_stop()) > 0) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;

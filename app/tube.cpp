@@ -97,6 +97,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   options.axial_elements += static_cast<int>(std::ceil((chain - length) / alone * options.axial_elements));
   auto wall = std::make_shared<surface::TubeWall>(
       surface::tube_wall(outline, options, surface::tube_length(scene.tube, outline.radius(), chain), chain / 2));
+  wall->images = images;
   surface::check_length(*wall, x1.minCoeff() - images * period, x1.maxCoeff() + images * period);
   return wall;
 }
@@ -111,7 +112,7 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   if (scene.tube.channel) parameters.symmetry = body.symmetry;
   parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
   parameters.period = scene.tube.periodic_length.value_or(0);
-  parameters.copies = surface::train_images(scene.tube, body.duct->outline().radius(), scene.quadrature.tolerance);
+  parameters.copies = body.wall->images;
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
   if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
@@ -141,8 +142,7 @@ void add_channel(const coupling::Tube& tube, Moment& now) {
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
   if (wall.channel || (scene.particles.empty() && !scene.tube.periodic_length)) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
-  const double period = scene.tube.periodic_length.value_or(0);
-  const double chain = period * surface::train_images(scene.tube, wall.radius(), scene.quadrature.tolerance);
+  const double period = scene.tube.periodic_length.value_or(0), chain = wall.images * period;
   if (period > 0 && x1.maxCoeff() - x1.minCoeff() >= period)
     throw RunFailure(formatted("the particles reach from x1 = %.4g to %.4g seen from their centroid, into their copies: Tube/periodic length = %.4g "
                                "is too short",
@@ -152,14 +152,6 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
     throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
                                "an end, Tube/length = %.4g is too short",
                                x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
-}
-
-std::string contact(const Scene& scene, double gap) {
-  const std::vector<Scene> all = scene.alone();
-  const double least = scene.tube.contact_gap * std::ranges::min(all, {}, &Scene::radius).radius();
-  if (gap >= least) return {};
-  return formatted("the particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap,
-                   scene.tube.list().c_str(), scene.tube.contact_gap, least);
 }
 
 }  // namespace tanktread

@@ -34,7 +34,4 @@ void add_channel(const coupling::Tube& tube, Moment& now);
 /// Throws RunFailure where particles at x have drawn apart by more than the wall is long, or are longer than the period of their train.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
-/// Why a run must end whose particle is at this distance from the wall: closer than `Tube/contact gap`. Empty if it need not.
-std::string contact(const Scene& scene, double gap);
-
 }  // namespace tanktread

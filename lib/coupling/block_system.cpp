@@ -32,7 +32,9 @@ void product(const BlockSystem& s, const In& x, Out r) {
   Tube& tube = s.tube;
   const Net v = x.velocity, traction = x.wall_traction / s.unit;
   const double drop = x.pressure_drop / s.unit;
-  r.velocity = s.viscous(v) - s.control_values(tube.wall_on_particle(traction) + drop * tube.inlet_on_particle() + tube.copies_on_particle({}, v));
+  Net answer = tube.wall_on_particle(traction) + drop * tube.inlet_on_particle();
+  if (tube.copies() > 1) answer += tube.copies_on_particle({}, v);
+  r.velocity = s.viscous(v) - s.control_values(answer);
   r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.velocity_on_wall(v);
   r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of({}, v);
   r.multiplier = x.multiplier;
@@ -78,7 +80,8 @@ LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& prec
 Eigen::VectorXd BlockSystem::right_hand_side(const Net& velocity, const Net& f) const {
   Eigen::VectorXd all(3 * (velocity.rows() + tube.wall().space.n_points) + 2);
   Out rows(*this, all.data());
-  rows.velocity = velocity + control_values(tube.copies_on_particle(f));
+  rows.velocity = velocity;
+  if (tube.copies() > 1) rows.velocity += control_values(tube.copies_on_particle(f));
   rows.wall_traction = tube.load_on_wall(f);
   rows.pressure_drop = unit * tube.pressure_of(f);
   rows.multiplier = 0;

@@ -87,7 +87,6 @@ Net Tube::wall_on_particle(const Net& traction) {
 
 Net Tube::copies_on_particle(const Net& f, const Net& v) {
   Net u = Net::Zero(particle_->sites.rows(), 3);
-  if (particle_->shifts.empty()) return u;
   if (f.size() > 0) particle_->add_copies(particle_->single, -f / viscosity(), particle_->sites, particle_->own, u);
   if (v.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(v), particle_->sites, particle_->own, u);
   particle_->ranks.replicate(u);

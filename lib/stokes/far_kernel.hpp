@@ -76,15 +76,23 @@ void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);
 void stokeslet_sum_in_single(const Charges& points, const double* target, double* value);
 void stresslet_sum_in_single(const Charges& points, const double* target, double* value);
+using KernelSum = void (*)(const Charges& points, const double* target, double* value);
+
+/// u[3 k + c] of one of these with three numbers a target, for any number of targets.
+void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u);
+
 struct StokesletKernel {  ///< forces -> G f
   static constexpr int in = 3, out = 3;
   static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
-struct StressletKernel {  ///< S_jk + S_kj over 2 in the order 11, 22, 33, 12, 13, 23 -> T_ijk S_jk
+/// The order in which the six numbers of a symmetric stress are carried: 11, 22, 33, 12, 13, 23.
+constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+struct StressletKernel {  ///< S_jk + S_kj over 2 in that order -> T_ijk S_jk
   static constexpr int in = 6, out = 3;
   static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };
-struct NormalStressKernel {  ///< n_k -> T_ijk n_k, ij in the order 11, 22, 33, 12, 13, 23
+struct NormalStressKernel {  ///< n_k -> T_ijk n_k, ij in that order
   static constexpr int in = 3, out = 6;
   static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // once a shape
 };

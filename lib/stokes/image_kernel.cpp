@@ -80,7 +80,7 @@ struct Sums {
         for (int i = 0; i < 3; ++i) g[9 * k + 3 * i + j] = u[i];
       }
     }
-    project(table, g, moment);
+    project<Degree, 9>(table, g, moment);
   }
 
   static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
@@ -112,7 +112,7 @@ struct Sums {
         for (int i = 0; i < 3; ++i) g[9 * k + 3 * i + j] = u[i];
       }
     }
-    project(table, g, moment);
+    project<Degree, 9>(table, g, moment);
   }
 
   /// Of S = (w n + n w)/2 times the weight; height: r.n times it.
@@ -123,29 +123,7 @@ struct Sums {
     for (int c = 0; c < 3; ++c) sr[c] = 0.5 * (w[c] * height + n[c] * along);
     image.add(r, sr, weight * (w[0] * n[0] + w[1] * n[1] + w[2] * n[2]), u);
   }
-
-  // moment[9 b + c] = sum over the points of g[9 k + c] B_b
-  static void project(const PointTable& table, const Register* g, double* moment) {
-    const int n = Degree ? Degree + 1 : table.degree + 1;
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        Register total[9] = {};
-        for (int k = 0; k < table.packs(); ++k) {
-          const Points<Degree> points(table, k);
-          const Register b = points.bs[i] * points.bt[j];
-          for (int c = 0; c < 9; ++c) total[c] += g[9 * k + c] * b;
-        }
-        for (int c = 0; c < 9; ++c) moment[9 * (n * j + i) + c] = sum(total[c]);
-      }
-  }
 };
-
-template <class Use>
-void with_degree(int degree, const Use& use) {
-  if (degree == 3) return use(Sums<3>());
-  if (degree == 4) return use(Sums<4>());
-  use(Sums<0>());
-}
 
 }  // namespace
 
@@ -178,19 +156,19 @@ void image_stresslet_sum(const Charges& points, const double* target, double* va
 }
 
 void image_single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
-  with_degree(table.degree, [&](auto sums) { sums.single_sum(table, x, f, registers(weight), x0, u); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.single_sum(table, x, f, registers(weight), x0, u); });
 }
 
 void image_double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
-  with_degree(table.degree, [&](auto sums) { sums.double_sum(table, x, v, x0, v0, u); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.double_sum(table, x, v, x0, v0, u); });
 }
 
 void image_single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment) {
-  with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, registers(weight), x0, registers(scratch), moment); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.single_moments(table, x, registers(weight), x0, registers(scratch), moment); });
 }
 
 void image_double_moments(const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment) {
-  with_degree(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, registers(scratch), moment); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, registers(scratch), moment); });
 }
 
 }  // namespace INSTRUCTIONS

@@ -19,11 +19,11 @@ void image_stokeslet_sum(const Charges& points, const double* target, double* va
 void image_stresslet_sum(const Charges& points, const double* target, double* value);
 struct ImageStokesletKernel {
   static constexpr int in = 3, out = 3;
-  static constexpr auto *sum = image_stokeslet_sum, *single = sum;  // images are smooth: they need no faster sum
+  static constexpr auto *sum = image_stokeslet_sum, *single = sum;  // in double always
 };
 struct ImageStressletKernel {
   static constexpr int in = 6, out = 3;
-  static constexpr auto *sum = image_stresslet_sum, *single = sum;  // images are smooth: they need no faster sum
+  static constexpr auto *sum = image_stresslet_sum, *single = sum;
 };
 
 /// Of one panel under a rule of its own, as in pair_kernel.hpp, x0 mirrored: the two sums, and the moments, moment[9 b + 3 i + j]. `scratch`: 9 packs

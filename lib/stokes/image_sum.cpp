@@ -10,11 +10,6 @@ namespace tanktread::stokes {
 
 namespace {
 
-constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-
-/// Nodes that all targets meet before the next ones are loaded.
-constexpr int nodes_in_cache = 4096;
-
 Charges charges_of(int n, const std::vector<double>* node, const std::vector<double>* carried) {
   Charges charges{n, node[0].data(), node[1].data(), node[2].data(), {}};
   for (int c = 0; c < 6; ++c) charges.q[static_cast<std::size_t>(c)] = carried[c].data();
@@ -98,23 +93,12 @@ void ImageSum::sum_by_clusters(const Charges& charges, Net& sums) {
   for (std::size_t k = 0; k < wanted_.size(); ++k) sums.row(static_cast<Eigen::Index>(k)) = all.row(wanted_[k]);
 }
 
+KernelSum ImageSum::kernel() const { return kind_ == Kind::forces ? image_stokeslet_sum : image_stresslet_sum; }
+
 void ImageSum::sum_all(const Charges& charges, Net& sums) const {
-  const auto kernel = kind_ == Kind::forces ? image_stokeslet_sum : image_stresslet_sum;
-  const int n = static_cast<int>(wanted_.size());
-  sums.setZero();
-  double block[3 * far_block], values[3 * far_block];
-  for (int node = 0; node < charges.n; node += nodes_in_cache) {
-    const Charges part = charges.part(node, std::min(nodes_in_cache, charges.n - node));
-    for (int first = 0; first < n; first += far_block) {
-      for (int l = 0; l < far_block; ++l) {  // idle lanes repeat the last target
-        const Vec3 at = below(targets_[wanted_[std::min(first + l, n - 1)]]);
-        for (int c = 0; c < 3; ++c) block[far_block * c + l] = at[c];
-      }
-      kernel(part, block, values);
-      for (int l = 0; l < std::min(far_block, n - first); ++l)
-        for (int c = 0; c < 3; ++c) sums(first + l, c) += values[far_block * c + l];
-    }
-  }
+  std::vector<Vec3> at;
+  for (const int i : wanted_) at.push_back(below(targets_[static_cast<std::size_t>(i)]));
+  kernel_sums(kernel(), charges, at, sums.data());
 }
 
 Vec3 ImageSum::sum(const Charges& carried, int first, const Vec3& target) const {
@@ -123,10 +107,9 @@ Vec3 ImageSum::sum(const Charges& carried, int first, const Vec3& target) const 
   Charges charges = charges_of(carried.n, node_, own);
   charges.x += first, charges.y += first, charges.z += first;
   const Vec3 at = below(target);
-  double block[3 * far_block], values[3 * far_block];
-  for (int c = 0; c < 3; ++c) std::fill_n(block + far_block * c, far_block, at[c]);
-  (kind_ == Kind::forces ? image_stokeslet_sum : image_stresslet_sum)(charges, block, values);
-  return wall_.axes().transpose() * Vec3(values[0], values[far_block], values[2 * far_block]);
+  Vec3 value;
+  kernel_sums(kernel(), charges, {&at, 1}, value.data());
+  return wall_.axes().transpose() * value;
 }
 
 }  // namespace tanktread::stokes

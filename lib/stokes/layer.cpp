@@ -267,17 +267,13 @@ void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n
 void Layer::place_rest(const std::vector<Vec3>& at) {
   rest_at_ = at;
   rest_stress_.assign(at.size(), Mat3::Zero());
-  std::vector<double> kept[3];
-  for (int c = 0; c < 3; ++c) kept[c] = std::move(density_[c]);
   for (int c = 0; c < 3; ++c) {
-    for (int d = 0; d < 3; ++d) density_[d].assign(static_cast<std::size_t>(n_nodes()), c == d ? 1 : 0);
-    take_moments(Vec3::Zero());
+    take_constant_moments(c);
     Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
     add_rest(moment_, 6, at, sums);
     if (cell_->n() == 3) sums.rowwise() += pressure_along().transpose();
     for (std::size_t k = 0; k < at.size(); ++k) rest_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
   }
-  for (int c = 0; c < 3; ++c) density_[c] = std::move(kept[c]);
 }
 
 /// -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG of the moments taken, x_p the mean node.
@@ -358,15 +354,24 @@ Vec3 Layer::mean_density() const {
   return mean;
 }
 
+/// (f n + n f)/2 at the far nodes k, for f(k, component).
+template <class Values>
+void Layer::take_moments_of(const Values& f) {
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = stresses[c];
+    moment_[c].resize(n_nodes());
+    for (int k = 0; k < n_nodes(); ++k) moment_[c][k] = (f(k, i) * normal_[j][k] + f(k, j) * normal_[i][k]) / 2;
+  }
+}
+
 /// Of the density less its mean.
 void Layer::take_moments(const Vec3& mean) {
-  constexpr int at[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  for (int c = 0; c < 6; ++c) {
-    const auto [i, j] = at[c];
-    moment_[c].resize(n_nodes());
-    for (int k = 0; k < n_nodes(); ++k)
-      moment_[c][k] = ((density_[i][k] - mean[i]) * normal_[j][k] + (density_[j][k] - mean[j]) * normal_[i][k]) / 2;
-  }
+  take_moments_of([&](int k, int i) { return density_[i][k] - mean[i]; });
+}
+
+/// Of the unit density of one component.
+void Layer::take_constant_moments(int component) {
+  take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }
 
 /// sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives 0 exactly.

@@ -163,7 +163,10 @@ class Layer {
   void place_rest(const std::vector<Vec3>& at);
   Vec3 pressure_along() const;
   Vec3 mean_density() const;
+  template <class Values>
+  void take_moments_of(const Values& f);
   void take_moments(const Vec3& mean);
+  void take_constant_moments(int component);
   void place_tree(const Targets& targets);
   void add_by_clusters(const Targets& targets, Net& u);
   void add_forces_by_clusters(const Targets& targets, Net& u);

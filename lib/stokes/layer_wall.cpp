@@ -13,8 +13,6 @@ namespace tanktread::stokes {
 
 namespace {
 
-constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-
 /// Clusters of images err more, for their kernel has poles of two more orders; measured on spheres and ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
@@ -67,11 +65,7 @@ void Layer::add_images(const Targets& targets, Net& u) {
 /// Of constant densities, a column each.
 void Layer::take_image_stress() {
   for (int c = 0; c < 3; ++c) {
-    for (int s = 0; s < 6; ++s) {
-      const auto [i, j] = stresses[s];
-      moment_[s].resize(static_cast<std::size_t>(n_nodes()));
-      for (std::size_t k = 0; k < moment_[s].size(); ++k) moment_[s][k] = ((i == c) * normal_[j][k] + (j == c) * normal_[i][k]) / 2;
-    }
+    take_constant_moments(c);
     const Net sums = images_->sum(moment_);
     image_stress_.resize(static_cast<std::size_t>(sums.rows()));
     for (std::size_t k = 0; k < image_stress_.size(); ++k) image_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();

@@ -48,7 +48,7 @@ struct Sums {
       g[6 * k] = weighted + cube * rx * rx, g[6 * k + 1] = cube * rx * ry, g[6 * k + 2] = cube * rx * rz;
       g[6 * k + 3] = weighted + cube * ry * ry, g[6 * k + 4] = cube * ry * rz, g[6 * k + 5] = weighted + cube * rz * rz;
     }
-    project(table, g, moment);
+    project<Degree, 6>(table, g, moment);
   }
 
   static void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
@@ -93,56 +93,34 @@ struct Sums {
       for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j) g[c++] = strength * r[i] * r[j];
     }
-    project(table, g, moment);
-  }
-
-  // moment[6 b + c] = sum over the points of g[6 k + c] B_b
-  static void project(const PointTable& table, const Register* g, double* moment) {
-    const int n = Degree ? Degree + 1 : table.degree + 1;
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        Register total[6] = {};
-        for (int k = 0; k < table.packs(); ++k) {
-          const Points<Degree> points(table, k);
-          const Register b = points.bs[i] * points.bt[j];
-          for (int c = 0; c < 6; ++c) total[c] += g[6 * k + c] * b;
-        }
-        for (int c = 0; c < 6; ++c) moment[6 * (n * j + i) + c] = sum(total[c]);
-      }
+    project<Degree, 6>(table, g, moment);
   }
 };
-
-template <class Use>
-void with_degree(int degree, const Use& use) {
-  if (degree == 3) return use(Sums<3>());
-  if (degree == 4) return use(Sums<4>());
-  use(Sums<0>());
-}
 
 }  // namespace
 
 void area_weights(const PointTable& table, const double* bezier, Pack* weight) {
-  with_degree(table.degree, [&](auto sums) { sums.area_weights(table, bezier, registers(weight)); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.area_weights(table, bezier, registers(weight)); });
 }
 
 void single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
-  with_degree(table.degree, [&](auto sums) { sums.single_sum(table, x, f, registers(weight), x0, u); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.single_sum(table, x, f, registers(weight), x0, u); });
 }
 
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment) {
-  with_degree(table.degree, [&](auto sums) { sums.single_moments(table, x, registers(weight), x0, registers(scratch), moment); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.single_moments(table, x, registers(weight), x0, registers(scratch), moment); });
 }
 
 void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
-  with_degree(table.degree, [&](auto sums) { sums.pressure_sum(table, x, x0, u); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.pressure_sum(table, x, x0, u); });
 }
 
 void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
-  with_degree(table.degree, [&](auto sums) { sums.double_sum(table, x, v, x0, v0, u); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.double_sum(table, x, v, x0, v0, u); });
 }
 
 void double_moments(const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment) {
-  with_degree(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, registers(scratch), moment); });
+  with_degree<Sums>(table.degree, [&](auto sums) { sums.double_moments(table, x, x0, registers(scratch), moment); });
 }
 
 }  // namespace INSTRUCTIONS

@@ -49,5 +49,29 @@ struct Points {
   }
 };
 
+/// moment[n_c b + c] = sum over the points of g[n_c k + c] B_b, for all Bernstein polynomials of a table.
+template <int Degree, int n_c>
+void project(const PointTable& table, const Register* g, double* moment) {
+  const int n = Degree ? Degree + 1 : table.degree + 1;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      Register total[n_c] = {};
+      for (int k = 0; k < table.packs(); ++k) {
+        const Points<Degree> points(table, k);
+        const Register b = points.bs[i] * points.bt[j];
+        for (int c = 0; c < n_c; ++c) total[c] += g[n_c * k + c] * b;
+      }
+      for (int c = 0; c < n_c; ++c) moment[n_c * (n * j + i) + c] = sum(total[c]);
+    }
+}
+
+/// Calls `use` with the sums of a usual degree, or with those of any.
+template <template <int> class Sums, class Use>
+void with_degree(int degree, const Use& use) {
+  if (degree == 3) return use(Sums<3>());
+  if (degree == 4) return use(Sums<4>());
+  use(Sums<0>());
+}
+
 }  // namespace INSTRUCTIONS
 }  // namespace tanktread::stokes

@@ -9,14 +9,14 @@
 #include <Eigen/LU>
 
 #include "quadrature/gauss.hpp"
+#include "stokes/far_kernel.hpp"
 
 namespace tanktread::stokes {
 
 namespace {
 
 using std::numbers::pi;
-constexpr int pairs[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};      // of the Stokeslet's components
-constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};  // of the stresslet's
+constexpr int pairs[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};  // of the Stokeslet's components
 
 double delta(int i, int j) { return i == j ? 1 : 0; }
 

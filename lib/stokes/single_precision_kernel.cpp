@@ -63,27 +63,32 @@ void narrow(int n, const double* from, double origin, float (&to)[size]) {
   for (int k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - origin);
 }
 
-/// Adds the lanes to the block, times a factor.
-void add(const FloatRegister (&sum)[3], double factor, double* u) {
-  for (int c = 0; c < 3; ++c)
-    for (int l = 0; l < wide; ++l) u[far_block * c + l] += factor * static_cast<double>(sum[c][l]);
+/// Adds to u, times a factor, the sums over n nodes of term(first, k, r, inverse, sum), which adds the term of node k for the targets of the register
+/// that begins with `first`; inverse: 1/|r|.
+template <class Term>
+inline void add_terms(const Sight& sight, int n, double factor, double* u, const Term& term) {
+  for (int first = 0; first < far_block; first += wide) {
+    FloatRegister r[3], sum[3] = {};
+    const FloatRegister least = load(&sight.least[first]);
+    for (int k = 0; k < n; ++k) {
+      sight.difference(first, k, r);
+      term(first, k, r, inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], least), sum);
+    }
+    for (int c = 0; c < 3; ++c)
+      for (int l = 0; l < wide; ++l) u[far_block * c + first + l] += factor * static_cast<double>(sum[c][l]);
+  }
 }
+
+using Three = FloatRegister[3];
 
 void add_run(const PointForces& forces, const double* target, double* u) {
   const Sight sight(forces.n, {forces.x, forces.y, forces.z}, target);
   float f[3][single_run];
   narrow(forces.n, forces.fx, 0, f[0]), narrow(forces.n, forces.fy, 0, f[1]), narrow(forces.n, forces.fz, 0, f[2]);
-  for (int first = 0; first < far_block; first += wide) {
-    FloatRegister r[3], sum[3] = {};
-    const FloatRegister least = load(&sight.least[first]);
-    for (int k = 0; k < forces.n; ++k) {
-      sight.difference(first, k, r);
-      const FloatRegister inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], least);
-      const FloatRegister along = (r[0] * f[0][k] + r[1] * f[1][k] + r[2] * f[2][k]) * (inverse * inverse);
-      for (int c = 0; c < 3; ++c) sum[c] += inverse * (f[c][k] + r[c] * along);
-    }
-    add(sum, sight.scale, u + first);
-  }
+  add_terms(sight, forces.n, sight.scale, u, [&](int, int k, const Three& r, const FloatRegister& inverse, Three& sum) {
+    const FloatRegister along = (r[0] * f[0][k] + r[1] * f[1][k] + r[2] * f[2][k]) * (inverse * inverse);
+    for (int c = 0; c < 3; ++c) sum[c] += inverse * (f[c][k] + r[c] * along);
+  });
 }
 
 void add_run(const Stresslets& nodes, const double* target, double* u) {
@@ -95,38 +100,25 @@ void add_run(const Stresslets& nodes, const double* target, double* u) {
     narrow(far_block, target + far_block * (3 + c), velocity[c][0], v0[c]);
     narrow(nodes.n, normal[c], 0, n[c]);
   }
-  for (int first = 0; first < far_block; first += wide) {
-    FloatRegister r[3], sum[3] = {};
-    const FloatRegister least = load(&sight.least[first]), own[3] = {load(&v0[0][first]), load(&v0[1][first]), load(&v0[2][first])};
-    for (int k = 0; k < nodes.n; ++k) {
-      sight.difference(first, k, r);
-      const FloatRegister inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], least), square = inverse * inverse;
-      const FloatRegister along = r[0] * (v[0][k] - own[0]) + r[1] * (v[1][k] - own[1]) + r[2] * (v[2][k] - own[2]);
-      const FloatRegister outward = r[0] * n[0][k] + r[1] * n[1][k] + r[2] * n[2][k];
-      const FloatRegister strength = -6 * along * outward * (square * square * inverse);
-      for (int c = 0; c < 3; ++c) sum[c] += strength * r[c];
-    }
-    add(sum, sight.scale * sight.scale, u + first);
-  }
+  add_terms(sight, nodes.n, sight.scale * sight.scale, u, [&](int first, int k, const Three& r, const FloatRegister& inverse, Three& sum) {
+    FloatRegister along{};
+    for (int c = 0; c < 3; ++c) along += r[c] * (v[c][k] - load(&v0[c][first]));
+    const FloatRegister outward = r[0] * n[0][k] + r[1] * n[1][k] + r[2] * n[2][k], square = inverse * inverse;
+    const FloatRegister strength = -6 * along * outward * (square * square * inverse);
+    for (int c = 0; c < 3; ++c) sum[c] += strength * r[c];
+  });
 }
 
 void add_run(const Charges& points, const double* target, double* u) {
   const Sight sight(points.n, {points.x, points.y, points.z}, target);
   float q[6][single_run];
   for (int c = 0; c < 6; ++c) narrow(points.n, points.q[static_cast<unsigned>(c)], 0, q[c]);
-  for (int first = 0; first < far_block; first += wide) {
-    FloatRegister r[3], sum[3] = {};
-    const FloatRegister least = load(&sight.least[first]);
-    for (int k = 0; k < points.n; ++k) {
-      sight.difference(first, k, r);
-      const FloatRegister inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], least), square = inverse * inverse;
-      const FloatRegister form = r[0] * (q[0][k] * r[0]) + r[1] * (q[1][k] * r[1]) + r[2] * (q[2][k] * r[2]) +
-                                 2 * (r[0] * (q[3][k] * r[1] + q[4][k] * r[2]) + r[1] * (q[5][k] * r[2]));
-      const FloatRegister strength = -6 * form * (square * square * inverse);
-      for (int c = 0; c < 3; ++c) sum[c] += strength * r[c];
-    }
-    add(sum, sight.scale * sight.scale, u + first);
-  }
+  add_terms(sight, points.n, sight.scale * sight.scale, u, [&](int, int k, const Three& r, const FloatRegister& inverse, Three& sum) {
+    const FloatRegister form = r[0] * (q[0][k] * r[0]) + r[1] * (q[1][k] * r[1]) + r[2] * (q[2][k] * r[2]) +
+                               2 * (r[0] * (q[3][k] * r[1] + q[4][k] * r[2]) + r[1] * (q[5][k] * r[2]));
+    const FloatRegister square = inverse * inverse, strength = -6 * form * (square * square * inverse);
+    for (int c = 0; c < 3; ++c) sum[c] += strength * r[c];
+  });
 }
 
 template <class Nodes>

@@ -130,7 +130,7 @@ spline::Space product(const Line& along, const Line& around) {
 std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements) {
   Line along, around;
   add(along, knots, false, false);
-  TubeWall wall{{}, {}, section.spline(azimuthal_elements), knots.front(), knots.back(), 0, 0, 0, {}};
+  TubeWall wall{{}, {}, section.spline(azimuthal_elements), knots.front(), knots.back(), 0, 0, 0, 0, {}};
   std::vector<Vec2> ring;
   for (int k = 0; k < wall.outline.n_sides(); ++k) {
     const CubicCurve& side = std::get<CubicCurve>(wall.outline.side(k));

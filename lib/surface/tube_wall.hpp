@@ -22,6 +22,7 @@ struct TubeWall {
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
   double widest = 0;  ///< the larger side of the largest element at x1 = 0, of a channel where it is narrowest, about
+  int images = 0;  ///< copies of a train at either side that it is laid around
   std::shared_ptr<const Channel> channel;  ///< that this is the wall of; none: a straight tube
 
   double length() const { return end - start; }

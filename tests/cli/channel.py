@@ -5,7 +5,7 @@ import pathlib
 
 import numpy
 
-from harness import check, deck, main, run, series, summary
+from harness import check, deck, main, refused, run, series, summary
 
 DECK = """
 Tanktread:
@@ -24,12 +24,7 @@ def _words(settings):
 
 
 def _refused(words, *settings):
-    """One sentence with the numbers, exit code 2, nothing written."""
-    result = run(deck(DECK), *_words(settings), "--output", "results", code=2)
-    check(len(result.stderr.splitlines()) == 1, result.stderr)
-    for word in words:
-        check(word in result.stderr, f"no '{word}' in: {result.stderr}")
-    check(not pathlib.Path("results").exists(), "results were written")
+    refused(words, deck(DECK), *_words(settings))
 
 
 def what_is_no_channel_is_refused():

@@ -63,6 +63,20 @@ def run(*arguments, code=0, ranks=1, timeout=600):
     return result
 
 
+def refused(words, *arguments):
+    """Runs the program and fails the test unless it says one sentence that holds the words, exits with code 2 and writes nothing."""
+    result = run(*arguments, "--output", "refused", code=2)
+    lines = result.stderr.splitlines()
+    check(len(lines) == 1, f"{len(lines)} lines on standard error:\n{result.stderr}")
+    for word in words:
+        check(word in lines[0], f"no '{word}' in: {lines[0]}")
+    for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp", "filesystem error"):
+        check(word not in lines[0], f"'{word}' in: {lines[0]}")
+    check(len(lines[0]) < 400, f"{len(lines[0])} characters: {lines[0]}")
+    check(result.stdout == "", f"on standard output: {result.stdout}")
+    check(not pathlib.Path("refused").exists(), "results were written")
+
+
 def start(*arguments, ranks=1):
     """Starts the program in the background: a subprocess.Popen, for tests that kill it."""
     return subprocess.Popen(command(*arguments, ranks=ranks), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

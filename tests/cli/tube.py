@@ -6,7 +6,7 @@ import pathlib
 
 import numpy
 
-from harness import SOURCE, check, deck, main, run, series, summary
+from harness import SOURCE, check, deck, main, refused, run, series, summary
 
 DECK = """
 Tanktread:
@@ -42,12 +42,7 @@ def _ellipse(n=24, way=1):
 
 
 def _refused(words, *settings):
-    """One sentence with the numbers, exit code 2, nothing written."""
-    result = run(deck(DECK), *_words(settings), "--output", "results", code=2)
-    check(len(result.stderr.splitlines()) == 1, result.stderr)
-    for word in words:
-        check(word in result.stderr, f"no '{word}' in: {result.stderr}")
-    check(not pathlib.Path("results").exists(), "results were written")
+    refused(words, deck(DECK), *_words(settings))
 
 
 def what_contradicts_the_tube_is_refused():

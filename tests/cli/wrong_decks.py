@@ -5,7 +5,7 @@ import pathlib
 import re
 import shutil
 
-from harness import SOURCE, check, deck, main, run
+from harness import SOURCE, check, deck, main, refused, run
 
 GOOD = """Tanktread:
   Flow: {type: simple shear}
@@ -172,20 +172,6 @@ TEXTS = [
 ]
 
 
-def _refused(words, *arguments):
-    """One line, exit code 2, nothing written."""
-    result = run(*arguments, "--output", "results", code=2)
-    lines = result.stderr.splitlines()
-    check(len(lines) == 1, f"{len(lines)} lines on standard error:\n{result.stderr}")
-    for word in words:
-        check(word in lines[0], f"no '{word}' in: {lines[0]}")
-    for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp", "filesystem error"):
-        check(word not in lines[0], f"'{word}' in: {lines[0]}")
-    check(len(lines[0]) < 400, f"{len(lines[0])} characters: {lines[0]}")
-    check(result.stdout == "", f"on standard output: {result.stdout}")
-    check(not pathlib.Path("results").exists(), "results were written")
-
-
 def _tube(outline):
     return deck("Tanktread:\n  Flow: {type: duct}\n  Particle: {radius: 0.5}\n  Membrane: {law: neo-Hookean, shear modulus: 1}\n"
                 f"  Tube: {{section: file, outline: {outline}, length: 6}}\n  Time: {{final time: 1}}\n", "tube.yaml")
@@ -196,16 +182,16 @@ def _imported(file):
                 f"  Particle: {{shape: file, file: {file}}}\n  Time: {{final time: 1}}\n", "imported.yaml")
 
 
-def wrong_settings_are_refused():
+def wrong_settings_arerefused():
     path = deck(GOOD)
     check(len(SETTINGS) + len(TEXTS) >= 30, "fewer than thirty wrong decks")
     for settings, words in SETTINGS:
-        _refused(words, path, *[word for setting in settings for word in ("--set", setting)])
+        refused(words, path, *[word for setting in settings for word in ("--set", setting)])
 
 
 def solvers_and_their_lists_are_tried_before_a_run():
     for settings, words in [entry for entry in SETTINGS if "Solvers/" in entry[0][-1]]:
-        _refused(words, deck(GOOD), "--check", *[word for setting in settings for word in ("--set", setting)])
+        refused(words, deck(GOOD), "--check", *[word for setting in settings for word in ("--set", setting)])
     for settings in (["Solvers/iterative solver=BICGSTAB"], ["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Orthogonalization=ICGS"],
                      ["Solvers/direct solver=KLU2"], ["Time/scheme=crank-nicolson", "Time/nonlinear solver=newton-krylov", "Solvers/NOX/Line Search/Method=Backtrack"],
                      ["Time/scheme=crank-nicolson", "Time/nonlinear solver=anderson", "Solvers/NOX/Anderson Parameters/Storage Depth=2"]):
@@ -227,47 +213,47 @@ def suggested_keys_exist():
         check("not there" in said or "cannot be chosen" in said or "meant?" in said, said)
 
 
-def wrong_texts_are_refused():
+def wrong_texts_arerefused():
     for text, words in TEXTS:
-        _refused(words, deck(text))
+        refused(words, deck(text))
 
 
-def wrong_files_are_refused():
-    _refused(["missing.yaml", "does not exist"], "missing.yaml")
+def wrong_files_arerefused():
+    refused(["missing.yaml", "does not exist"], "missing.yaml")
     os.mkdir("folder.yaml")
-    _refused(["folder.yaml", "directory"], "folder.yaml")
+    refused(["folder.yaml", "directory"], "folder.yaml")
     pathlib.Path("binary.yaml").write_bytes(bytes(range(256)))
-    _refused(["binary.yaml", "not text"], "binary.yaml")
-    _refused(["/dev/zero", "no regular file"], "/dev/zero")
+    refused(["binary.yaml", "not text"], "binary.yaml")
+    refused(["/dev/zero", "no regular file"], "/dev/zero")
     os.mkfifo("pipe")
-    _refused(["pipe", "no regular file"], "pipe")
-    _refused(["Tube/outline", "no regular file"], _tube("pipe"))
-    _refused(["Surface file pipe", "no regular file"], _imported("pipe"))
-    _refused(["too long"], "x" * 300)
+    refused(["pipe", "no regular file"], "pipe")
+    refused(["Tube/outline", "no regular file"], _tube("pipe"))
+    refused(["Surface file pipe", "no regular file"], _imported("pipe"))
+    refused(["too long"], "x" * 300)
     for name in "x" * 300, "x/" * 3000:
-        _refused(["Tube/outline", "too long"], _tube(name))
-        _refused(["Surface file", "too long"], _imported(name))
+        refused(["Tube/outline", "too long"], _tube(name))
+        refused(["Surface file", "too long"], _imported(name))
         for key, said in ("Particle/initial shape/file", "Surface file"), ("Particle/initial shape/run",) * 2, ("Flow/history/file",) * 2:
             section, inner, last = key.split("/")
-            _refused([said, "too long"], deck(GOOD), deck(f"Tanktread: {{{section}: {{{inner}: {{{last}: {name}}}}}}}\n", "naming.yaml"))
+            refused([said, "too long"], deck(GOOD), deck(f"Tanktread: {{{section}: {{{inner}: {{{last}: {name}}}}}}}\n", "naming.yaml"))
     said = run(deck(GOOD), "--output", "x" * 300, code=2).stderr
     check(len(said.splitlines()) == 1 and "too long" in said and "filesystem" not in said, said)
-    _refused(["deep.xml", "deep in each other"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
-    _refused(["deep.yaml", "deep in each other"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
-    _refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
-    _refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
+    refused(["deep.xml", "deep in each other"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
+    refused(["deep.yaml", "deep in each other"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
+    refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
+    refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
     if os.geteuid() != 0:
         deck(GOOD, "locked.yaml").chmod(0)
-        _refused(["locked.yaml", "cannot be read"], "locked.yaml")
+        refused(["locked.yaml", "cannot be read"], "locked.yaml")
 
 
-def wrong_command_lines_are_refused():
-    _refused(["No deck", "--help"])
-    _refused(["--colour"], deck(GOOD), "--colour")
+def wrong_command_lines_arerefused():
+    refused(["No deck", "--help"])
+    refused(["--colour"], deck(GOOD), "--colour")
     check("--set" in run(deck(GOOD), "--set", code=2).stderr, "a setting without a value")
-    _refused(["--output", "--check", "directory"], deck(GOOD), "--output", "--check")
-    _refused(["--resume", "--check", "directory"], "--resume", "--check")
-    _refused(["--output", "--resume", "contradict"], "--resume", "nowhere")
+    refused(["--output", "--check", "directory"], deck(GOOD), "--output", "--check")
+    refused(["--resume", "--check", "directory"], "--resume", "--check")
+    refused(["--output", "--resume", "contradict"], "--resume", "nowhere")
     for arguments in (["--resume", "nowhere"], ["--resume", "nowhere", "--set", "Time/final time=2"]):
         result = run(*arguments, code=2)
         check(len(result.stderr.splitlines()) == 1 and "nowhere" in result.stderr and "checkpoint" in result.stderr, result.stderr)
