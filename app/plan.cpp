@@ -7,6 +7,7 @@
 #include "app/member.hpp"
 #include "app/numbers.hpp"
 #include "base/formatted.hpp"
+#include "deck/units.hpp"
 #include "base/instruction_set.hpp"
 #include "coupling/frozen_operator.hpp"
 #include "stokes/layer_surface.hpp"
@@ -32,6 +33,7 @@ std::string wall_solver(const Scene& scene) {
 }
 
 void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
+  if (scene.units) lines.emplace_back("units", scene.units->description());
   if (!body.wall) {
     const std::string history = scene.flow.history ? ", changing in time" : "";
     if (const auto cell = scene.domain.cell()) {
@@ -61,8 +63,8 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   else
     lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
                                        wall.space.description.c_str()));
-  if (const int images = surface::train_images(scene.tube, body.duct->outline().radius(), scene.quadrature.tolerance); images > 0)
-    lines.emplace_back("train", formatted("period %.6g, %d copies at either side, those beyond left out", *scene.tube.periodic_length, images));
+  if (wall.images > 0)
+    lines.emplace_back("train", formatted("period %.6g, %d copies at either side, those beyond left out", *scene.tube.periodic_length, wall.images));
   lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
                                        "and as much of rows on all together",
                                        unknowns, wall_solver(scene).c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : ""));

@@ -15,6 +15,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/expectation.hpp"
+#include "deck/units.hpp"
 #include "output/checksum.hpp"
 #include "output/file.hpp"
 #include "output/progress.hpp"
@@ -156,7 +157,8 @@ void Results::keep(const std::filesystem::path& file, const std::filesystem::pat
 }
 
 void Results::declare_series() {
-  for (const Series& one : run_series(scene_)) record_->declare(one.name, one.unit, one.description);
+  for (const Series& one : run_series(scene_))
+    record_->declare(one.name, one.unit, one.description, scene_.units ? scene_.units->in_si(one.unit) : std::string());
 }
 
 void Results::remesh(const Body& body, const surface::BezierMap& map) {
@@ -273,6 +275,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   for (const output::Series& series : record_->series()) {
     table[series.name] = series.values;
     summary.final.emplace_back(series.name, series.values.back());
+    if (!series.si.empty()) summary.final_in_si.emplace_back(series.name, scene_.units->in_si(series.unit, series.values.back()));
   }
   std::string missed;
   for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table)) {

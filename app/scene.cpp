@@ -10,6 +10,7 @@
 #include "base/formatted.hpp"
 #include "coupling/frozen_operator.hpp"
 #include "coupling/ranks.hpp"
+#include "deck/units.hpp"
 #include "deck/words.hpp"
 #include "stokes/ambient_flow.hpp"
 #include "surface/channel.hpp"
@@ -296,6 +297,10 @@ void check_adaptation(const Scene& scene) {
 }  // namespace
 
 void Scene::declare(deck::Section& root) {
+  if (deck::UnitOptions given; root.optional_section("Units", given,
+                                                     "what 1 of the deck's units is; with this list a value may have a unit of its own, "
+                                                     "`5.3 uN/m`, and results say what they are in SI units"))
+    root.take(units = std::make_shared<const deck::Units>(given));
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   const bool several = root.given("Particles");
   if (several) {
@@ -331,9 +336,10 @@ void Scene::declare(deck::Section& root) {
   steady.present = root.optional_section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
   continuation.present =
       root.optional_section("Continuation", continuation, "of the steady shape along a number of the deck; a row and a snapshot each point");
-  spectrum.present = root.optional_section("Spectrum", spectrum,
-                 "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at "
-                 "rest, grow or decay");
+  spectrum.present = root.optional_section(
+      "Spectrum", spectrum,
+      "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at rest, grow or "
+      "decay");
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");

@@ -1,6 +1,7 @@
 #pragma once
 // Everything that a deck says about one run.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,10 @@
 #include "surface/options.hpp"
 
 namespace tanktread {
+
+namespace deck {
+class Units;
+}
 
 /// `Particle/motion`.
 enum class Motion { deforming, prescribed, free };
@@ -69,6 +74,7 @@ struct ContactOptions {
 /// The options of every room; one list of the deck each.
 struct Scene : ParticleKind {
   stokes::FlowOptions flow;
+  std::shared_ptr<const deck::Units> units;  ///< none: the deck does not say what its numbers stand for
   std::vector<ParticleKind> particles;  ///< Particles/<name>; none: the one particle that the scene itself is of
   ContactOptions contact;
   DomainOptions domain;

@@ -40,6 +40,7 @@ constexpr Entry fields[] = {
 constexpr Entry entries[] = {
     {"status", "", "all", "why the run ended: `done`, `steady`, `stopped: ` by what, `failed: ` and the reason"},
     {"final", "", "all", "last value of every series; of a prescribed body also the vectors `drag` and `torque`"},
+    {"final in SI", "", "all", "the same in SI units, with the list Units, as texts: a number and its unit"},
     {"expect", "", "all", "of every Expect: name, value found, value expected, error, whether it passed"},
     {"counts", "1", "all", "work of the whole run"},
     {"counts/unknowns", "1", "prescribed body", "unknowns of the traction"},
@@ -62,6 +63,8 @@ std::string owners(const Series& one) {
     if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);
   if (one.needs == Needs::tube) return list + "; in a tube";
   if (one.needs == Needs::channel) return list + "; in a channel";
+  if (one.needs == Needs::wall) return list + "; beside a plane wall";
+  if (one.needs == Needs::tube_or_wall) return list + "; in a tube, beside a plane wall";
   return list + (one.needs == Needs::held_pressure ? "; where the pressure drop is held" : "");
 }
 
@@ -83,7 +86,8 @@ std::string series_manual() {
   surface::TubeOptions circle;
   circle.radius = 1;
   std::string text =
-      "# What comes out\n\nPrinted by `tanktread --reference-series`. Units are those of the deck; equation numbers are those of "
+      "# What comes out\n\nPrinted by `tanktread --reference-series`. Units are those of the deck; with its list Units every series has an attribute "
+      "`SI` that says what its unit is, `1e-06 m/s`. Equation numbers are those of "
       "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, of one of several particles "
       "`/series/<particle>/<name>`, a value a finished step and one for the start; "
       "`Expect` takes all of "

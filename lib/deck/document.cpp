@@ -97,7 +97,7 @@ Document::Document(std::shared_ptr<Teuchos::ParameterList> given, bool documenti
 Document::~Document() = default;
 Document::Document(Document&&) noexcept = default;
 
-Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting})); }
+Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting, {}})); }
 
 void Document::finish() const { refuse_unknown_keys(held_->root, held_->root); }
 

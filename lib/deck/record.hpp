@@ -34,10 +34,12 @@ struct List {
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };
 
-/// The list that a section writes to, and whether a manual is being made (then open lists are stated once, as `<name>`).
+/// The list that a section writes to, whether a manual is being made (then open lists are stated once, as `<name>`), and what its values' units are
+/// taken by, if the deck says.
 struct Section::State {
   List* list;
   bool documenting;
+  std::shared_ptr<const Units> units = {};
 };
 
 /// Throws UserError at the first key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists.

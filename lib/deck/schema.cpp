@@ -35,8 +35,8 @@ std::string bounds(const std::string& rule) {
   return (low.empty() ? "" : ", \"minimum\": " + low) + (high.empty() ? "" : ", \"maximum\": " + high);
 }
 
-/// The type of a key's value, as its wording in the manual has it.
-std::string type(const std::string& values) {
+/// The type of a key's value, as its wording in the manual has it; what has a unit may be a text that says it.
+std::string type(const std::string& values, const std::string& unit) {
   if (values == "text") return R"("type": "string")";
   if (values == "true or false") return R"("type": "boolean")";
   if (values.starts_with('`')) {
@@ -45,20 +45,21 @@ std::string type(const std::string& values) {
     return "\"enum\": [" + words + "]";
   }
   if (values.starts_with("whole")) return R"("type": "integer")" + bounds(values);
+  const std::string number = unit.empty() || unit == "1" ? R"("type": "number")" : R"("type": ["number", "string"])";
   constexpr std::array<std::pair<std::string_view, int>, 4> rows{{{"one number or more", 0}, {"two", 2}, {"three", 3}, {"nine", 9}}};
   for (const auto& [word, count] : rows)
     if (values.starts_with(word)) {
       const std::string size = std::to_string(count);
-      return R"("type": "array", "items": {"type": "number")" + bounds(values) + "}" +
+      return R"("type": "array", "items": {)" + number + bounds(values) + "}" +
              (count ? ", \"minItems\": " + size + ", \"maxItems\": " + size : R"(, "minItems": 1)");
     }
-  return R"("type": "number")" + bounds(values);
+  return number + bounds(values);
 }
 
 std::string key_text(const Entry& entry) {
   const std::string unit = entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
   const std::string otherwise = entry.fallback.empty() ? "" : "; default " + entry.fallback;
-  return in_quotes(entry.key) + ": {" + type(entry.values) + ", \"description\": " + in_quotes(entry.meaning + unit + otherwise) + "}";
+  return in_quotes(entry.key) + ": {" + type(entry.values, entry.unit) + ", \"description\": " + in_quotes(entry.meaning + unit + otherwise) + "}";
 }
 
 }  // namespace

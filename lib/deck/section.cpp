@@ -1,13 +1,16 @@
 #include "deck/section.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <Teuchos_ParameterList.hpp>
 
 #include "base/errors.hpp"
 #include "deck/record.hpp"
+#include "deck/units.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
 
@@ -45,10 +48,32 @@ std::string kind() {
   else return std::string(Value::SizeAtCompileTime == 2 ? "two" : Value::SizeAtCompileTime == 3 ? "three" : "nine") + " numbers";
 }
 
+/// Whether a text is a number with something behind it, which may be a unit.
+bool has_unit(const std::string& text) {
+  double number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && rest != text.data() + text.size();
+}
+
+/// Of texts some of which have units, in a deck that says what its own units stand for; of others none.
+std::vector<double> numbers_with_units(const std::string& path, const Teuchos::ParameterEntry& entry, std::string_view unit, const Units* units) {
+  const std::vector<std::string> texts = as_texts(entry);
+  if (std::ranges::none_of(texts, has_unit)) return {};
+  if (!units) refuse(path, "a plain number in a deck without the list Units", unit, description(entry));
+  std::vector<double> numbers;
+  for (const std::string& text : texts) try {
+      numbers.push_back(has_unit(text) ? units->number(text, unit) : std::stod(text));
+    } catch (const std::invalid_argument& error) {
+      refuse(path, "a number with a unit", unit, in_quotes(shortened(text, 80)) + ", which " + (has_unit(text) ? error.what() : "is no number"));
+    }
+  return numbers;
+}
+
 /// The numbers of an entry as the value, of a matrix row by row.
 template <class Value>
-Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit) {
+Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit, const Units* units) {
   std::vector<double> numbers;
+  if constexpr (!is_whole<Value>) numbers = numbers_with_units(path, entry, unit, units);
   if constexpr (is_single<Value>) {
     if (const auto number = as_number(entry)) numbers = {*number};
   } else {
@@ -150,7 +175,7 @@ void Section::key(std::string_view name, Field& field, const Rule& rule, std::st
   using Value = typename Held<Field>::Value;
   const std::string values = is_single<Value> ? (is_whole<Value> ? "whole, " : "") + rule.text : with_rule(kind<Value>(), rule, true);
   state(*state_->list, name, field, values, unit, meaning,
-        [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked<Value>(path, entry, rule, unit); });
+        [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked<Value>(path, entry, rule, unit, state_->units.get()); });
 }
 
 template void Section::key(std::string_view, double&, const Rule&, std::string_view, std::string_view);
@@ -201,7 +226,7 @@ Section Section::enter(std::string_view name, std::string_view meaning) {
     inner->given = &Teuchos::getValue<Teuchos::ParameterList>(*entry);
   }
   outer.lists.push_back(std::move(inner));
-  return Section(std::make_shared<State>(State{outer.lists.back().get(), state_->documenting}));
+  return Section(std::make_shared<State>(State{outer.lists.back().get(), state_->documenting, state_->units}));
 }
 
 void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning) {
@@ -212,6 +237,8 @@ void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterL
   merged->setName(list.name);
   field = list.foreign = std::move(merged);
 }
+
+void Section::take(std::shared_ptr<const Units> units) { state_->units = std::move(units); }
 
 void Section::mention(std::string_view list) { state_->list->mentioned.emplace_back(list); }
 

@@ -20,6 +20,8 @@ class ParameterList;
 
 namespace tanktread::deck {
 
+class Units;
+
 /// What values a number may take: the test and its wording ("positive", "between 0 and 1").
 struct Rule {
   std::string text;
@@ -83,6 +85,9 @@ class Section {
 
   /// A list handed to another library as it is (Belos, Amesos2, NOX); `field` keeps what the deck gives over its defaults.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
+
+  /// From now on values in this list and those inside may have units.
+  void take(std::shared_ptr<const Units> units);
 
   /// Names a list that this one may hold, and does not, in messages on names that it does not hold.
   void mention(std::string_view list);

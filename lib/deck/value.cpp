@@ -62,6 +62,12 @@ std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry) {
   return value ? std::optional(*value) : std::nullopt;
 }
 
+std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry) {
+  if (const auto* texts = held<Teuchos::Array<std::string>>(entry)) return texts->toVector();
+  const auto text = as_text(entry);
+  return text ? std::vector{*text} : std::vector<std::string>();
+}
+
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry) {
   if (const auto* values = held<Teuchos::Array<double>>(entry)) return doubles(*values);
   if (const auto* values = held<Teuchos::Array<int>>(entry)) return doubles(*values);

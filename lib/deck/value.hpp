@@ -16,6 +16,7 @@ namespace tanktread::deck {
 std::optional<double> as_number(const Teuchos::ParameterEntry& entry);
 std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
+std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry);  ///< one or a row of them; of anything else none
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< a row, or rows of a table one after the other
 
 /// Whether both stand for the same value; whole numbers are numbers, too.

@@ -21,7 +21,7 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
     const std::string at = "series/" + name;
     hdf::Shape shape;
     record.series_.push_back(
-        {name, hdf::read_attribute(file, at, "unit"), hdf::read_attribute(file, at, "description"), hdf::read_doubles(file, at, shape)});
+        {name, hdf::read_attribute(file, at, "unit"), hdf::read_attribute(file, at, "description"), hdf::read_doubles(file, at, shape), {}});
     if (record.series_.back().values.size() != record.rows()) throw std::runtime_error("series of unequal length");
   }
   return record;
@@ -29,14 +29,14 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
   throw UserError("the record " + path.string() + " is missing or damaged (" + error.what() + ")");
 }
 
-void RunRecord::declare(std::string name, std::string unit, std::string description) {
+void RunRecord::declare(std::string name, std::string unit, std::string description, std::string si) {
   const auto old = std::ranges::find(series_, name, &Series::name);
   std::vector<double> values(rows(), std::numeric_limits<double>::quiet_NaN());
   if (old != series_.end()) {  // rows are given in the order of declaration: a series that was loaded moves behind those declared so far
     values = std::move(old->values);
     series_.erase(old);
   }
-  series_.push_back({std::move(name), std::move(unit), std::move(description), std::move(values)});
+  series_.push_back({std::move(name), std::move(unit), std::move(description), std::move(values), std::move(si)});
 }
 
 void RunRecord::append(std::span<const double> row) {
@@ -70,6 +70,7 @@ void RunRecord::write(Durable durable) const {
     hdf::write(file, name, one.values, {one.values.size()});
     hdf::attribute(file, name, "unit", one.unit);
     hdf::attribute(file, name, "description", one.description);
+    if (!one.si.empty()) hdf::attribute(file, name, "SI", one.si);
   }
   write_whole(path_, hdf::image(file), durable);
 }

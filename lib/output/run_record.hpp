@@ -16,9 +16,11 @@ namespace tanktread::output {
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one a row; row 0 is the initial state
+  std::string si;  ///< what its unit is in SI units, if the deck says
 };
 
-/// `/series/<name>`, of one of several particles `/series/<particle>/<name>`, 1-D doubles of equal length with attributes `unit` and `description`;
+/// `/series/<name>`, of one of several particles `/series/<particle>/<name>`, 1-D doubles of equal length with attributes `unit`, `description` and,
+/// where the deck says what its units are, `SI`, `1e-06 m/s`;
 /// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks) and which `run` it is of.
 ///
@@ -35,7 +37,7 @@ class RunRecord {
 
   /// Declares a series; all of them before the first row, and again after `load`. One that exists already keeps its values; a new
   /// one has none (not a number) in the rows that exist.
-  void declare(std::string name, std::string unit, std::string description);
+  void declare(std::string name, std::string unit, std::string description, std::string si = {});
 
   /// One row, a value for every series in the order of declaration. Writes nothing.
   void append(std::span<const double> row);

@@ -32,6 +32,7 @@ std::string map(const std::string& key, const Entries<Value>& entries) {
 std::string yaml(const Summary& summary) {
   std::string text = "status: " + scalar(summary.status) + "\n";
   text += map("final", summary.final) + lines(summary.final_vectors);
+  if (!summary.final_in_si.empty()) text += map("final in SI", summary.final_in_si);
   text += summary.expect.empty() ? "expect: []\n" : "expect:\n";
   for (const deck::Verdict& one : summary.expect) {
     text += "  - name: " + scalar(one.name) + "\n";

@@ -15,6 +15,7 @@ using Entries = std::vector<std::pair<std::string, Value>>;  ///< in the order i
 struct Summary {
   std::string status = "done";  ///< or `steady`, `stopped: <by what>`, `failed: <reason>`
   Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
+  Entries<std::string> final_in_si;  ///< of those with a dimension, where the deck says what its units are
   Entries<std::vector<double>> final_vectors;  ///< what is a vector, as a list: drag, torque
   std::vector<deck::Verdict> expect;
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...

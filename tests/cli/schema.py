@@ -49,8 +49,9 @@ def _errors(value, schema, path=""):
     if "enum" in schema and value not in schema["enum"]:
         yield f"{path}: {value}"
     kinds = {"object": dict, "array": list, "string": str, "boolean": bool, "integer": int, "number": (int, float)}
-    if "type" in schema and not isinstance(value, kinds[schema["type"]]):
-        yield f"{path}: {value!r} is no {schema['type']}"
+    types = schema.get("type", list(kinds))
+    if not any(isinstance(value, kinds[kind]) for kind in ([types] if isinstance(types, str) else types)):
+        yield f"{path}: {value!r} is no {types}"
     elif isinstance(value, dict):
         for key, inner in value.items():
             other = schema.get("properties", {}).get(key, schema.get("additionalProperties", True))

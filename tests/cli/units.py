@@ -2,7 +2,7 @@
 # A scene is the same in any units, but for the rounding of the radius of equal volume where the units differ by powers of two.
 import re
 
-from harness import check, deck, main, run, series
+from harness import check, deck, main, refused, run, series, summary
 
 LENGTH, TIME, VISCOSITY = 2.0**-18, 2.0**-7, 2.0**-10  # about 4 micrometres, 8 ms, 1 mPa s
 STRESS = VISCOSITY / TIME
@@ -67,6 +67,30 @@ def a_drop_that_relaxes():
 
 def a_capsule_in_a_tube():
     _is_the_same_in_other_units(TUBE)
+
+
+def values_with_units_give_the_same_as_their_numbers():
+    """In micrometres, seconds and piconewtons, and by another choice."""
+    said = """Tanktread:
+  Units: {%s}
+  Flow: {type: simple shear, shear rate: 100 1/s, viscosity: 35 mPa s}
+  Particle: {radius: 2.5 um, center: [0, 0, 1 um], viscosity ratio: 2}
+  Membrane: {law: Skalak, shear modulus: 5 uN/m, bending modulus: 2e-19 J}
+  Surface: {elements per side: 3}
+  Time: {final time: 4 ms}
+  Output: {interval: 2 ms}
+"""
+    plain = said.replace("%s", "").replace("100 1/s", "100").replace("35 mPa s", "0.035").replace("2.5 um", "2.5").replace("1 um", "1")
+    plain = plain.replace("5 uN/m", "5").replace("2e-19 J", "0.2").replace("4 ms", "0.004").replace("2 ms", "0.002").replace("  Units: {}\n", "")
+    run(deck(plain), "--output", "plain", "--quiet")
+    for name, choice, length in (("preset", "", 1), ("other", "length: 2.5 um, time: 10 ms, force: 1 nN", 2.5)):
+        run(deck(said % choice), "--output", name, "--quiet")
+        check(abs(series(name, "taylor_inertia") - series("plain", "taylor_inertia")).max() < 1e-11, name)
+        check(abs(length**3 * series(name, "volume") - series("plain", "volume")).max() < 1e-10, name)
+        check(summary(name)["final in SI"]["volume"].endswith("e-17 m^3"), summary(name)["final in SI"]["volume"])
+    refused(["Flow/shear rate", "list Units", "100 1/s"], deck(said.replace("  Units: {%s}\n", "")))
+    refused(["Particle/radius", "another kind", "2 uN"], deck(said % ""), "--set", "Particle/radius=2 uN")
+    refused(["Units/force", "unit of force", "1 kg"], deck(said % "force: 1 kg"))
 
 
 main()

@@ -1,0 +1,97 @@
+#include "deck/units.hpp"
+
+#include <charconv>
+#include <stdexcept>
+#include <vector>
+
+#include <udunits2.h>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/section.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::deck {
+
+namespace {
+
+using Unit = std::unique_ptr<ut_unit, decltype(&ut_free)>;
+
+ut_system* in(const std::shared_ptr<void>& system) { return static_cast<ut_system*>(system.get()); }
+
+/// Null where the text is no unit.
+Unit parsed(const std::shared_ptr<void>& system, std::string text) {
+  ut_trim(text.data(), UT_UTF8);
+  return {ut_parse(in(system), text.c_str(), UT_UTF8), ut_free};
+}
+
+/// How many `b` one `a` is; 0 where they measure different things.
+double ratio(const Unit& a, const Unit& b) {
+  if (!a || !b || !ut_are_convertible(a.get(), b.get())) return 0;
+  const std::unique_ptr<cv_converter, decltype(&cv_free)> converter(ut_get_converter(a.get(), b.get()), cv_free);
+  return cv_convert_double(converter.get(), 1);
+}
+
+/// The unit with other texts for the deck's words, first to last.
+std::string replaced(std::string_view kind, const std::vector<std::pair<std::string_view, std::string>>& words) {
+  std::string text(kind);
+  for (const auto& [word, by] : words)
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + by.size())) text.replace(at, word.size(), by);
+  return text;
+}
+
+}  // namespace
+
+void UnitOptions::declare(Section& section) {
+  section.key("length", length, Choice{}, "that 1 stands for, a number and a unit");
+  section.key("time", time, Choice{}, "that 1 stands for");
+  section.key("force", force, Choice{},
+              "that 1 stands for: with those of length and time as they are preset, stresses are in Pa, moduli of a surface in uN/m, viscosities in "
+              "Pa s");
+}
+
+Units::Units(const UnitOptions& options) : options_(options) {
+  ut_set_error_message_handler(ut_ignore);
+  system_ = {ut_read_xml(nullptr), [](void* system) { ut_free_system(static_cast<ut_system*>(system)); }};
+  if (!system_) throw UserError("Units: UDUNITS finds no table of units, in Debian the package libudunits2-data.");
+  const auto check = [this](const char* key, const std::string& text, const char* si) {
+    if (!(ratio(parsed(system_, text), parsed(system_, si)) > 0))
+      throw UserError("Units/" + std::string(key) + " must be a number and a unit of " + key + ", say 1 " + si + ", but is " + in_quotes(text) + ".");
+  };
+  check("length", options.length, "m");
+  check("time", options.time, "s");
+  check("force", options.force, "N");
+}
+
+std::string Units::scaled(std::string_view kind) const {
+  return replaced(kind, {{" x ", " "}, {"Flow/gravity", "length/time^2"}, {"viscosity", "stress time"}, {"stress", "force/length^2"},
+                         {"pressure", "force/length^2"}, {"length", "(" + options_.length + ")"}, {"time", "(" + options_.time + ")"},
+                         {"force", "(" + options_.force + ")"}});
+}
+
+double Units::number(const std::string& text, std::string_view kind) const {
+  double number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const Unit unit = parsed(system_, std::string(rest, text.data() + text.size()));
+  if (error != std::errc() || !unit) throw std::invalid_argument("is no number with a unit that is known");
+  const Unit own = parsed(system_, scaled(kind));
+  const double factor = ratio(unit, own);
+  if (factor > 0) return number * factor;
+  throw std::invalid_argument(own && kind != "1" ? "has a unit of another kind" : "has a unit where a plain number belongs");
+}
+
+std::string Units::in_si(std::string_view kind, double number) const {
+  const std::string si = replaced(kind, {{" x ", " "}, {"viscosity", "stress time"}, {"stress", "Pa"}, {"pressure", "Pa"},
+                                         {"length", "m"}, {"time", "s"}, {"force", "N"}});
+  if (si == kind) return {};
+  const double factor = ratio(parsed(system_, scaled(kind)), parsed(system_, si));
+  return factor > 0 ? formatted("%.10g ", factor * number) + si : std::string();
+}
+
+std::string Units::description() const {
+  std::string text = "1 is";
+  for (const char* kind : {"length", "time", "force", "force/length", "stress", "viscosity"}) text += (text == "1 is" ? " " : ", ") + in_si(kind);
+  return text;
+}
+
+}  // namespace tanktread::deck
