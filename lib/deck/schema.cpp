@@ -45,7 +45,7 @@ std::string type(const std::string& values, const std::string& unit) {
     return "\"enum\": [" + words + "]";
   }
   if (values.starts_with("whole")) return R"("type": "integer")" + bounds(values);
-  const std::string number = unit.empty() || unit == "1" ? R"("type": "number")" : R"("type": ["number", "string"])";
+  const std::string number = unit.empty() || unit == "1" ? R"("type": "number")" : R"("type": ["number", "string"], "pattern": "^[-+.0-9]")";
   constexpr std::array<std::pair<std::string_view, int>, 4> rows{{{"one number or more", 0}, {"two", 2}, {"three", 3}, {"nine", 9}}};
   for (const auto& [word, count] : rows)
     if (values.starts_with(word)) {

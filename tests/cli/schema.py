@@ -52,6 +52,8 @@ def _errors(value, schema, path=""):
     types = schema.get("type", list(kinds))
     if not any(isinstance(value, kinds[kind]) for kind in ([types] if isinstance(types, str) else types)):
         yield f"{path}: {value!r} is no {types}"
+    elif isinstance(value, str) and not re.match(schema.get("pattern", ""), value):
+        yield f"{path}: {value!r} is no number with a unit"
     elif isinstance(value, dict):
         for key, inner in value.items():
             other = schema.get("properties", {}).get(key, schema.get("additionalProperties", True))
