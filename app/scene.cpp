@@ -359,6 +359,14 @@ std::vector<Scene> Scene::alone() const {
 
 /// What cannot be done with several particles yet, and each of them by itself.
 void Scene::check_several() const {
+  if (solvers.rigid_bodies == "first kind") {
+    const char* word = "Solvers/rigid bodies `first kind`";
+    for (const ParticleKind& kind : particles)
+      if (!kind.particle.rigid()) throw UserError(std::string(word) + " is for rigid bodies alone, but Particles/" + kind.name + " deforms.");
+    if (tube.present || domain.present)
+      throw UserError(std::string(word) + " and " + (tube.present ? tube.list() : "Domain") +
+                      " contradict each other: it is for unbounded space or beside a Wall.");
+  }
   for (Scene one : alone()) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
     const std::string list = "Particles/" + one.name;

@@ -56,7 +56,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
       inner_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature),
+      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature, !by_tractions()),
       tube_(std::move(tube)) {
   surface::Symmetry& symmetry = parameters_.symmetry;
   if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
@@ -68,6 +68,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   mass_.factor(mass_matrix_.update(unstressed));
   nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   make_layers();
+  if (by_tractions()) tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.wall, ranks);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
@@ -90,7 +91,7 @@ Capsule::~Capsule() = default;
 void Capsule::make_layers() {
   using stokes::Layer;
   const surface::Symmetry& symmetry = parameters_.symmetry;
-  const std::vector<double> contrasts = viscosity_contrasts(particles());
+  const std::vector<double> contrasts = by_tractions() ? std::vector<double>() : viscosity_contrasts(particles());
   const auto make = [&](std::optional<Layer>& layer, Layer::Kernel kernel, const stokes::Sites& sites, const std::vector<double>& factor) {
     layer.emplace(kernel, space_, sites, parameters_.quadrature, factor);
   };
@@ -333,6 +334,7 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  if (tractions_) return evaluate_tractions(x);
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
@@ -357,6 +359,22 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
   if (constrained) constrain(v, b, c);  // interpolation of the normal motion lets a little flux in
+  return v;
+}
+
+/// Of rigid bodies and nothing else (2.40).
+Net Capsule::evaluate_tractions(const Net& x) {
+  const auto clock = phases_.time("tractions");
+  std::vector<Vec3> centres;
+  for (std::size_t p = 0; p < particles().size(); ++p) centres.push_back(rigid_.centre(p));
+  tractions_->solve(x, centres, flow_);
+  Net v(x.rows(), 3);
+  for (std::size_t p = 0; p < particles().size(); ++p) {
+    const RigidTractions::Body& body = tractions_->bodies()[p];
+    rigid_.move(p, body.motion, body.force, body.torque, v);
+  }
+  latest_.load = -tractions_->density();
+  latest_.unknowns = v;
   return v;
 }
 
@@ -596,7 +614,9 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const Particle& particle = particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
   Mat3 moment;
-  if (rigid_.holds(p)) {
+  if (tractions_) {
+    moment = -tractions_->bodies()[p].moment;
+  } else if (rigid_.holds(p)) {
     moment = rigid_.load_moment(p);
   } else {
     Net work = own(energy_gradient(x));
@@ -605,7 +625,7 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
     if (!particle.body_force.isZero(0) || pulled(particle))  // about the centroid
       moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   }
-  if (const double contrast = viscosity_contrast(particle); contrast != 0) {
+  if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {
     const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
     moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(geometry_.volume_gradient(x));
   }
@@ -633,6 +653,7 @@ stokes::Evaluations Capsule::kernel_evaluations() const {
   for (const auto* other : {&double_layer_, &site_layer_, &site_double_layer_})
     if (*other) sum += (*other)->evaluations();
   if (tube_) sum += tube_->kernel_evaluations();
+  if (tractions_) sum += tractions_->kernel_evaluations();
   return sum;
 }
 

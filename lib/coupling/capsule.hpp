@@ -20,6 +20,7 @@
 #include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
 #include "coupling/rigid_particles.hpp"
+#include "coupling/rigid_tractions.hpp"
 #include "coupling/tube.hpp"
 #include "coupling/velocity_projection.hpp"
 #include "membrane/mass_solver.hpp"
@@ -75,6 +76,7 @@ struct CapsuleParameters {
 /// A viscous membrane's load M0^{-1} C v (3.10) is part of B: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                           (3.11)
 ///
 /// Rigid bodies among them move rigidly (RigidParticles): in their rows the unknown is w of (2.23), and in Jacobian and stiff steps they only follow.
+/// Where all are rigid, their tractions may be solved for instead (RigidTractions).
 ///
 /// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
 ///
@@ -171,6 +173,7 @@ class Capsule : public Dynamics {
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net evaluate(Net x, const Net& guess);
   Net evaluate_here(Net x, const Net& guess);
+  Net evaluate_tractions(const Net& x);
   bool deform_cell(double time);
   std::vector<Vec3> put_into_cell(Net& x) const;
   Net single_layer_of(const Net& x, const Net& f);
@@ -206,6 +209,7 @@ class Capsule : public Dynamics {
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
+  bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
   bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
 
@@ -233,6 +237,7 @@ class Capsule : public Dynamics {
   NodalOperator nodal_;                     // or frozen_, as the options say
   FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
   RigidParticles rigid_;
+  std::optional<RigidTractions> tractions_;  // where rigid bodies, alone, are solved for by these
   std::optional<OneBodyInverses> alone_;  // made when first needed
   std::optional<InterfaceMotion> interface_;  // not for material motion
   stokes::Rows<double> double_rows_, single_rows_;

@@ -56,6 +56,9 @@ void SolverOptions::declare(deck::Section& section) {
               "in a tube: `schur` solves for the particle's velocity alone, wall and pressure drop eliminated by the factored wall (nothing is "
               "left to solve at viscosity ratio 1); the others solve for all blocks (2.5)-(2.8) at once, preconditioned by the factored wall or "
               "(`block`) not at all");
+  section.key("rigid bodies", rigid_bodies, deck::Choice{"second kind", "first kind"},
+              "several: `second kind`, by a double layer (2.23), an iterative solver and clusters; or, where all particles are rigid, `first kind`, "
+              "by their tractions (2.40), dense and factored at every place, whose forces and motions are far more accurate in films");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "of velocities onto the splines: one place a control point, or the best fit to four places an element, whose error falls with the "
               "sixth power of the element in place of the fourth, for four times the kernel evaluations; the latter not in a tube or with rigid "

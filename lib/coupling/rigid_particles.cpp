@@ -22,7 +22,8 @@ Mat3 cross(const Vec3& r) {
 
 }  // namespace
 
-RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature) {
+RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature,
+                               bool solved_here) {
   for (const Particle& particle : particles) {
     of_particle_.push_back(particle.rigid ? static_cast<int>(bodies_.size()) : -1);
     if (!particle.rigid) continue;
@@ -33,6 +34,7 @@ RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& r
     const Net x = particle.block.rows(rest);
     body.rest_centre = body.centre = surface::measures(*particle.space, x).centroid;
     body.rest = x.rowwise() - body.centre.transpose();
+    if (!solved_here) continue;
     const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
       return other.lacking && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
     });
@@ -150,6 +152,12 @@ void RigidParticles::move(Net& v) {
     body.motion = body.rigid.prescribed ? body.rigid.motion : mean;
     body.block.rows(v) = body.field(body.motion);
   }
+}
+
+void RigidParticles::move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v) {
+  Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
+  body.motion = motion, body.force = force, body.torque = torque;
+  body.block.rows(v) = body.field(motion);
 }
 
 void RigidParticles::clear(Net& net) const {

@@ -25,8 +25,9 @@ namespace tanktread::coupling {
 /// Nets are those of all particles. A body's rows of a net x are read as the rigid image of it at rest that is nearest to them.
 class RigidParticles {
  public:
-  /// `rest`: net of all particles; of others than rigid ones nothing is kept. `viscosity`: mu of the outer fluid.
-  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
+  /// `rest`: net of all particles; of others than rigid ones nothing is kept. `viscosity`: mu of the outer fluid. `solved_here`: by (2.23), not by
+  /// their tractions.
+  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature, bool solved_here);
 
   bool empty() const { return bodies_.empty(); }
   bool prescribed() const;  ///< whether any moves as prescribed
@@ -40,6 +41,7 @@ class RigidParticles {
   void complete(const Net& w, Net& v) const; ///< rows of v: w out, <w> in where force and torque are given, and what R^-1 D w lacks
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as prescribed, 0 elsewhere
   void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
+  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);  ///< as another equation says; rows of v
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);  ///< moves body p, if it is one, and its velocity on: to another cell
   void clear(Net& net) const;                ///< 0 in all rows of bodies
 

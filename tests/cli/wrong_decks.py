@@ -31,6 +31,7 @@ SETTINGS = [
     (["Particles/one/radius=1"], ["Membrane and Particles contradict", "Particles/defaults"]),
     (["Steady/tolerance=1e-8"], ["Steady", "simple shear", "treads"]),
     (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
+    (["Solvers/rigid bodies=third kind"], ["Solvers/rigid bodies", "first kind"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
     (["Spectrum/number=4", "Particle/motion=free"], ["Spectrum", "Particle/motion", "rigid"]),
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),

@@ -189,5 +189,54 @@ TEST(RigidParticles, StayAsTheyAre) {
   EXPECT_LT((system.velocity(stage) - system.velocity(x)).norm(), 1e-9);
 }
 
+struct ByTractions : Bodies {
+  ByTractions(const std::vector<One>& bodies, int n, const Mat3& gradient) : Bodies(bodies, n, gradient) {
+    parameters.solvers.rigid_bodies = "first kind";
+  }
+};
+
+/// The force on spheres that come towards each other, by the multipoles of before.
+TEST(RigidTractions, ErrLessThanDoubleLayers) {
+  const Rigid one{true, {Vec3(1, 0, 0), Vec3::Zero()}}, other{true, {Vec3(-1, 0, 0), Vec3::Zero()}};
+  const auto error = [&](auto pair) {
+    Capsule system = pair->system();
+    return std::abs(system.rigid_about(pair->rest, 0).force(0)[0] / (6 * pi * viscosity) - (1.3684796 + 0.670175042));
+  };
+  const std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), one}, {Vec3(3, 0, 0), Vec3::Ones(), other}};
+  EXPECT_LT(10 * error(std::make_unique<ByTractions>(bodies, 4, Mat3::Zero())), error(std::make_unique<Bodies>(bodies, 4, Mat3::Zero())));
+}
+
+TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
+  const Mat3 strain = Vec3(1, -0.5, -0.5).asDiagonal();
+  ByTractions free({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 4, strain);
+  Capsule system = free.system();
+  const RigidParticles& moved = system.rigid_about(free.rest, 0);
+  EXPECT_NEAR(1 - (moved.motion(1).velocity - moved.motion(0).velocity)[0] / 3, 0.186662636, 2e-6);  // the surfaces are spheres to 1e-6
+  EXPECT_NEAR(system.stresslet(free.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 2e-4);
+}
+
+TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
+  const Vec3 away(0.5, 0.4, 2.6);
+  const Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
+  ByTractions held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
+  Capsule system = held.system();
+  const RigidParticles& forced = system.rigid_about(held.rest, 0);
+  const Rigid driven{false, {}, forced.force(0), forced.torque(0)};
+  ByTractions free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), driven}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
+  Capsule other = free.system();
+  const RigidParticles& moved = other.rigid_about(free.rest, 0);
+  // What is left is what collocation lacks of the correction itself.
+  EXPECT_LT((moved.motion(0).velocity - told.motion.velocity).norm(), 1e-5);
+  EXPECT_LT((moved.motion(1).velocity - forced.motion(1).velocity).norm(), 1e-5);
+}
+
+/// Drag along a plane wall at a gap of one radius: Goldman, Cox & Brenner 1967.
+TEST(RigidTractions, AWallResists) {
+  ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
+  one.parameters.wall = stokes::PlaneWall(Vec3::Zero(), Vec3(0, 0, 1));
+  Capsule system = one.system();
+  EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
+}
+
 }  // namespace
 }  // namespace tanktread::coupling

@@ -1,0 +1,150 @@
+#include "coupling/rigid_tractions.hpp"
+
+#include <Eigen/LU>
+
+#include "base/dense_factors.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+using Flat = Eigen::Map<const Eigen::VectorXd>;
+
+Flat flat(const Net& net) { return {net.data(), net.size()}; }
+
+Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
+
+/// Rows of the six unit motions of a body, at points or as control values; column k, of all bodies' rows.
+void add_unit_motions(const Net& x, Eigen::Index first, Eigen::Index n, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net own = x.middleRows(first, n);
+  for (int k = 0; k < 6; ++k) {
+    const Net field = rigid_velocity(own, unit_motion(k), centre);
+    columns.col(k).segment(3 * first, 3 * n) = flat(field);
+  }
+}
+
+/// The motions, of those that are free, that take this much force and torque; 0 of the others.
+Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
+  if (free.empty()) return motion;
+  const Eigen::MatrixXd part = resistance(free, free);
+  const Eigen::VectorXd right = missing(free), solution = part.partialPivLu().solve(right);
+  motion(free) = solution;
+  return motion;
+}
+
+}  // namespace
+
+RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
+                               const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks)
+    : space_(space),
+      particles_(particles),
+      viscosity_(viscosity),
+      ranks_(ranks),
+      own_points_(ranks.share(space.n_points)),
+      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
+      between_layer_(stokes::Layer::Kernel::single_layer, space, between_sites(space, rest).places, quadrature),
+      between_(between_sites(space, rest)),
+      sites_(collocation_matrix(space)),
+      between_values_(value_matrix(space, between_.places)),
+      mass_(space, 8),  // eight points: the area is no polynomial
+      bodies_(particles.size()) {
+  for (stokes::Layer* layer : {&layer_, &between_layer_})
+    if (wall) layer->set_wall(*wall);
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    for (int k = 0; k < 6; ++k)
+      if (!particles[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
+}
+
+/// A at the sites, with s (R c) b^T/(b.c) of each body.
+Eigen::MatrixXd RigidTractions::system(const Net& x) {
+  const Eigen::Index n = 3 * x.rows();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
+  stokes::Rows<double> rows;
+  layer_.assemble(own_points_, rows);
+  for (std::size_t i = 0; i < own_points_.size(); ++i) all.middleRows<3>(3 * own_points_[i]) = rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
+  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
+  for (const Particle& body : particles_) {
+    const Eigen::Index first = 3 * body.block.first_point, length = 3 * body.block.n_points;
+    const Net flux = surface::Geometry(*body.space).volume_gradient(body.block.rows(x));
+    // Any velocity with a flux makes the system regular; that away from the middle is one.
+    const Net at = sites_.middleRows(body.block.first_point, body.block.n_points) * x;
+    const Net outward = (at.rowwise() - at.colwise().mean()) / body.radius;
+    const double weight = 2 * body.radius / 3 / flux.cwiseProduct(outward).sum();
+    all.block(first, first, length, length) += weight * flat(outward) * flat(flux).transpose();
+  }
+  return all;
+}
+
+/// Amplitudes of unit motions: those that are given, and those with which force and torque are; `held`: forces and torques of bodies that stay.
+Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held) const {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const Rigid& rigid = *particles_[p].rigid;
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    if (rigid.prescribed)
+      motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
+    else
+      given.segment<6>(first) << rigid.force, rigid.torque;
+  }
+  return motion + freed(free_, resistance, given - held - resistance * motion);
+}
+
+/// int z_k.(v - (1/mu) A f) dG at Gauss points between the sites, of the densities z_k.
+Eigen::VectorXd RigidTractions::work_left_over(const Net& x, const Eigen::MatrixXd& densities, const Eigen::VectorXd& f,
+                                               const Eigen::VectorXd& motion, std::span<const Vec3> centres,
+                                               const stokes::AmbientFlow& flow) {
+  between_layer_.place(x);
+  Net rest = Net::Zero(between_values_.rows(), 3);
+  const std::vector<int> own = ranks_.share(static_cast<int>(rest.rows()));
+  between_layer_.apply(as_net(f), own, rest);
+  ranks_.add({rest.data(), static_cast<std::size_t>(rest.size())});
+  const Net at = between_values_ * x;
+  Net fields(x.rows(), 3);
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    const spline::Block& block = particles_[p].block;
+    block.rows(fields) = rigid_velocity(block.rows(x), {motion.segment<3>(first), motion.segment<3>(first + 3)}, centres[p]);
+  }
+  rest = between_values_ * fields - flow.velocities(at) - rest / viscosity_;
+  rest = Eigen::Map<const Eigen::VectorXd>(between_.areas.data(), rest.rows()).asDiagonal() * rest;
+  const Net spread = between_values_.transpose() * rest;
+  return densities.transpose() * flat(spread);
+}
+
+void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, const stokes::AmbientFlow& flow) {
+  const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
+  layer_.place(x);
+  const Net at = sites_ * x;
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto column = static_cast<Eigen::Index>(6 * p);
+    const spline::Block& block = particles_[p].block;
+    add_unit_motions(at, block.first_point, block.n_points, centres[p], velocities.middleCols<6>(column));
+    add_unit_motions(x, block.first_point, block.n_points, centres[p], fields.middleCols<6>(column));
+  }
+  velocities.col(m) = flat(flow.velocities(at));
+  const Eigen::MatrixXd of_all = viscosity_ * DenseFactors(system(x)).solve(velocities), z = of_all.leftCols(m);
+
+  const Eigen::SparseMatrix<double>& mass = mass_.update(x);
+  for (Eigen::Index k = 0; k < m; ++k) fields.col(k) = flat(Net(mass * as_net(fields.col(k))));
+  const Eigen::MatrixXd resistance = fields.transpose() * z;
+  Eigen::VectorXd motion = motions(resistance, -fields.transpose() * of_all.col(m));
+  Eigen::VectorXd f = z * motion - of_all.col(m);
+  const Eigen::VectorXd lacking = work_left_over(x, z, f, motion, centres, flow);
+  const Eigen::VectorXd change = freed(free_, resistance, -lacking);
+  motion += change;
+  f += z * change;
+  const Eigen::VectorXd integrals = fields.transpose() * f + lacking;
+  density_ = as_net(f);
+  const Net weighted = mass * density_;
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    const spline::Block& block = particles_[p].block;
+    bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
+                  block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
+  }
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,71 @@
+#pragma once
+// Several rigid bodies and nothing else, by the tractions on all of them.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/types.hpp"
+#include "coupling/collocation.hpp"
+#include "coupling/particle.hpp"
+#include "coupling/ranks.hpp"
+#include "coupling/rigid_motion.hpp"
+#include "membrane/mass.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/ambient_flow.hpp"
+#include "stokes/layer.hpp"
+#include "stokes/plane_wall.hpp"
+
+namespace tanktread::coupling {
+
+/// The first-kind equation of all surfaces, f the force density on the fluid:
+///
+///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dG = F_p,   int r x f_p dG = T_p                  (2.40)
+///
+/// with one motion or force and torque given of each body. At every place it is assembled, made regular by a flux of each body as in (2.10), and
+/// factored: a film takes no iterations. f is a sum of the densities z_k of unit motions and of that of the flow. What collocation lacks of a force
+/// or torque is, by the reciprocal theorem (2.11), int z_k.(v - (1/mu) A f) dG over all bodies: with it they err by the product of two errors of
+/// densities, where those of (2.23) err by one. Dense: for some thousands of control points.
+class RigidTractions {
+ public:
+  /// `space`: of all bodies, that lie in it in their order. `rest`: their net. What is given by reference outlives this.
+  RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
+                 const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks);
+
+  struct Body {
+    RigidMotion motion;
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the fluid, about the centre
+    Mat3 moment = Mat3::Zero();                        ///< int f r dG
+  };
+
+  /// Of bodies with net x and these centres; kept as `bodies` and `density` until the next call. Collective.
+  void solve(const Net& x, std::span<const Vec3> centres, const stokes::AmbientFlow& flow);
+
+  const std::vector<Body>& bodies() const { return bodies_; }
+  const Net& density() const { return density_; }  ///< control values of f
+  stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
+
+ private:
+  Eigen::MatrixXd system(const Net& x);
+  Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held) const;
+  Eigen::VectorXd work_left_over(const Net& x, const Eigen::MatrixXd& densities, const Eigen::VectorXd& f, const Eigen::VectorXd& motion,
+                                 std::span<const Vec3> centres, const stokes::AmbientFlow& flow);
+
+  const spline::Space& space_;
+  std::span<const Particle> particles_;
+  double viscosity_;
+  Ranks& ranks_;
+  std::vector<int> own_points_;
+  stokes::Layer layer_, between_layer_;  // at the collocation sites, and between them
+  BetweenSites between_;
+  Eigen::SparseMatrix<double> sites_, between_values_;
+  membrane::MassMatrix mass_;
+  std::vector<int> free_;  // numbers, six a body, of motions that are not given
+  std::vector<Body> bodies_;
+  Net density_;
+};
+
+}  // namespace tanktread::coupling
