@@ -11,6 +11,7 @@
 #include "base/formatted.hpp"
 #include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
+#include "coupling/label_rotations.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
@@ -265,13 +266,19 @@ void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
 
 /// Of a symmetric scene the rotations that its images leave as they are.
 std::vector<Net> Capsule::relabellings(const Net& x) {
-  if (!interface_) return {};
   std::vector<int> axes;
   for (int k = 0; k < 3; ++k) {
     const auto keeps = [k](const surface::Image& g) { return g.signs.prod() * g.signs[k] > 0; };
     if (std::ranges::all_of(parameters_.symmetry.images(), keeps)) axes.push_back(k);
   }
-  return interface_->rotations(x, axes);
+  std::vector<Net> all;
+  if (interface_) all = interface_->rotations(x, axes);
+  for (const Particle& one : particles()) {
+    if (one.rigid || one.slides() || pulled(one)) continue;
+    for (const int k : axes)
+      if (const auto field = label_rotation(space_, one.block, unstressed_, x, k, collocation_)) all.push_back(*field);
+  }
+  return all;
 }
 
 Net Capsule::symmetric(Net field) const {

@@ -29,7 +29,7 @@ void SpectrumOptions::declare(deck::Section& section) {
 }
 
 const char* name(ModeKind kind) {
-  constexpr const char* names[] = {"shape", "translation", "rotation", "volume"};
+  constexpr const char* names[] = {"shape", "translation", "rotation", "labels", "volume"};
   return names[static_cast<int>(kind)];
 }
 
@@ -61,32 +61,41 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Orthonormal coordinates of the translations (first = 0) or rotations (3) of x that symmetry admits and that are seen: those of a sphere along
-/// itself are not.
-Eigen::MatrixXd rigid_motions(const coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
+/// Orthonormal coordinates of the fields that are seen: the rotations of a sphere, or of labels on the interface of a drop, are not.
+Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
-  const Vec3 centre = x.colwise().mean().transpose();
-  Eigen::MatrixXd all(shapes.size(), 3);
-  int rank = 0;
-  for (int k = first; k < first + 3; ++k) {
-    const Net field = coupling::rigid_velocity(x, coupling::unit_motion(k), centre);
-    if ((dynamics.symmetric(field) - field).norm() > seen * field.norm()) continue;
+  Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
+  Eigen::Index rank = 0;
+  for (const Net& field : fields) {
     Eigen::VectorXd y = shapes.coordinates(field);
     const double size = y.norm();
-    for (int j = 0; j < rank; ++j) y -= all.col(j).dot(y) * all.col(j);
+    y -= all.leftCols(rank) * (all.leftCols(rank).transpose() * y);
     if (y.norm() > seen * field.norm() && y.norm() > seen * size) all.col(rank++) = y.normalized();
   }
   return all.leftCols(rank);
 }
 
+/// The same of the translations (first = 0) or rotations (3) of x that symmetry admits.
+Eigen::MatrixXd rigid_motions(const coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
+  constexpr double admitted = 1e-3;
+  const Vec3 centre = x.colwise().mean().transpose();
+  std::vector<Net> fields;
+  for (int k = first; k < first + 3; ++k) {
+    Net field = coupling::rigid_velocity(x, coupling::unit_motion(k), centre);
+    if ((dynamics.symmetric(field) - field).norm() <= admitted * field.norm()) fields.push_back(std::move(field));
+  }
+  return orthonormal(shapes, fields);
+}
+
 /// What tells the modes that are no change of shape.
 class Recognition {
  public:
-  Recognition(const coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux)
+  Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux)
       : shapes_(shapes),
         flux_(flux),
         translations_(rigid_motions(dynamics, shapes, x, 0)),
-        rotations_(rigid_motions(dynamics, shapes, x, 3)) {}
+        rotations_(rigid_motions(dynamics, shapes, x, 3)),
+        labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
   /// What a mode gains of the volume, over its size. All but those of rate 0 gain none, for the motion keeps it: rate x b.d = 0.
   double gain(const Eigen::VectorXcd& mode) const {
@@ -99,14 +108,15 @@ class Recognition {
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();
-    if (std::hypot(translation, rotation) < most * mode.norm()) return ModeKind::shape;
+    if (std::hypot(translation, rotation) < most * mode.norm())
+      return (labels_.transpose() * mode).norm() < most * mode.norm() ? ModeKind::shape : ModeKind::labels;
     return translation > rotation ? ModeKind::translation : ModeKind::rotation;
   }
 
  private:
   const coupling::ShapeCoordinates& shapes_;
   const Net& flux_;
-  Eigen::MatrixXd translations_, rotations_;
+  Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
 /// As a field on the surface, turned in the complex plane so that it is as real as can be, at its largest 1.

@@ -32,7 +32,7 @@ struct SpectrumOptions {
 };
 
 /// What a mode is beside a change of shape.
-enum class ModeKind { shape, translation, rotation, volume };
+enum class ModeKind { shape, translation, rotation, labels, volume };
 const char* name(ModeKind kind);
 
 /// A displacement that grows like Re(mode e^{rate t}), its largest displacement 1.
