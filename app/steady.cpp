@@ -78,14 +78,20 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& 
 
 /// A scene, of a branch at one value of the parameter, and its motion.
 struct System {
-  System(Scene of, coupling::Ranks& ranks, Phases& phases)
-      : scene(std::move(of)), particle(deforming(scene, ranks, phases)), motion(particle->dynamics(), told_to_stop),
-        equations(motion, free_motions(scene, particle->body()), scene.steady.step.value_or(0.5 / scene.rate()), particle->start()) {}
+  System(Scene of, coupling::Ranks& ranks, Phases& phases) : scene(std::move(of)), particle(deforming(scene, ranks, phases)) {
+    begin(particle->start());
+  }
+
+  /// With the mesh that the particle has by now, and a shape on it.
+  void begin(const Net& x) {
+    motion.emplace(particle->dynamics(), told_to_stop);
+    equations.emplace(*motion, free_motions(scene, particle->body()), scene.steady.step.value_or(0.5 / scene.rate()), x);
+  }
 
   Scene scene;
   std::unique_ptr<ParticleSystem> particle;
-  motion::GuardedDynamics motion;
-  motion::SteadyEquations equations;
+  std::optional<motion::GuardedDynamics> motion;
+  std::optional<motion::SteadyEquations> equations;
 };
 
 /// The scene with another value of the parameter of its branch.
@@ -149,22 +155,48 @@ class SteadyRun {
   /// One shape: the steady one that the first leads to, or that itself.
   void look() {
     if (!scene_.steady.present) {
-      system_->motion.restore_volume(state_.x);
+      system_->motion->restore_volume(state_.x);
       return write();
     }
-    const motion::SteadyReport found = motion::find_steady(system_->equations, scene_.steady, scene_.solvers, state_.x);
+    motion::SteadyReport found;
+    do found = motion::find_steady(*system_->equations, scene_.steady, scene_.solvers, state_.x);
+    while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     write();
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
+  /// Cuts and merges elements where the shape asks for it; whether the mesh is another one now. Coarsening might never end.
+  bool adapt() {
+    if (totals_.coarsenings > 0 || !system_->particle->adapt(state_, totals_)) return false;
+    results_.remesh(system_->particle->body(), system_->particle->bezier());
+    system_->begin(state_.x);
+    return true;
+  }
+
+  /// The same at a point of a branch; other shapes of it go along.
+  bool adapt_at(double parameter, std::vector<Net>& shapes) {
+    system_ = system_at(parameter);
+    state_.history.clear(), state_.places.clear();
+    for (Net& shape : shapes) state_.places.push_back({state_.time, std::move(shape)});
+    state_.x = state_.places.back().x;
+    const bool changed = adapt();
+    for (std::size_t k = 0; k < shapes.size(); ++k) shapes[k] = std::move(state_.places[k].x);
+    if (!changed) return false;
+    mesh_.emplace();
+    system_->particle->store(*mesh_);
+    while (systems_.size() > 1) drop_oldest();
+    return true;
+  }
+
   /// All shapes of a branch.
   void follow() {
     const double first = first_parameter(scene_, request_.deck_text);
     systems_.emplace_front(first, system_);
-    motion::Branch branch([this](double parameter) { return equations_at(parameter); }, scene_.continuation, scene_.steady, scene_.solvers, first,
-                          state_.x);
+    motion::Branch branch([this](double parameter) { return equations_at(parameter); },
+                          [this](double parameter, std::vector<Net>& shapes) { return adapt_at(parameter, shapes); }, scene_.continuation,
+                          scene_.steady, scene_.solvers, first, state_.x);
     for (int k = 0; const auto point = branch.next(); ++k) {
       stop_where_told();
       system_ = system_at(point->parameter);
@@ -178,32 +210,43 @@ class SteadyRun {
     }
   }
 
-  /// The latest few are kept.
+  /// The latest few are kept, the one that is asked for in front.
   std::shared_ptr<System> system_at(double parameter) {
     const auto known = std::ranges::find(systems_, parameter, &std::pair<double, std::shared_ptr<System>>::first);
-    if (known != systems_.end()) return known->second;
+    if (known != systems_.end()) {
+      std::rotate(systems_.begin(), known, known + 1);
+      return systems_.front().second;
+    }
     const auto clock = phases_.time("set-up");
     auto made = std::make_shared<System>(at_parameter(scene_, request_.deck_text, parameter), ranks_, phases_);
+    if (mesh_) {
+      Resumed resumed;
+      resumed.state.x = state_.x, resumed.totals.phase_angle = made->particle->phase_angle(), resumed.checkpoint = *mesh_;
+      made->particle->resume(resumed);
+      made->begin(state_.x);
+    }
     if (made->particle->body().space.n_points != state_.x.rows())
       throw UserError("Continuation/parameter must leave the mesh as it is, but " + scene_.continuation.parameter + " does not.");
     systems_.emplace_front(parameter, made);
-    if (systems_.size() > 3) {
-      const ParticleSystem& oldest = *systems_.back().second->particle;
-      work_ = work_ + oldest.work(), kernel_ = kernel_ + oldest.kernel_evaluations();
-      systems_.pop_back();
-    }
+    if (systems_.size() > 3) drop_oldest();
     return made;
+  }
+
+  void drop_oldest() {
+    const ParticleSystem& oldest = *systems_.back().second->particle;
+    work_ = work_ + oldest.work(), kernel_ = kernel_ + oldest.kernel_evaluations();
+    systems_.pop_back();
   }
 
   std::shared_ptr<motion::SteadyEquations> equations_at(double parameter) {
     const std::shared_ptr<System> system = system_at(parameter);
-    return {system, &system->equations};
+    return {system, &*system->equations};
   }
 
   /// Velocity, modes, row and snapshot of the present shape.
   void write() {
-    state_.history = {system_->motion.velocity(state_.x)};
-    if (!state_.history.front().allFinite()) throw RunFailure("the velocity of this shape cannot be had: " + system_->motion.failure());
+    state_.history = {system_->motion->velocity(state_.x)};
+    if (!state_.history.front().allFinite()) throw RunFailure("the velocity of this shape cannot be had: " + system_->motion->failure());
     if (scene_.spectrum.present) find_modes();
     record();
     save();
@@ -219,7 +262,7 @@ class SteadyRun {
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));
     if (!options.shift) options.shift = system_->scene.rate();
-    modes_ = motion::spectrum(system_->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
+    modes_ = motion::spectrum(*system_->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
                               scene_.solvers.of(scene_.solvers.spectrum));
     moment_.leading_rate = -std::numeric_limits<double>::infinity(), moment_.unstable_modes = 0;
     for (const motion::Mode& mode : modes_) {
@@ -227,7 +270,7 @@ class SteadyRun {
       moment_.leading_rate = std::max(moment_.leading_rate, mode.rate.real());
       moment_.unstable_modes += mode.rate.real() > 0;
     }
-    system_->motion.velocity(state_.x);
+    system_->motion->velocity(state_.x);
   }
 
   void count() {
@@ -299,6 +342,7 @@ class SteadyRun {
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
   std::deque<std::pair<double, std::shared_ptr<System>>> systems_;  // of a branch, by parameter, the latest first
+  std::optional<output::Checkpoint> mesh_;                          // that they are on, where it is not the deck's
   output::Entries<std::string> chosen_;
   Results results_;
   motion::State state_;

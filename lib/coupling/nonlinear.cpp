@@ -142,13 +142,13 @@ std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::Para
   return {};
 }
 
-Teuchos::ParameterList defaults(const std::string& method) {
+Teuchos::ParameterList defaults(const std::string& method, int depth) {
   Teuchos::ParameterList list("NOX");
   const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // a step that fails is tried again, shorter
   list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
   if (method == "anderson") {
     list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");
-    list.sublist("Anderson Parameters").set("Storage Depth", 4);
+    list.sublist("Anderson Parameters").set("Storage Depth", depth);
     return list;
   }
   list.set("Nonlinear Solver", "Line Search Based");
@@ -168,11 +168,11 @@ struct FixedPoint::Impl {
   std::string preconditioner;
 };
 
-FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear)
+FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear, int depth)
     : impl_(std::make_unique<Impl>()) {
   impl_->linear_solver = belos_factory(linear).factory;
   impl_->preconditioner = linear.preconditioner;
-  impl_->list = defaults(method);
+  impl_->list = defaults(method, depth);
   if (list) impl_->list.setParameters(impl_->given = unread_copy(*list));
 }
 

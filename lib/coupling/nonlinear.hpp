@@ -26,10 +26,12 @@ class FixedPoint {
  public:
   using Map = std::function<Net(const Net&)>;
   using Norm = std::function<double(const Net&)>;
+  static constexpr int deep = 20;  ///< iterates combined for a shape at rest: near a fold, and where waves go round, four do not converge
 
   /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or `newton-krylov` without a matrix: products with dg/dx by differences of g, Belos'
-  /// solver `linear` with its preconditioner, own meaning none. `list` goes to NOX as it is, after our defaults.
-  FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"});
+  /// solver `linear` with its preconditioner, own meaning none. `list` goes to NOX as it is, after our defaults; `depth`: of the iterates that
+  /// `anderson` combines, where the list does not say.
+  FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"}, int depth = 4);
   ~FixedPoint();
 
   /// From x on, until rest(g(x) - x) <= tolerance, rest being `norm` where it is not given, or `most` iterations are over. Collective. A value of g

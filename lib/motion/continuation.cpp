@@ -16,6 +16,10 @@
 
 namespace tanktread::motion {
 
+namespace {
+constexpr double noise = 30;  // a correction this many times the tolerance is as small as the quadrature may let it become
+}
+
 void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
               "path of the key of this deck that changes along the branch, say Membrane/capillary number: a number");
@@ -29,10 +33,10 @@ void ContinuationOptions::declare(deck::Section& section) {
   section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative, of the parameter at a fold");
 }
 
-Branch::Branch(Family family, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
-               double parameter, Net x)
-    : family_(std::move(family)), options_(options), steady_(steady), solvers_(solvers), start_(parameter), first_(family_(parameter)),
-      x_(std::move(x)) {}
+Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,
+               const coupling::SolverOptions& solvers, double parameter, Net x)
+    : family_(std::move(family)), remesh_(std::move(remesh)), options_(options), steady_(steady), solvers_(solvers), start_(parameter),
+      first_(family_(parameter)), x_(std::move(x)) {}
 
 double Branch::inner(const Place& a, const Place& b) const {
   const double unit = first_->unit_length();
@@ -42,14 +46,13 @@ double Branch::inner(const Place& a, const Place& b) const {
 std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& x) {
   Net found = x;
   const SteadyReport report = find_steady(*family_(parameter), steady_, solvers_, found);
-  if (!report.converged) return {};
+  if (!report.converged && !(report.rest < noise * steady_.tolerance)) return {};
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
 
 /// Where the branch meets the plane through `predicted` with this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
   constexpr int most_rounds = 8, most_iterations = 40;
-  constexpr double noise = 30;  // a correction this many times the tolerance is as small as the quadrature may let it become
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
@@ -78,7 +81,7 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     };
     Net joined = Net::Zero(from.x.rows() + 1, 3);
     joined.topRows(from.x.rows()) = from.x;
-    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady));
+    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady), coupling::FixedPoint::deep);
     const int most = std::min(steady_.iterations, most_iterations);
     const coupling::NonlinearReport report = solver.solve(corrected, norm, steady_.tolerance, most, joined);
     if (!report.converged && !(least < noise * steady_.tolerance)) return {};
@@ -163,11 +166,38 @@ Branch::Solved Branch::fold(Solved next) {
   throw RunFailure("the fold of the branch was not found to Continuation/fold tolerance");
 }
 
+/// Goes on from the two latest points, found again on a mesh that fits the last one: while there are finer ones.
+void Branch::adapt() {
+  constexpr int most = 6;
+  for (int k = 0; k < most; ++k) {
+    std::vector<Net> shapes{last_[last_.size() - 2].place.x, last_.back().place.x};
+    if (!remesh_(last_.back().place.q * unit_, shapes)) return;
+    last_.erase(last_.begin(), last_.end() - 2);
+    first_ = family_(last_.back().place.q * unit_);
+    for (std::size_t i = 0; i < 2; ++i) last_[i].place.x = std::move(shapes[i]);
+    ahead_.front().first = last_[1];
+    Place t = last_[1].place - last_[0].place;
+    const double size = length(t);
+    t = {t.x / size, t.q / size};
+    for (Solved& one : last_) {
+      auto solved = on_plane(one.place, t);
+      if (!solved) solved = at_parameter(one.place.q * unit_, one.place.x);
+      if (!solved) throw RunFailure("a shape on the branch was not found again on a finer mesh");
+      solved->s = one.s;
+      one = std::move(*solved);
+    }
+    last_[1].s = last_[0].s + length(last_[1].place - last_[0].place);
+    x_ = last_[1].place.x;
+    ahead_.front().first = last_[1];
+  }
+}
+
 /// Two points are held back: a fold may lie between the last one and the one before.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
     try {
+      if (ahead_.size() == 1 && last_.size() > 1) adapt();
       advance();
     } catch (const RunFailure& failure) {
       failure_ = failure.what();

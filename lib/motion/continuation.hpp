@@ -49,9 +49,13 @@ class Branch {
   /// The equations at a value of the parameter. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter)>;
 
+  /// Carries shapes, the last of which is at rest at this parameter, to a mesh that fits that one better, and the family to it; whether there is one.
+  /// Collective.
+  using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
+
   /// Begins with the shape that `x` leads to at `parameter`.
-  Branch(Family family, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers, double parameter,
-         Net x);
+  Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
+         double parameter, Net x);
 
   /// The next point, folds in between included; none at the end of the branch. Throws RunFailure where it cannot be found. Collective.
   std::optional<BranchPoint> next();
@@ -77,11 +81,13 @@ class Branch {
   void begin();
   void advance();
   void keep(const Solved& solved);
+  void adapt();
   bool turned(const Solved& next) const;
   Solved fold(Solved next);
   bool ends(const Solved& solved) const;
 
   Family family_;
+  Remesh remesh_;
   ContinuationOptions options_;
   SteadyOptions steady_;
   const coupling::SolverOptions& solvers_;
