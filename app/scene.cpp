@@ -234,12 +234,12 @@ void check_contradictions(const Scene& scene) {
   if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
   refuse(steady && scene.domain.present, sought, "Domain", "the lattice moves along with the flow");
-  refuse(steady && adapts, sought, "Adaptation/enabled", "the mesh stays what it is");
+  refuse(steady && adapts && !scene.steady.present, sought, "Adaptation/enabled", "the mesh stays what it is");
   refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
   refuse(steady && drop && scene.interface_motion() == "material", sought, "Interface/motion `material`",
          "points that go with the fluid along an interface do not rest");
-  refuse(scene.steady.present && !drop && !rigid && turns(scene), sought, flow,
-         "the flow turns, and the membrane treads around its shape: no point of it rests");
+  refuse(scene.steady.present && !drop && !rigid && particle.shape.shape != "sphere" && turns(scene), sought, flow,
+         "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
   const std::string confined = scene.tube.list();
   refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
          "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");

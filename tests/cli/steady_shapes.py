@@ -66,6 +66,33 @@ def above_the_fold_nothing_is_found_and_what_was_reached_is_kept():
     check(len(series("none", "taylor_surface")) == 1, "the row of what was reached")
 
 
+def the_mesh_of_a_shape_and_of_a_branch_adapts():
+    near = ["--set", "Adaptation/enabled=true", "--set", "Adaptation/surface tolerance=5e-4", "--set", "Membrane/capillary number=0.1"]
+    run(deck(DECK), *near, "--output", "cut", "--quiet")
+    points, d = series("cut", "n_control_points")[-1], series("cut", "taylor_surface")[-1]
+    check(points > 200 and summary("cut")["counts"]["refinements"] > 0, points)
+    run(deck(DECK), "--set", "Membrane/capillary number=0.1", "--output", "whole", "--quiet")
+    exact = 0.2263735  # an axisymmetric solution
+    check(abs(d - exact) < abs(series("whole", "taylor_surface")[-1] - exact) / 2, d)
+    run(deck(DECK), *near, "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.115", "--set",
+        "Continuation/points=12", "--output", "branch_cut", "--quiet")
+    points = series("branch_cut", "n_control_points")
+    check(points[-1] > points[0], points)
+    close(series("branch_cut", "taylor_surface")[-1], 0.3038398, 5e-3)
+
+
+def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
+    shear = ["--set", "Flow/type=simple shear", "--set", "Membrane/law=neo-Hookean", "--set", "Membrane/capillary number=0.3", "--set",
+             "Surface/elements per side=4"]
+    run(deck(DECK), *shear, "--set", "Steady/tolerance=1e-7", "--set", "Spectrum/number=8", "--output", "tread", "--quiet")
+    run(deck(IN_TIME, "in_time.yaml"), *shear, "--set", "Time/steady tolerance=5e-4", "--output", "tread_in_time", "--quiet")
+    for name, digits in ("taylor_inertia", 3e-3), ("inclination", 0.3):  # what the labels matter on this mesh, which go round in the run
+        close(series("tread", name)[-1], series("tread_in_time", name)[-1], digits)
+    kinds = list(summary("tread")["modes"].values())
+    check("labels" in kinds, kinds)
+    check(series("tread", "leading_rate")[-1] < -0.5, series("tread", "leading_rate"))
+
+
 def a_parameter_must_be_a_number_of_the_deck():
     for path, word in ("Membrane/law", "number"), ("Membrane/colour", "key"), ("Membrane/capillary number", "differ"):
         said = run(deck(DECK), "--set", f"Continuation/parameter={path}", "--set", "Continuation/to=0.08", "--output", "no", "--quiet", code=2).stderr

@@ -29,7 +29,7 @@ SETTINGS = [
     (["Membrane/viscosity=1"], ["Membrane/viscosity", "Membrane/shear viscosity meant"]),
     (["Wall/position=1"], ["Wall/position", "not a key"]),
     (["Particles/one/radius=1"], ["Membrane and Particles contradict", "Particles/defaults"]),
-    (["Steady/tolerance=1e-8"], ["Steady", "simple shear", "treads"]),
+    (["Steady/tolerance=1e-8", "Particle/shape=spheroid", "Particle/semi-axes=[1, 1, 0.5]"], ["Steady", "simple shear", "treads"]),
     (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
     (["Solvers/rigid bodies=third kind"], ["Solvers/rigid bodies", "first kind"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
