@@ -57,7 +57,8 @@ Body body(const Scene& scene) {
     b.rest = before->arrays.at("initial");
   }
   b.initial = initial_shape(scene, b, before ? &*before : nullptr);
-  b.unstressed = scene.particle.rigid() ? b.rest : membrane::unstressed(b.rest, scene.particle.shape.center, scene.membrane.pre_inflation);
+  const Vec3& center = scene.particle.shape.center;
+  b.unstressed = scene.particle.rigid() ? b.rest : membrane::unstressed(stress_free_shape(scene, b), center, scene.membrane.pre_inflation);
   b.duct = duct(scene);
   b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
   b.plane = flow_plane(scene.flow);
@@ -84,7 +85,7 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
 
 Net patch_forces(const Scene& scene, const Body& body) {
   if (scene.particle.rigid() || scene.membrane.forces.all.empty()) return {};
-  return scene.membrane.forces.virtual_work(body.space, body.unstressed);
+  return scene.membrane.forces.virtual_work(body.space, scene.membrane.stress_free == "resting" ? body.unstressed : body.rest);
 }
 
 stokes::Measure load_measure(const Scene& scene) {

@@ -10,6 +10,8 @@
 #include "deck/words.hpp"
 #include "spline/iga.hpp"
 #include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+#include "surface/stress_free.hpp"
 
 namespace tanktread {
 
@@ -29,10 +31,11 @@ bool same_space(const spline::Space& one, const spline::Space& other) {
   return one.n_points == other.n_points && std::ranges::equal(one.elements, other.elements, same);
 }
 
-Net net_of_file(const spline::Space& space, const std::string& name) {
+/// `path`: of the key that names the file.
+Net net_of_file(const spline::Space& space, const std::string& name, const std::string& path) {
   const spline::SplineSurface surface = spline::read_iga(name);
   if (!same_space(surface.space, space))
-    throw UserError(key + formatted("file: %s holds another spline space of %d control points; it must be the particle's, of %d.", name.c_str(),
+    throw UserError(path + formatted(": %s holds another spline space of %d control points; it must be the particle's, of %d.", name.c_str(),
                                     surface.space.n_points, space.n_points));
   return surface.net;
 }
@@ -79,13 +82,25 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
   const surface::InitialShape& initial = *shape.initial;
   const bool own = initial.volume == "own";
   if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
-  const Net x = before ? Net(before->arrays.at("x")) : net_of_file(body.space, initial.file.value());
+  const Net x = before ? Net(before->arrays.at("x")) : net_of_file(body.space, initial.file.value(), key + "file");
   if (x.rows() != body.space.n_points)
     throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));
   const surface::Measures measures = surface::measures(body.space, x);
   const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);
   return image(x, measures.centroid, scale * Mat3::Identity());
+}
+
+Net stress_free_shape(const Scene& scene, const Body& body) {
+  const membrane::Options& membrane = scene.membrane;
+  if (membrane.stress_free == "resting") return body.rest;
+  if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
+  if (scene.particle.shape.imported)
+    throw UserError("Membrane/stress-free shape must be `resting` or `file` where Particle/shape is `file`: nothing is known of an axis of it.");
+  const surface::LeastSquaresFit fit(body.space);
+  const Net sphere = scene.surface.polar() ? surface::unit_sphere(scene.surface.polar_mesh(), body.space, scene.surface.axis())
+                                           : surface::unit_sphere(body.mesh, fit);
+  return surface::stress_free_spheroid(fit, sphere, scene.particle.shape, membrane.reduced_volume.value_or(1));
 }
 
 }  // namespace tanktread

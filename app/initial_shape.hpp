@@ -16,4 +16,8 @@ std::optional<output::Checkpoint> run_before(const Scene& scene);
 /// UserError where a file holds another surface.
 Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before);
 
+/// Control net of the membrane's stress-free shape on the body's mesh, before any pre-inflation: the resting one where the deck has no other. Throws
+/// UserError where a file holds another surface, or the resting shape has no axis.
+Net stress_free_shape(const Scene& scene, const Body& body);
+
 }  // namespace tanktread

@@ -129,6 +129,7 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
   if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
   if (shape.file) find(*shape.file, kept_surface(kind), arguments, scene);
+  if (auto& file = kind.membrane.stress_free_file) find(*file, kept_stress_free(kind), arguments, scene);
   shape.read();
   auto& initial = shape.initial;
   if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has what became of it

@@ -83,6 +83,8 @@ output::Entries<double> with_earlier(const Phases& phases, const output::Entries
 
 std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + ".iga"; }
 
+std::string kept_stress_free(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + "_stress_free.iga"; }
+
 std::string kept_places(const ParticleKind& kind) { return kind.name + ".csv"; }
 
 std::string kept_name(const std::string& file) { return std::filesystem::path(file).filename(); }

@@ -23,6 +23,7 @@ namespace tanktread {
 /// What a run keeps in its directory of the files that its deck names, for it goes on without them.
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< of a particle's file
+std::string kept_stress_free(const ParticleKind& kind);  ///< of its membrane's stress-free shape
 std::string kept_places(const ParticleKind& kind);   ///< of its copies
 std::string kept_name(const std::string& file);      ///< of an outline or of the points of a channel: without its folder
 

@@ -10,6 +10,14 @@ double second_invariant(double l1, double l2) { return l1 * l1 * l2 * l2 - 1; }
 
 }  // namespace
 
+std::optional<SplitLaw> split(const Law& law) {
+  if (const auto* skalak = std::get_if<Skalak>(&law))
+    return SplitLaw{Skalak{skalak->shear_modulus, 0}, {2 * skalak->area_dilatation * skalak->shear_modulus, true}};
+  if (const auto* evans = std::get_if<EvansSkalak>(&law))
+    return SplitLaw{EvansSkalak{evans->shear_modulus, -0.5}, {evans->area_modulus(), false}};
+  return {};
+}
+
 double modulus(const Law& law) {
   return std::visit([](const auto& l) { return l.modulus(); }, law);
 }

@@ -6,6 +6,7 @@
 // l1, l2: principal stretches. Psi is a force per length (energy per area), and so are all of its derivatives.
 
 #include <array>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -101,6 +102,28 @@ struct EvansSkalak {
   double area_modulus() const { return (1 + 2 * area_dilatation) * shear_modulus; }
 };
 
+/// What the laws of Skalak and of Evans & Skalak have beside shear: Psi = K/8 I2^2, or K/2 (J_s - 1)^2. Not a law of its own: it resists no shear.
+struct AreaElasticity {
+  double area = 1;      ///< K, force per length
+  bool squared = true;  ///< the first of the two
+
+  template <class Number>
+  Number energy(const Number&, const Number& i2) const {
+    if (squared) return (0.125 * area) * i2 * i2;
+    const Number more = sqrt(i2 + 1.0) - 1.0;
+    return (0.5 * area) * more * more;
+  }
+  template <class Number>
+  Response<Number> response(const Number&, const Number& i2) const {
+    const Number zero = 0.0 * i2;
+    if (squared) return {zero, (0.25 * area) * i2, zero, zero, zero + 0.25 * area};
+    const Number square = 1.0 / (i2 + 1.0), inverse = sqrt(square);
+    return {zero, (-0.5 * area) * (inverse - 1.0), zero, zero, (0.25 * area) * square * inverse};
+  }
+  double modulus() const { return area; }
+  double area_modulus() const { return area; }
+};
+
 /// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
 struct SurfaceTension {
   double tension = 1;  ///< sigma
@@ -138,7 +161,16 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 }
 
 /// A law of the deck's choice; visited once outside the hot loops.
-using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, SurfaceTension>;
+using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, SurfaceTension, AreaElasticity>;
+
+/// A law in two parts, whose energies add up to its own: without its resistance to a change of area as far as that is apart, and this one.
+struct SplitLaw {
+  Law shear;
+  AreaElasticity area;
+};
+
+/// Of Skalak's law and Evans & Skalak's; others have none.
+std::optional<SplitLaw> split(const Law& law);
 
 /// The modulus that tensions are reported over: G_s, or sigma of an interface. Force per length.
 double modulus(const Law& law);
@@ -158,7 +190,8 @@ std::array<double, 2> principal_tensions(const Law& law, double stretch1, double
 /// element side. The term with the Gaussian curvature is constant on a closed surface and left out.
 struct Bending {
   double modulus = 0;               ///< E_b, force x length; 0: no bending
-  bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point; otherwise 0
+  bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point
+  double spontaneous_curvature = 0;  ///< c0 otherwise, 1/length
 };
 
 /// A membrane that flows as it stretches (Kelvin & Voigt's element): what joins the elastic stress is, of the rate of strain d of the surface,
@@ -177,6 +210,7 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
+  int area_order = 0;  ///< Gauss points a direction of the area's elasticity, where `split` knows it apart; 0: as for the rest
 };
 
 /// The materials of a surface, and which of them each element is of.

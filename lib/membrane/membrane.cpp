@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -21,18 +22,22 @@ constexpr int max_gauss = max_order * max_order;
 /// The elements that one caller works on, packed, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;
+  std::vector<Material> materials;  ///< of groups: those of the surface, then what is integrated apart of them
+  std::vector<Law> whole;           ///< the laws that tensions are of at a group's points, a material
+  std::vector<bool> sampled;        ///< whether they are looked at there, a material
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< a group; point q of batch k at n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< c0 of `Bending` at the same places, a group; empty for groups without bending
 
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
+  void split_material(const spline::Space& space, const Materials& of_surface, std::size_t m);
 
   /// A batch with what is known of its n Gauss points, the first of which is number `first` of group g; c0 is null without bending.
   struct Points {
     const Group& group;
     const Batch& batch;
     const Material& material;
+    const Law& whole;  ///< the law, all of it
     const ReferencePoint* reference;
     const Pack* c0;
     std::size_t g, first;
@@ -44,7 +49,8 @@ struct Part {
       for (std::size_t k = 0; k < groups[g].batches.size(); ++k) {
         const std::size_t first = k * groups[g].n_gauss();
         const Pack* c0 = relaxed_curvature[g].empty() ? nullptr : &relaxed_curvature[g][first];
-        use(Points{groups[g], groups[g].batches[k], materials[groups[g].material], &reference[g][first], c0, g, first, groups[g].n_gauss()});
+        const int m = groups[g].material;
+        use(Points{groups[g], groups[g].batches[k], materials[m], whole[m], &reference[g][first], c0, g, first, groups[g].n_gauss()});
       }
   }
   template <class Use>
@@ -57,12 +63,17 @@ struct Part {
 
 Part::Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface)
     : elements(list.begin(), list.end()), materials(of_surface.all), groups(pack(space, list, order, of_surface.of_element)) {
+  for (const Material& material : materials) whole.push_back(material.law);
+  sampled.assign(materials.size(), true);
+  for (std::size_t m = 0; m < of_surface.all.size(); ++m)
+    if (of_surface.all[m].area_order > 0) split_material(space, of_surface, m);
   Pack a[15 * max_gauss];
   for (const Group& group : groups) {
     const int n = group.n_gauss();
     const Bending& bending = materials[group.material].bending;
     std::vector<ReferencePoint>& points = reference.emplace_back(n * group.batches.size());
     std::vector<Pack>& curvature = relaxed_curvature.emplace_back(bending.modulus > 0 ? points.size() : 0, Pack{});
+    for (Pack& c0 : curvature) std::ranges::fill(c0.room, bending.spontaneous_curvature);
     for (std::size_t k = 0; k < group.batches.size(); ++k) {
       const Batch& batch = group.batches[k];
       ReferencePoint* first = &points[k * n];
@@ -73,6 +84,25 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
       curvatures(n, a, &curvature[k * n]);
     }
   }
+}
+
+/// Gives the area's elasticity of material m groups of its own (3.13).
+void Part::split_material(const spline::Space& space, const Materials& of_surface, std::size_t m) {
+  const Material& material = of_surface.all[m];
+  const auto parts = split(material.law);
+  if (!parts) return;
+  materials[m].law = parts->shear;
+  sampled[m] = false;
+  std::vector<int> of_this;
+  const std::vector<int>& of_element = of_surface.of_element;
+  std::ranges::copy_if(elements, std::back_inserter(of_this), [&](int e) { return of_element.empty() || of_element[e] == static_cast<int>(m); });
+  for (Group& group : pack(space, of_this, material.area_order)) {
+    group.material = static_cast<int>(materials.size());
+    groups.push_back(std::move(group));
+  }
+  materials.push_back({parts->area, {}});
+  whole.push_back(material.law);
+  sampled.push_back(true);
 }
 
 Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order)
@@ -147,11 +177,13 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
   const std::vector<double> none(space_->elements.size(), 0.);
   ElementTensions result{std::numeric_limits<double>::infinity(), none, none};
   const int lanes = pack_lanes();
-  part(elements)->each_batch([&](const Part::Points& at) {
+  const auto mine = part(elements);
+  mine->each_batch([&](const Part::Points& at) {
+    if (!mine->sampled[at.group.material]) return;
     Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss];
-    const double unit = modulus(at.material.law);
+    const double unit = modulus(at.whole);
     tangents(at.group, at.batch, x, a);
-    smaller_tensions(at.material.law, at.n, at.reference, a, tension, share);
+    smaller_tensions(at.whole, at.n, at.reference, a, tension, share);
     for (int q = 0; q < at.n; ++q)
       for (int l = 0; l < at.batch.used; ++l) {
         const double here = numbers(tension)[lanes * q + l] / unit, area = numbers(share)[lanes * q + l];

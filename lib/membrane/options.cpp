@@ -18,10 +18,22 @@ void Options::declare(deck::Section& section) {
   if (dilates()) area_dilatation = 1.0;
   section.key("area dilatation", area_dilatation, deck::not_negative(), "1",
               "C of the laws `Skalak` and `Evans-Skalak`, whose area modulus is (1 + 2 C) G_s for small strains; 1 if not given");
+  section.key("area points", area_order, deck::between(0, 8), "1",
+              "of the laws `Skalak` and `Evans-Skalak`: Gauss points a direction of an element at which their resistance to a change of area is "
+              "integrated; 1 for C of 50 and more, whose area no mesh can keep at 16 points an element without locking; 0: as the rest of the law");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
               "m of the law `Mooney-Rivlin`: 1 is the neo-Hookean one; what is left of 1 hardens");
+  section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
+              "of the membrane: the `resting` shape; an oblate `spheroid` or a `sphere` of the resting shape's area, axis and center, on which "
+              "every piece of the membrane has the area that it has at rest; or the surface in the `stress-free file`. Under stress the resting "
+              "shape is not one of equilibrium: a run without flow finds that");
+  section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
+              "v = 6 sqrt(pi) V/A^1.5 of the stress-free `spheroid`, 1 for a sphere; 0.646 is a red cell's own");
+  section.key("stress-free file", stress_free_file, deck::Choice{},
+              "name of a Bezier-extraction text (.iga) on the particle's own mesh, looked for as Particle/file");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
-              "alpha: the resting shape is the unstressed one blown up by 1 + alpha about its centre");
+              "alpha: the resting shape is the unstressed one blown up by 1 + alpha about its centre; a stress-free shape of its own shrinks by as "
+              "much");
   section.key("load", load, deck::Choice{"weak", "strong"},
               "`weak`: by virtual work (3.5); `strong`: the surface divergence (P-3), which the paper shows to fail");
   if (law == "surface tension") load_measure = "current";
@@ -31,8 +43,12 @@ void Options::declare(deck::Section& section) {
   section.key("bending modulus", bending_modulus, deck::not_negative(), "force x length", "E_b of Helfrich's energy; 0: no resistance to bending");
   section.key("bending number", bending_number, deck::not_negative(), "1",
               "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
+  if (section.given("spontaneous curvature")) bending_reference = "flat";
   section.key("bending reference", bending_reference, deck::Choice{"unstressed", "flat"},
-              "curvature at which no bending moment acts: that of the unstressed surface, or none");
+              "curvature at which no bending moment acts: that of the unstressed surface, or, `flat`, the spontaneous curvature everywhere");
+  section.key("spontaneous curvature", spontaneous_curvature, deck::any(), "1/length",
+              "c0 of Helfrich's energy (3.8), where the bending reference is `flat`: a sum of principal curvatures, positive where the surface is "
+              "bulged outwards; 0 if not given");
   section.key("shear viscosity", shear_viscosity, deck::not_negative(), "viscosity x length",
               "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
   section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
@@ -56,12 +72,21 @@ void Options::check() const {
     throw UserError("Membrane/surface tension and Membrane/law `" + law + "` contradict each other: give Membrane/shear modulus.");
   if (area_dilatation && !dilates())
     throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
+  if (area_order > 0 && !dilates())
+    throw UserError("Membrane/area points belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
+  if (area_order > 0 && load == "strong")
+    throw UserError("Membrane/area points and Membrane/load `strong` contradict each other: nothing is integrated there.");
   if (neo_hookean_share && law != "Mooney-Rivlin")
     throw UserError("Membrane/neo-Hookean share belongs to Membrane/law `Mooney-Rivlin`, but Membrane/law is `" + law + "`.");
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
   if (law == "surface tension" && pre_inflation != 0.0)
     throw UserError(
         "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
+  check_stress_free();
+  if (spontaneous_curvature && bending_reference == "unstressed")
+    throw UserError("Membrane/spontaneous curvature and Membrane/bending reference `unstressed` contradict each other: one says the curvature.");
+  if (spontaneous_curvature && bending(1, 1) == 0)
+    throw UserError("Membrane/spontaneous curvature needs Membrane/bending modulus or Membrane/bending number.");
   forces.check();
   if (shear_viscosity + dilatational_viscosity > 0) {
     const std::string key = std::string("Membrane/") + (shear_viscosity > 0 ? "shear" : "dilatational") + " viscosity";
@@ -76,6 +101,18 @@ void Options::check() const {
     throw UserError("Membrane/forces and Membrane/load `strong` contradict each other: the forces are part of the weak load.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
+}
+
+void Options::check_stress_free() const {
+  if (law == "surface tension" && stress_free != "resting")
+    throw UserError("Membrane/stress-free shape and Membrane/law `surface tension` contradict each other: a fluid interface has no such shape.");
+  if (reduced_volume.has_value() != (stress_free == "spheroid"))
+    throw UserError(reduced_volume
+                        ? "Membrane/stress-free reduced volume belongs to Membrane/stress-free shape `spheroid`, not to `" + stress_free + "`."
+                        : "Membrane/stress-free shape `spheroid` needs Membrane/stress-free reduced volume.");
+  if (stress_free_file.has_value() != (stress_free == "file"))
+    throw UserError(stress_free_file ? "Membrane/stress-free file belongs to Membrane/stress-free shape `file`, not to `" + stress_free + "`."
+                                     : "Membrane/stress-free shape `file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
 }
 
 double Options::modulus(double viscosity, double rate, double radius) const {

@@ -23,12 +23,17 @@ struct Options {
   std::optional<double> surface_tension;   ///< sigma, force/length
   std::optional<double> area_dilatation;   ///< C of Skalak, Evans-Skalak; set for these laws, 1 if not given, empty otherwise
   std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin; given for this law alone
+  std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
+  std::optional<double> reduced_volume;    ///< of the stress-free spheroid; given for it alone
+  std::optional<std::string> stress_free_file;
+  int area_order = 0;                      ///< Gauss points a direction of the area's elasticity; 0: as for the rest
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< the weak load per area of the unstressed surface (3.7) or of the current one (3.6)
   std::optional<double> bending_modulus;   ///< E_b, force x length; 0 if neither is given: none
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or over sigma R_C^2
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
+  std::optional<double> spontaneous_curvature;   ///< c0 of a membrane whose bending reference is flat, 1/length
   double shear_viscosity = 0, dilatational_viscosity = 0;  ///< eta_s, kappa_s (3.10), viscosity x length
   PatchForces forces;                            ///< by which it is held or pulled
 
@@ -36,6 +41,8 @@ struct Options {
 
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
+
+  void check_stress_free() const;
 
   bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }  ///< whether the law has a C
 

@@ -12,7 +12,7 @@ namespace tanktread::membrane {
 namespace {
 
 const Law soft = SurfaceTension{0};  // leaves the bending energy alone
-const Bending flat{1.5, false}, curved{1.5, true};
+const Bending flat{1.5, false}, curved{1.5, true}, spontaneous{1.5, false, -0.7};
 
 template <class F>
 std::invoke_result_t<F, Net> difference(const F& f, const Net& x, const Net& u) {
@@ -26,7 +26,7 @@ Net small_net(Eigen::Index n, unsigned seed) { return 0.1 * random_net(n, seed);
 TEST(Bending, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), u = small_net(x.rows(), 21);
-  for (const Bending& bending : {flat, curved}) {
+  for (const Bending& bending : {flat, curved, spontaneous}) {
     const Membrane membrane(s.space, s.net, NeoHookean{1}, 4, bending);
     const double expected = difference([&](const Net& y) { return membrane.energy(y); }, x, u);
     EXPECT_NEAR(inner(membrane.load(x), u) / expected, 1, 1e-8);
@@ -54,7 +54,7 @@ TEST(Bending, TangentIsSymmetric) {
 TEST(Bending, ExertsNeitherForceNorTorqueAtAnyShape) {
   const Sphere& s = sphere(4);
   const Net x = deformed(s.net);
-  for (const Bending& bending : {flat, curved}) {
+  for (const Bending& bending : {flat, curved, spontaneous}) {
     const Net d = Membrane(s.space, s.net, soft, 4, bending).load(x);
     Vec3 torque = Vec3::Zero();
     for (Eigen::Index i = 0; i < x.rows(); ++i) torque += Vec3(x.row(i)).cross(Vec3(d.row(i)));
@@ -92,6 +92,13 @@ TEST(Bending, EnergyOfASphereConvergesToTheExactOne) {
     }
     before = error;
   }
+}
+
+/// E_b/2 int (2/R - c0)^2 = 2 pi E_b (2 - c0 R)^2.
+TEST(Bending, EnergyOfASphereOfSpontaneousCurvatureIsTheExactOne) {
+  const Sphere& s = sphere(12);
+  const double radius = 1.7, turned = 2 - spontaneous.spontaneous_curvature * radius;
+  EXPECT_NEAR(Membrane(s.space, s.net, soft, 5, spontaneous).energy(radius * s.net) / (2 * M_PI * 1.5 * turned * turned), 1, 2e-5);
 }
 
 /// The biconcave disc z = 1/2 sqrt(1 - r^2) (0.21 + 2 r^2 - 1.12 r^4): Helfrich's energy by quadrature of its meridian.

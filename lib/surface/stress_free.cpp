@@ -1,0 +1,118 @@
+#include "surface/stress_free.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "base/errors.hpp"
+#include "quadrature/gauss.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread::surface {
+
+namespace {
+
+/// Half of a closed surface of revolution, symmetric in its equator: radius and height of the parallel that is the image of height z of the unit
+/// sphere, radius = equator sqrt(1 - z^2).
+struct Meridian {
+  double equator;
+  std::function<double(double z)> height, slope;  ///< the latter by z
+
+  /// int_0^z radius ds: the area between the equator and the parallel over 2 pi.
+  double area(double z) const {
+    constexpr int panels = 8;
+    const quadrature::GaussRule& rule = quadrature::gauss(10);
+    double sum = 0;
+    for (int k = 0; k < panels * rule.size(); ++k)
+      sum += rule.weights[k % rule.size()] * z / panels * density((k / rule.size() + rule.nodes[k % rule.size()]) * z / panels);
+    return sum;
+  }
+
+  /// Its derivative by z.
+  double density(double z) const {
+    const double along = equator * equator * z;
+    return std::sqrt(along * along + equator * equator * (1 - z * z) * slope(z) * slope(z));
+  }
+};
+
+Meridian spheroid(double equator, double pole) {
+  return {equator, [pole](double z) { return pole * z; }, [pole](double) { return pole; }};
+}
+
+Meridian red_cell_meridian(double radius) {
+  const auto half_thickness = [](double z) { return red_cell({std::sqrt(1 - z * z), 0, z})[2]; };
+  const auto slope = [](double z) {  // of z/2 (0.21 + 2 r^2 - 1.12 r^4), r^2 = 1 - z^2
+    const double r2 = 1 - z * z;
+    return (0.21 + 2.0 * r2 - 1.12 * r2 * r2) / 2 - z * z * (2.0 - 2.24 * r2);
+  };
+  return {radius, [=](double z) { return radius * half_thickness(z); }, [=](double z) { return radius * slope(z); }};
+}
+
+/// The particle's own axis of revolution, 2 for x3.
+int axis_of(const ParticleShape& shape) {
+  if (shape.shape == "sphere" || shape.shape == "red cell") return 2;
+  if (shape.semi_axes) {
+    const Vec3& a = *shape.semi_axes;
+    for (const int k : {2, 1, 0})
+      if (a[(k + 1) % 3] == a[(k + 2) % 3]) return k;
+  }
+  throw UserError("Membrane/stress-free shape must be `resting` or `file` where Particle/shape has no axis of revolution, as `" + shape.shape +
+                  "` here.");
+}
+
+Meridian resting_meridian(const ParticleShape& shape, int axis) {
+  if (shape.shape == "red cell") return red_cell_meridian(shape.radius.value_or(1));
+  const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
+  return spheroid(semi_axes[(axis + 1) % 3], semi_axes[axis]);
+}
+
+/// The oblate spheroid of a given half area over 2 pi.
+Meridian spheroid_of(double reduced_volume, double area) {
+  const auto of_ratio = [&](double ratio) {
+    const Meridian unit = spheroid(1, ratio);
+    const double scale = std::sqrt(area / unit.area(1));
+    return spheroid(scale, scale * ratio);
+  };
+  const double volume = reduced_volume * std::pow(4 * std::numbers::pi * area, 1.5) / (6 * std::sqrt(std::numbers::pi));
+  double low = 0, high = 1;  // of the semi-axes' ratio, with which the volume grows
+  for (int k = 0; k < 60; ++k) {
+    const double middle = (low + high) / 2;
+    const Meridian one = of_ratio(middle);
+    (4 * std::numbers::pi / 3 * std::pow(one.equator, 2) * one.height(1) < volume ? low : high) = middle;
+  }
+  return of_ratio((low + high) / 2);
+}
+
+/// The z of `other` between whose parallel and the equator there is the area that `one` has.
+double of_equal_area(const Meridian& one, const Meridian& other, double z) {
+  const double sought = one.area(z);
+  double found = z;
+  for (int k = 0; k < 50; ++k) {
+    const double step = (sought - other.area(found)) / other.density(found);
+    found = std::clamp(found + step, -1., 1.);
+    if (std::abs(step) < 1e-14) break;
+  }
+  return found;
+}
+
+}  // namespace
+
+Net stress_free_spheroid(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape, double reduced_volume) {
+  const int axis = axis_of(shape);
+  const Meridian resting = resting_meridian(shape, axis), stress_free = spheroid_of(reduced_volume, resting.area(1));
+  Net net = fit.fit_image(unit_sphere, [&](const Vec3& x) {
+    Vec3 place = x.normalized();
+    const double z = place[axis], found = of_equal_area(resting, stress_free, z);
+    place[axis] = 0;
+    const double radius = place.norm();
+    if (radius > 0) place *= stress_free.equator * std::sqrt(1 - found * found) / radius;
+    place[axis] = stress_free.height(found);
+    return place;
+  });
+  net = net * shape.rotation().transpose();
+  net.rowwise() += shape.center.transpose();
+  return net;
+}
+
+}  // namespace tanktread::surface

@@ -1,0 +1,77 @@
+// A law whose resistance to a change of area is integrated apart (3.13).
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "capsules.hpp"
+#include "membrane/membrane.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+Membrane with_points(const Sphere& s, const Law& law, int area_order) { return Membrane(s.space, s.net, Materials{{{law, {}, {}, area_order}}, {}}); }
+
+const Law stiff[] = {Skalak{1.3, 40}, EvansSkalak{1.3, 40}};
+
+TEST(AreaPoints, PartsOfALawAddUpToIt) {
+  for (const Law& law : stiff) {
+    const SplitLaw parts = split(law).value();
+    EXPECT_EQ(area_modulus(parts.shear), modulus(law) * (std::holds_alternative<Skalak>(law) ? 1 : 0));
+    for (const double l1 : {0.7, 1.0, 1.4})
+      for (const double l2 : {0.8, 1.0, 1.9})
+        EXPECT_NEAR(energy(parts.shear, l1, l2) + energy(Law(parts.area), l1, l2), energy(law, l1, l2), 1e-13 * (1 + energy(law, l1, l2)));
+  }
+  EXPECT_FALSE(split(NeoHookean{}));
+}
+
+TEST(AreaPoints, AsManyAsForTheRestAreTheWholeLaw) {
+  const Sphere& s = sphere(3);
+  const Net x = deformed(s.net);
+  for (const Law& law : stiff) {
+    const Membrane whole = with_points(s, law, 0), parts = with_points(s, law, 4);
+    EXPECT_NEAR(parts.energy(x) / whole.energy(x), 1, 1e-13);
+    EXPECT_LT((parts.load(x) - whole.load(x)).norm(), 1e-12 * whole.load(x).norm());
+    EXPECT_NEAR(parts.tension_summary(x).smallest, whole.tension_summary(x).smallest, 1e-12);
+  }
+}
+
+TEST(AreaPoints, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {
+  const Sphere& s = sphere(3);
+  const Net x = deformed(s.net), u = random_net(x.rows(), 31);
+  const double h = 1e-4;
+  const auto difference = [&](const auto& f) { return ((8 * (f(x + h * u) - f(x - h * u)) - (f(x + 2 * h * u) - f(x - 2 * h * u))) / (12 * h)); };
+  for (const Law& law : stiff) {
+    const Membrane membrane = with_points(s, law, 1);
+    const double expected = difference([&](const Net& y) { return membrane.energy(y); });
+    EXPECT_NEAR(inner(membrane.load(x), u) / expected, 1, 1e-8);
+    const Net by_differences = difference([&](const Net& y) -> Net { return membrane.load(y); });
+    Tangent tangent(membrane);
+    tangent.update(x, s.elements);
+    Net hu;
+    tangent.apply(u, hu);
+    EXPECT_LT((hu - by_differences).norm() / by_differences.norm(), 1e-8);
+  }
+}
+
+/// A sphere sheared without a change of area: a membrane that locks is stiffer by what its C is worth.
+TEST(AreaPoints, OneAnElementLeavesAMeshFreeToShear) {
+  const double c = 1e4;
+  std::vector<double> whole, one;
+  for (const int n : {4, 8}) {
+    const Sphere& s = sphere(n);
+    Net x = s.net;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {  // parallels turn about x3 by an angle that grows with x3: areas stay
+      const double angle = 0.3 * x(i, 2), cosine = std::cos(angle), sine = std::sin(angle), x1 = x(i, 0);
+      x(i, 0) = cosine * x1 - sine * x(i, 1), x(i, 1) = sine * x1 + cosine * x(i, 1);
+    }
+    const double shear = Membrane(s.space, s.net, Skalak{1, 0}).energy(x);
+    whole.push_back(with_points(s, Skalak{1, c}, 0).energy(x) / shear - 1);
+    one.push_back(with_points(s, Skalak{1, c}, 1).energy(x) / shear - 1);
+  }
+  EXPECT_LT(one[0], whole[0]);
+  EXPECT_LT(one[1], whole[1]);
+}
+
+}  // namespace
+}  // namespace tanktread::membrane
