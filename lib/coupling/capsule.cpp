@@ -385,6 +385,40 @@ Net Capsule::evaluate_tractions(const Net& x) {
   return v;
 }
 
+/// Whether the defect of a velocity comes without a system of its own.
+bool Capsule::defect_without_system() const { return (viscous_ || double_layer_) && !interface_ && !tube_ && !cell_ && rigid_.empty(); }
+
+/// P (w - B P u) - (1 - P) u, of which B v = w is the system of the velocity (solve_velocity): the load of u in a viscous membrane joins the elastic
+/// one, in one sum. (3.14)
+Net Capsule::defect(const Net& x, const Net& u) {
+  if (!defect_without_system()) return velocity(x) - u;
+  ++work_.evaluations;
+  if (!x.allFinite() || !in_front_of_wall(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  const bool constrained = parameters_.volume.constraint != "none";
+  const Net b = constrained ? flux_vector(x) : Net();
+  Net c = b, inside = u;
+  Net f = membrane_load(x, constrained ? &c : nullptr);
+  if (constrained) constrain(inside, b, c);
+  if (viscous_) {
+    viscous_->update(x, own_elements_);
+    f += viscous_load(*viscous_, inside);
+  }
+  Net lacking = explicit_velocity(x, f) - inside;
+  if (double_layer_) {
+    Net hv = zero_at_targets();
+    {
+      const auto clock = phases_.time("velocity system");
+      double_layer_->place(x);
+      double_layer_->apply(inside, own_targets(), hv);
+    }
+    gather_targets(double_layer_->shared(), hv);
+    const auto clock = phases_.time("projection");
+    lacking += control_values(std::move(hv));
+  }
+  if (constrained) constrain(lacking, b, c);
+  return symmetric(lacking - (u - inside));
+}
+
 /// Of a velocity at the targets.
 Net Capsule::control_values(Net at_targets) {
   return projection_ ? projection_->control_values(at_targets) : solved(collocation_, std::move(at_targets));
@@ -582,6 +616,7 @@ void Capsule::restore_volume(Net& x) {
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
   std::vector<double> missing(particles().size());  // over V0
+  Net c;
   const auto larger_than = [&](double bound) { return std::ranges::any_of(missing, [&](double m) { return !(std::abs(m) <= bound); }); };
   for (int k = 0; k < 6; ++k) {  // two changes are enough after any but a very long step
     const Net b = flux_vector(x);
@@ -592,8 +627,7 @@ void Capsule::restore_volume(Net& x) {
     }
     if (k > 1 && !larger_than(2e-15)) return;
     if (k == 5) break;
-    const auto projection = phases_.time("projection");
-    const Net c = symmetric(solved(mass_.reference(), b));
+    if (k == 0) c = inflation(symmetric(solved(mass_.reference(), b)));
     for (std::size_t p = 0; p < missing.size(); ++p) {
       const spline::Block& block = particles()[p].block;
       block.rows(x) += missing[p] * volume0_[p] / block.rows(b).cwiseProduct(block.rows(c)).sum() * block.rows(c);

@@ -105,6 +105,9 @@ class Capsule : public Dynamics {
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
   Net missed(const Net& dv, const Net& delta) override;
+  Net defect(const Net& x, const Net& u) override;
+  Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
+  Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
   std::vector<Net> relabellings(const Net& x) override;
@@ -197,6 +200,8 @@ class Capsule : public Dynamics {
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
+  Net without_flux(Net rate) const;
+  Net inflation(const Net& c);
   Net frozen_single_layer(const Net& f);
   Net viscous_load(const membrane::ViscousLoad& c, const Net& v);
   const Net& viscous_work(const Net& x, const Net& v);
@@ -210,6 +215,8 @@ class Capsule : public Dynamics {
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
+  bool defect_without_system() const;
+  Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
   bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
 
@@ -245,6 +252,8 @@ class Capsule : public Dynamics {
   Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube or a wall
   std::optional<stokes::PeriodicCell> cell_;  // now
   double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
+  double latest_shift_ = 0;             // of the implicit system solved last
+  Net flux_, flux_response_;            // b and c of the Jacobian's P, empty where it has none
   std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised
   std::vector<double> volume0_;         // of each particle
   Work work_;

@@ -1,5 +1,6 @@
 // The Jacobian of Capsule: frozen operators, the membrane's tangent, and the systems of an implicit step.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,6 +8,16 @@
 #include "coupling/collocation.hpp"
 
 namespace tanktread::coupling {
+
+namespace {
+
+/// Whether what a particle is made of resists a change of area so much more than shear.
+bool keeps_area(const Particle& one) {
+  constexpr double times = 50;
+  return !one.rigid && membrane::area_modulus(one.material.law) > times * membrane::modulus(one.material.law);
+}
+
+}  // namespace
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
@@ -46,7 +57,12 @@ void Capsule::linearise(const Net& x) {
   ++work_.tangents;
   tangent_.update(x, own_elements_);
   if (viscous_) linearised_viscous_->update(x, own_elements_);
-  if (interface_) interface_->linearise(x, flux_vector(x));
+  if (interface_) {
+    interface_->linearise(x, flux_vector(x));
+  } else if (parameters_.volume.constraint != "none" && (defect_without_system() || std::ranges::any_of(particles(), keeps_area))) {
+    flux_ = flux_vector(x);
+    flux_response_ = symmetric(solved(mass_.reference(), flux_));
+  }
   if (by_sites()) gradients_ = gradients_at(sites_ * x);
 }
 
@@ -75,7 +91,22 @@ Net Capsule::frozen_single_layer(const Net& f) {
   return u;
 }
 
-/// B J delta = grad v_inf delta - R^{-1} A M0^{-1} H delta, and 0 of rigid bodies                             (4.3)
+/// P of a rate, where last linearised. A stiff membrane's answer to a change of volume, which the fluids do not let happen, would spoil all else.
+Net Capsule::without_flux(Net rate) const {
+  if (flux_.size() > 0) constrain(rate, flux_, flux_response_);
+  return rate;
+}
+
+/// The displacement along which a volume is restored, where c alone would do: of a membrane that keeps its area, what is left of c after an implicit
+/// step. Along c itself the area changes too, and the stress of that, C times as large, would go into the next step.
+Net Capsule::inflation(const Net& c) {
+  constexpr double rough = 1e-2;  // relative residual
+  if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(particles(), keeps_area)) return c;
+  const Net along = stiff_system(latest_shift_, c, rough, {});
+  return along.allFinite() ? along : c;
+}
+
+/// B J delta = P (grad v_inf delta - R^{-1} A M0^{-1} H delta), and 0 of rigid bodies                         (4.3)
 Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
@@ -88,17 +119,18 @@ Net Capsule::energy_part(const Net& delta) {
     const Net at_sites = sites_ * delta;
     for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
     rigid_.clear(u);
-    return solved(collocation_, std::move(u));
+    return without_flux(solved(collocation_, std::move(u)));
   }
   Net change = delta * flow_.gradient(Vec3::Zero()).transpose() - solved(collocation_, std::move(u)) / parameters_.viscosity;
   rigid_.clear(change);
-  return change;
+  return without_flux(std::move(change));
 }
 
-/// B v with B frozen; rigid bodies keep what they have and do nothing to the others.
+/// P B P v + (1 - P) v with B frozen; rigid bodies keep what they have and do nothing to the others.
 Net Capsule::frozen_viscous(const Net& v) {
   if (!double_layer_ && !viscous_) return v;
-  Net hv = Net::Zero(v.rows(), 3), deforming = v, load;
+  const Net inside = without_flux(v);
+  Net hv = Net::Zero(v.rows(), 3), deforming = inside, load;
   rigid_.clear(deforming);
   if (double_layer_) {
     frozen_double_.apply(deforming, hv);
@@ -109,8 +141,8 @@ Net Capsule::frozen_viscous(const Net& v) {
     hv -= frozen_single_layer(load) / parameters_.viscosity;
   }
   rigid_.clear(hv);
-  if (!tube_) return v - collocation_.solve(hv);
-  return v - collocation_.solve(hv + tube_->frozen_response(load, v));
+  if (tube_) hv += tube_->frozen_response(load, inside);
+  return v - without_flux(collocation_.solve(hv));
 }
 
 /// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
@@ -128,7 +160,24 @@ Net Capsule::fluid_velocity_change(const Net& delta) {
 /// Material motion: (B - shift (B J + E)) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6).
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
-  const Eigen::Index n = r.rows();
+  return stiff_system(shift, interface_ ? r : frozen_viscous(r), tolerance, secants);
+}
+
+Net Capsule::correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
+  if (!defect_without_system()) return Dynamics::correction(shift, defect, tolerance, secants);
+  const auto clock = phases_.time("implicit solve");
+  return stiff_system(shift, shift * defect, tolerance, secants);
+}
+
+Net Capsule::missed_of(const Net& change, const Net& delta, double shift) {
+  if (!defect_without_system()) return Dynamics::missed_of(change, delta, shift);
+  const auto clock = phases_.time("implicit solve");
+  return change + frozen_viscous(delta) / shift - energy_part(delta);
+}
+
+/// The two systems of `solve`, of a right-hand side B r, or r.
+Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
+  const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
     Eigen::Map<Net> result(out, n, 3);
@@ -138,7 +187,7 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
       result = frozen_viscous(delta) - shift * (energy_part(delta) + secants(delta));
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
-  const Net rhs = interface_ ? r : frozen_viscous(r);
+  latest_shift_ = shift;
   const LinearSystem system{{{"displacement", 3 * n}}, apply, {}};
   const SolveReport report = step_solver_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;

@@ -40,6 +40,18 @@ class Dynamics {
   /// B (dv - J delta) where last linearised: what the Jacobian misses of the velocity's change dv that delta made; for Secants.
   virtual Net missed(const Net& dv, const Net& delta) = 0;
 
+  /// What u lacks of being the velocity at x: v - u, up to a factor B that goes with x and that `correction` and `missed_of` know. Where velocities
+  /// are solutions of systems B v = w it is w - B u, one sum over the surface and no system.
+  virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
+
+  /// `solve` for r = shift (v - u), given the defect of u.
+  virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
+    return solve(shift, shift * defect, tolerance, secants);
+  }
+
+  /// `missed`, from the change of the defect of (x - known)/shift, whatever is known, that delta made.
+  virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
+
   /// J delta at x, where the velocity is v, delta of the norm of a shape: with the frozen operators (4.3) where there are any, else by a
   /// difference of velocities, which costs an evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }

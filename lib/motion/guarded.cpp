@@ -70,6 +70,21 @@ Net GuardedDynamics::missed(const Net& dv, const Net& delta) {
   return tried(dv, [&] { return motion_.missed(dv, delta); });
 }
 
+Net GuardedDynamics::defect(const Net& x, const Net& u) {
+  if (!coupling::of_first(x.allFinite())) return not_a_number(x);
+  Net d;
+  return done(told_(), [&] { return (d = motion_.defect(x, u)).allFinite(); }) ? d : not_a_number(x);
+}
+
+Net GuardedDynamics::correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) {
+  if (!linearised_) return not_a_number(defect);
+  return tried(defect, [&] { return motion_.correction(shift, defect, tolerance, secants); });
+}
+
+Net GuardedDynamics::missed_of(const Net& change, const Net& delta, double shift) {
+  return tried(change, [&] { return motion_.missed_of(change, delta, shift); });
+}
+
 Net GuardedDynamics::derivative(const Net& x, const Net& v, const Net& delta) {
   return tried(delta, [&] { return motion_.derivative(x, v, delta); });
 }

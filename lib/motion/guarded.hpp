@@ -27,6 +27,9 @@ class GuardedDynamics : public coupling::Dynamics {
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) override;
   Net missed(const Net& dv, const Net& delta) override;
+  Net defect(const Net& x, const Net& u) override;
+  Net correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) override;
+  Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
   std::vector<Net> relabellings(const Net& x) override { return motion_.relabellings(x); }

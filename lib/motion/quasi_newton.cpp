@@ -18,16 +18,16 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
   double previous = 0;
   Net before, delta;
   for (int k = 0; k < options.newton_iterations; ++k) {
-    const Net v = dynamics.velocity(stage.y), residual = rhs + shift * v - stage.y;
+    const Net defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
     ++stage.iterations;
-    if (!residual.allFinite()) return;
+    if (!defect.allFinite()) return;
     if (k > 0 && options.secants > 0) {
-      const Net missed = dynamics.missed(v - before, delta);
+      const Net missed = dynamics.missed_of(defect - before, delta, shift);
       if (!missed.allFinite()) return;
       secants.add(delta, missed, options.secants);
     }
     dynamics.linearise(stage.y);
-    delta = dynamics.solve(shift, residual, options.linear_tolerance, secants);
+    delta = dynamics.correction(shift, defect, options.linear_tolerance, secants);
     const double size = dynamics.norm(delta);
     stage.y += delta;
     if (!std::isfinite(size)) return;
@@ -41,7 +41,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
       return;
     }
     previous = size;
-    before = v;
+    before = defect;
   }
 }
 

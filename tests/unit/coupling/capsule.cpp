@@ -93,6 +93,27 @@ TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
   EXPECT_GT((v - v0).norm(), 0);
 }
 
+/// The defect of u is B (v - u), without v; a short implicit step corrects by what is missing.
+TEST(Capsule, DefectIsWhatAVelocityIsLacking) {
+  for (const double ratio : {1.0, 5.0})
+    for (const double viscosity : {0.0, 0.7}) {
+      Fixture f;
+      f.parameters.particles.front().viscosity_ratio = ratio;
+      f.parameters.particles.front().material.viscosity = {viscosity, 2 * viscosity};
+      f.parameters.solvers.tolerance = 1e-12;
+      Capsule capsule = f.capsule();
+      const Net x = f.deformed(), v = capsule.velocity(x);
+      EXPECT_LT(capsule.defect(x, v).norm(), 1e-10 * v.norm());
+      Net w = 0.3 * f.sphere.rowwise().reverse();
+      w -= dot(capsule.geometry().volume_gradient(x), w) / dot(capsule.geometry().volume_gradient(x), v + f.sphere) * (v + f.sphere);
+      capsule.freeze(x);
+      capsule.linearise(x);
+      const double shift = 1e-7;
+      const Net found = capsule.correction(shift, capsule.defect(x, v - w), 1e-8, {}) / shift;
+      EXPECT_LT((found - w).norm(), 0.05 * w.norm()) << ratio << " " << viscosity;  // the frozen operator, on 56 points
+    }
+}
+
 TEST(Capsule, VelocityFollowsAFlowThatChangesInTime) {
   Fixture f;
   f.flow.history.emplace();
