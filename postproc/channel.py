@@ -24,7 +24,7 @@ def main():
     parser.add_argument("results", help="directory of a run's results, or a deck, which is run when it has none")
     parser.add_argument("-o", "--output", default="channel.png", metavar="FILE", help="the picture (default: %(default)s)")
     parser.add_argument("--shapes", type=int, default=7, metavar="N", help="moments of the particle, evenly along its way (default: %(default)s)")
-    parser.add_argument("--across", type=int, choices=(2, 3), default=2, help="the section x2 = 0 or x3 = 0 is drawn (default: x2 = 0)")
+    parser.add_argument("--across", type=int, choices=(2, 3), default=2, help="the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0 (default: x2 = 0)")
     arguments = parser.parse_args()
     run = tanktread.run(arguments.results)
     style.save(picture(run, channel(run.directory), arguments.shapes, arguments.across), arguments.output)
@@ -45,6 +45,14 @@ def centroid(run):
     return numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
 
 
+def way_along(run, c):
+    """Of the centroid, along the centre line: to the nearest of its places, and on along it."""
+    places = centroid(run)
+    nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
+    along = numpy.gradient(c["centre"], c["s"], axis=0)[nearest]
+    return c["s"][nearest] + numpy.sum((places - c["centre"][nearest]) * along, axis=1)
+
+
 def picture(run, c, n, across):
     figure, axes = plt.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]], figsize=(10.5, 9.5), height_ratios=[1.1, 1, 1])
     cut_open(axes["cut"], run, c, n, across - 1)
@@ -54,10 +62,12 @@ def picture(run, c, n, across):
 
 
 def cut_open(axis, run, c, n, across):
+    bent = numpy.ptp(c["centre"][:, 1]) > 0
+    across = 2 if bent else across  # in its plane
     lines = c["wall"][2:] if across == 1 else c["wall"][:2]
     for line in lines:
         axis.plot(line[:, 0], line[:, 2 if across == 1 else 1], color=style.INK, linewidth=1.6)
-    way = centroid(run)[:, 0]
+    way = way_along(run, c)
     shots = {}
     for x in numpy.linspace(way[0], way[-1], n):
         shot = run.snapshot_at(numpy.interp(x, way, run.series["time"]))
@@ -65,23 +75,28 @@ def cut_open(axis, run, c, n, across):
     for shot, colour in zip(shots.values(), plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))):
         middle = (shot.points.min(0) + shot.points.max(0)) / 2
         axis.add_collection(LineCollection(shape.section(shot, middle[across], across), colors=[colour], linewidths=1.6, capstyle="round"))
-        axis.text(middle[0], lines[:, :, 1:].min() * 0.97, f"{shot.time:.3g}", color=colour, ha="center", va="bottom", fontsize=8)
+        at = middle[:2] if bent else (middle[0], lines[:, :, 1:].min() * 0.97)
+        axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.set_xlim(max(c["centre"][0, 0], way.min() - 1.5), min(c["centre"][-1, 0], way.max() + 1.5))
+    shown = lines[:, (c["s"] > way.min() - 1.5) & (c["s"] < way.max() + 1.5)].reshape(-1, 3)
+    axis.set_xlim(shown[:, 0].min(), shown[:, 0].max())
+    if bent:
+        axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
     axis.set_xlabel("x₁")
     axis.set_ylabel("x₃" if across == 1 else "x₂")
-    axis.set_title(f"{run.name}: cut open at x{across + 1} = centroid; times below")
+    axis.set_title(f"{run.name}: cut open at x{across + 1} = centroid; times {'inside' if bent else 'below'}")
 
 
 def along_the_way(axes, run, c):
-    s, way = run.series, centroid(run)[:, 0]
+    s, way = run.series, way_along(run, c)
+    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
     for k, name in enumerate(("x₁", "x₂", "x₃"), 1):
         axes["extents"].plot(way, s[f"length_x{k}"], color=style.RUNS[k - 1], label=f"along {name}", linestyle="--" if k == 3 else "-")
     axes["extents"].legend()
     axes["extents"].set_title("extents of the particle")
-    axes["velocity"].plot(way, s["velocity_x1"], color=style.RUNS[0], label="of the centroid")
-    axes["velocity"].plot(c["centre"][:, 0], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--", label="on the centre line, empty channel")
+    axes["velocity"].plot(way, speed, color=style.RUNS[0], label="of the centroid")
+    axes["velocity"].plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--", label="on the centre line, empty channel")
     axes["velocity"].set_xlim(way.min(), way.max())
     axes["velocity"].legend()
     axes["velocity"].set_title("velocity")
@@ -91,7 +106,7 @@ def along_the_way(axes, run, c):
     axes["pressure"].legend()
     axes["pressure"].set_title(f"pressure drop that the particle adds (empty channel: {c['pressure_drop']:.5g})")
     for name in ("extents", "velocity", "pressure"):
-        axes[name].set_xlabel("x₁ of the centroid")
+        axes[name].set_xlabel("way of the centroid along the centre line")
 
 
 def wall(axis, c):

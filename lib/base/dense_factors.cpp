@@ -20,4 +20,13 @@ Eigen::MatrixXd DenseFactors::solve(const Eigen::Ref<const Eigen::MatrixXd>& b) 
   return x;
 }
 
+Eigen::VectorXd DenseFactors::solve_transposed(const Eigen::VectorXd& b) const {
+  assert(b.rows() == factors_.rows());
+  Eigen::VectorXd y = b, x(b.rows());
+  factors_.transpose().triangularView<Eigen::Lower>().solveInPlace(y);
+  factors_.transpose().triangularView<Eigen::UnitUpper>().solveInPlace(y);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) x[i] = y[row_of_[static_cast<std::size_t>(i)]];
+  return x;
+}
+
 }  // namespace tanktread

@@ -15,6 +15,7 @@ class DenseFactors {
 
   /// A^-1 b; b and A^-1 b may have several columns.
   Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& b) const;
+  Eigen::VectorXd solve_transposed(const Eigen::VectorXd& b) const;  ///< A^-T b
   Eigen::MatrixXd inverse() const { return solve(Eigen::MatrixXd::Identity(factors_.rows(), factors_.rows())); }
 
  private:

@@ -10,7 +10,6 @@ namespace tanktread::coupling {
 namespace {
 constexpr Eigen::Index few = 64;    // points that each rank does by itself
 constexpr double sharpness = 1e-2;  // tolerance over that of other layers
-constexpr double mean_of_wave = 0.516;  // harmonics k^-5, as of the single layer of what interpolation by cubic splines leaves
 }
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature)
@@ -50,49 +49,21 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
 
 Net ChannelFlow::ends(const Net& x) const { return ends_[0].velocities(x) + ends_[1].velocities(x); }
 
-/// On the wall the velocity vanishes at the collocation points and has one sign between them, so that fluid leaks through. It is nearly a wave, whose
-/// mean is `mean_of_wave` times what it is in the middle of an element: taken from that of the collocation points, it vanishes in the mean.
-Net ChannelFlow::tightened(const Net& traction, double pressure_drop, bool with_ends) const {
-  const std::shared_ptr<Wall> wall = this->wall();
-  const spline::Space& space = surface_->space;
-  stokes::Sites centres;
-  std::vector<int> row(space.elements.size(), -1), all;  // of elements that fundamental points are on
-  for (const int i : wall->symmetry().fundamental())
-    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)])
-      if (int& own = row[static_cast<std::size_t>(site.element)]; own < 0) {
-        all.push_back(own = static_cast<int>(centres.size()));
-        centres.push_back({{site.element, 0.5, 0.5}});
-      }
-  Net x(static_cast<Eigen::Index>(centres.size()), 3), v = x, mean = Net::Zero(space.n_points, 3);
-  for (const int k : all) x.row(k) = surface::value(space, surface_->net, centres[static_cast<std::size_t>(k)].front()).transpose();
-  stokes::Layer on_wall(stokes::Layer::Kernel::single_layer, space, centres, sharper());
-  on_wall.place(surface_->net);
-  on_wall.apply(traction, all, v);
-  v = (pressure_drop * wall->inlet().integral(x) - v) / viscosity();
-  if (with_ends) v += ends(x);
-  for (const int i : wall->symmetry().fundamental()) {
-    const std::vector<spline::Site>& around = space.collocation[static_cast<std::size_t>(i)];
-    const double share = mean_of_wave / static_cast<double>(around.size());
-    for (const spline::Site& site : around) mean.row(i) += share * v.row(row[static_cast<std::size_t>(site.element)]);
-  }
-  return traction + viscosity() * wall->solve(mean);
-}
-
 const ChannelFlow::Solved& ChannelFlow::solved() const {
   if (solved_) return *solved_;
   const std::shared_ptr<Wall> wall = this->wall();
   Solved solved;
-  const std::vector<int>& rows = wall->symmetry().fundamental();
-  Net at_rows(static_cast<Eigen::Index>(rows.size()), 3), of_ends = Net::Zero(wall->sites().rows(), 3);
-  for (std::size_t k = 0; k < rows.size(); ++k) at_rows.row(static_cast<Eigen::Index>(k)) = wall->sites().row(rows[k]);
-  const Net found = ends(at_rows);
-  for (std::size_t k = 0; k < rows.size(); ++k) of_ends.row(rows[k]) = found.row(static_cast<Eigen::Index>(k));
-  const Net without = tightened(viscosity() * wall->solve(of_ends), 0, true), with = tightened(wall->pumped(), 1, false);
+  const std::vector<int>& own = wall->own_targets();
+  Net at(static_cast<Eigen::Index>(own.size()), 3), of_ends(wall->targets().rows(), 3);
+  for (std::size_t k = 0; k < own.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = wall->targets().row(own[k]);
+  const Net found = ends(at);
+  for (std::size_t k = 0; k < own.size(); ++k) of_ends.row(own[k]) = found.row(static_cast<Eigen::Index>(k));
+  const Net without = viscosity() * wall->solve(wall->collocated(of_ends)), &with = wall->pumped();
   const double middle = (channel_->start() + channel_->end()) / 2;
-  const stokes::DuctEnd::Points at = section(middle, 1).points();
+  const stokes::DuctEnd::Points points = section(middle, 1).points();
   const Vec3 along = channel_->section(middle).along;
-  const auto rate = [&](const Net& v) { return at.area.dot(v * along); };
-  const double given = rate(velocities(at.x, without, 0, true)), pumped = rate(velocities(at.x, with, 1, false));
+  const auto rate = [&](const Net& v) { return points.area.dot(v * along); };
+  const double given = rate(velocities(points.x, without, 0, true)), pumped = rate(velocities(points.x, with, 1, false));
   solved.pressure_drop = (flow_rate() - given) / pumped;
   solved.traction = without + solved.pressure_drop * with;
   solved_ = std::make_shared<const Solved>(std::move(solved));

@@ -54,7 +54,6 @@ class ChannelFlow : public stokes::DuctFlow {
   };
   const Solved& solved() const;
   Net ends(const Net& x) const;
-  Net tightened(const Net& traction, double pressure_drop, bool with_ends) const;
   quadrature::Options sharper() const;
   Net velocities(const Net& x, const Net& traction, double pressure_drop, bool with_ends) const;
   Net at(const Net& x) const;

@@ -57,25 +57,23 @@ double Tube::pressure_of(const Net& f, const Net& v) {
 /// dp with which the flow rate of the disturbance that v makes vanishes; `on_wall`: its velocity there.
 double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   weigh_flow();
-  return -(flow_of_velocity(v) - dot(flow_weights_, solve_wall(on_wall)) / viscosity()) / flow_of_pressure_;
+  return (dot(flow_of_wall_, on_wall) - dot(particle_->flow_of_strength(wall_->inlet()), particle_->strength(v))) / flow_of_pressure_;
 }
 
 Net Tube::load_on_wall(const Net& f) {
-  Net u(wall_->sites().rows(), 3);
-  particle_->single.apply(f, wall_->sites(), wall_->own(), u);
-  particle_->add_copies(particle_->single, f, wall_->sites(), wall_->own(), u);
-  wall_->ranks().replicate(u);
-  return -u / viscosity();
+  Net u(wall_->targets().rows(), 3);
+  particle_->single.apply(f, wall_->targets(), wall_->own_targets(), u);
+  particle_->add_copies(particle_->single, f, wall_->targets(), wall_->own_targets(), u);
+  return wall_->collocated(u) / -viscosity();
 }
 
 Net Tube::velocity_on_wall(const Net& v) {
-  Net u = Net::Zero(wall_->sites().rows(), 3);
-  if (!particle_->dual) return u;
-  const Net strength = particle_->strength(v);
-  particle_->dual->apply(strength, particle_->nearest_values(strength), wall_->sites(), wall_->own(), u, particle_->kept(particle_->dual_on_wall));
-  particle_->add_copies(*particle_->dual, strength, wall_->sites(), wall_->own(), u);
-  wall_->ranks().replicate(u);
-  return u;
+  if (!particle_->dual) return Net::Zero(wall_->sites().rows(), 3);
+  const Net strength = particle_->strength(v), &targets = wall_->targets();
+  Net u(targets.rows(), 3);
+  particle_->dual->apply(strength, particle_->nearest_values(strength), targets, wall_->own_targets(), u, particle_->kept(particle_->dual_on_wall));
+  particle_->add_copies(*particle_->dual, strength, targets, wall_->own_targets(), u);
+  return wall_->collocated(u);
 }
 
 Net Tube::wall_on_particle(const Net& traction) {
@@ -142,6 +140,9 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
   particle_->freeze(*wall_);
+  if (!fixed() || !particle_->dual) return;
+  weigh_flow();
+  particle_->freeze_pressure_of_velocity(*wall_, flow_of_wall_, flow_of_pressure_);
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {

@@ -141,7 +141,6 @@ class Tube {
   double viscosity() const;
   double cap_velocity(const Net& f, const Net& v, const Response& response);
   double slowed(double pressure_drop) const;
-  double flow_of_velocity(const Net& v) const;
   double pressure_of_velocity(const Net& v, const Net& on_wall);
   void weigh_flow();
 
@@ -149,7 +148,8 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // of the checks, made when first asked for, as is
+  Net flow_weights_, force_weights_;  // of the wall's traction, made when first asked for, as are all of these
+  Net flow_of_wall_;                  // weights of a velocity on the wall: the flow rate through the inlet of the traction that takes it away
   double own_flow_ = 0, flow_of_pressure_ = 0;  // what the inlet's own pressure drives through it; with what the wall answers
 };
 

@@ -49,23 +49,9 @@ void Tube::weigh_flow() {
   if (flow_weights_.size() > 0) return;
   flow_weights_ = wall_->flow_weights();
   force_weights_ = wall_->force_weights();
+  flow_of_wall_ = wall_->solve_transposed(flow_weights_);
   own_flow_ = wall_->inlet().own_flow();
   flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
-}
-
-/// Through the inlet, by the double layer alone.
-double Tube::flow_of_velocity(const Net& v) const {
-  Particle& particle = *particle_;
-  if (v.size() == 0 || !particle.dual) return 0;
-  double flow = 0;
-  std::vector<double> value[3];
-  particle.dual->values(particle.strength(v), value);
-  const auto &node = particle.dual->nodes(), &normal = particle.dual->normals();
-  for (const double shift : particle.all_shifts())
-    for (std::size_t k = 0; k < value[0].size(); ++k)
-      flow += wall_->inlet().double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(value[0][k], value[1][k], value[2][k]),
-                                               Vec3(normal[0][k], normal[1][k], normal[2][k]));
-  return flow;
 }
 
 /// The flow rate through the inlet is the transpose of c: of a force f at y it is f.c(y)/mu. So no point of the cap is needed.
@@ -89,7 +75,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
         force -= strength[0];
       }
   }
-  flow += flow_of_velocity(v);
+  if (v.size() > 0 && particle.dual) flow += dot(particle.flow_of_strength(inlet), particle.strength(v));
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
 
   Checks checks;

@@ -40,12 +40,13 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
   shape = x;
   shape.col(0).array() -= centroid;
   sites = collocation * shape;
+  flow_of_strength_.resize(0, 3);
   inlet = wall.inlet().integral(sites) / parameters.viscosity;
   single.place(shape, parameters.measure);
   if (dual) {
     dual->place(shape);
-    find_nearest(wall.sites());
-    dual_on_wall = dual->near(wall.sites(), wall.own());
+    find_nearest(wall.targets());
+    dual_on_wall = dual->near(wall.targets(), wall.own_targets());
     wall_on_sites = wall.layer().near(sites, own);
   }
   weigh_pressure(flow, !wall.surface().channel);
@@ -60,6 +61,21 @@ void Tube::Particle::add_copies(Layer& layer, const Net& density, const Net& at,
     layer.apply(density, seen, rows, part);
     for (const int i : rows) u.row(i) += part.row(i);
   }
+}
+
+const Net& Tube::Particle::flow_of_strength(const stokes::Cap& inlet) {
+  if (flow_of_strength_.size() > 0) return flow_of_strength_;
+  const auto &node = dual->nodes(), &normal = dual->normals();
+  std::vector<double> flow[3];
+  for (auto& component : flow) component.assign(node[0].size(), 0.);
+  for (const double shift : all_shifts())
+    for (std::size_t k = 0; k < node[0].size(); ++k) {
+      const Vec3 one = inlet.double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
+      for (int c = 0; c < 3; ++c) flow[c][k] += one[c];
+    }
+  flow_of_strength_.resize(sites.rows(), 3);
+  for (int c = 0; c < 3; ++c) flow_of_strength_.col(c) = dual->moments(flow[c]);
+  return flow_of_strength_;
 }
 
 /// The weights of (2.7) over Q, with v_inf and, in a straight tube, its gradient interpolated at the collocation points: v_1, v_1,2 and
@@ -110,11 +126,11 @@ Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
   return all;
 }
 
-void Tube::Particle::find_nearest(const Net& wall_sites) {
-  nearest.resize(static_cast<std::size_t>(wall_sites.rows()));
+void Tube::Particle::find_nearest(const Net& targets) {
+  nearest.resize(static_cast<std::size_t>(targets.rows()));
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     Eigen::Index at = 0;
-    (sites.rowwise() - wall_sites.row(static_cast<Eigen::Index>(i))).rowwise().squaredNorm().minCoeff(&at);
+    (sites.rowwise() - targets.row(static_cast<Eigen::Index>(i))).rowwise().squaredNorm().minCoeff(&at);
     nearest[i] = static_cast<int>(at);
   }
 }
@@ -150,6 +166,23 @@ void Tube::Particle::freeze(Wall& wall) {
   frozen.wall.assemble(own, wall.surface().space.n_points,
                        [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
   frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
+}
+
+void Tube::Particle::freeze_pressure_of_velocity(const Wall& wall, const Net& flow_of_wall, double flow_of_pressure) {
+  constexpr std::size_t at_a_time = 64;
+  const Net weights = wall.spread(flow_of_wall);
+  const std::span<const int> targets = wall.own_targets();
+  Net sum = Net::Zero(space.n_points, 3);
+  Eigen::Map<Eigen::RowVectorXd> flat(sum.data(), sum.size());
+  stokes::Rows<float> rows;
+  for (std::size_t first = 0; first < targets.size(); first += at_a_time) {
+    const auto some = targets.subspan(first, std::min(at_a_time, targets.size() - first));
+    dual->assemble(wall.targets(), some, rows);
+    for (std::size_t k = 0; k < some.size(); ++k)
+      for (int c = 0; c < 3; ++c) flat += weights(some[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
+  }
+  ranks.add({sum.data(), static_cast<std::size_t>(sum.size())});
+  frozen.pressure_of_velocity = contrasts.asDiagonal() * (sum - flow_of_strength(wall.inlet())) / flow_of_pressure;
 }
 
 stokes::Evaluations Tube::Particle::evaluations() const {

@@ -26,9 +26,12 @@ struct Tube::Particle {
   void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
   void freeze(Wall& wall);
 
+  /// The weights of v in dp of a channel, Tube::pressure_of_velocity, which frozen rows of few bits are too coarse for.
+  void freeze_pressure_of_velocity(const Wall& wall, const Net& flow_of_wall, double flow_of_pressure);
+
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
 
-  /// v at the collocation point of the particle that is nearest to each one of the wall.
+  /// v at the collocation point of the particle that is nearest to each target on the wall.
   Net nearest_values(const Net& v) const;
 
   /// Along x1, of all copies, the particle itself first.
@@ -43,6 +46,9 @@ struct Tube::Particle {
 
   /// Adds to rows of u what a layer of this density does from the other copies of a train.
   void add_copies(stokes::Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u);
+
+  /// Weights of (1 - lambda) v: the flow rate through the inlet of its double layer, copies included. Kept for the present shape.
+  const Net& flow_of_strength(const stokes::Cap& inlet);
 
   stokes::Evaluations evaluations() const;
 
@@ -76,7 +82,9 @@ struct Tube::Particle {
  private:
   void weigh_pressure(const stokes::DuctFlow& flow, bool straight);
   Net ambient_of(const stokes::DuctFlow& flow) const;
-  void find_nearest(const Net& wall_sites);
+  void find_nearest(const Net& targets);
+
+  Net flow_of_strength_;
 };
 
 }  // namespace tanktread::coupling

@@ -10,6 +10,9 @@ namespace tanktread::coupling {
 
 namespace {
 
+constexpr double mean_of_wave = 0.516;  // harmonics k^-5, as of the single layer of what interpolation by cubic splines leaves
+constexpr std::size_t middles_at_a_time = 64;
+
 /// The wall's own matrix is made once, so it can be sharper than what changes with the particle.
 quadrature::Options sharper(quadrature::Options options) {
   options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
@@ -67,16 +70,83 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
     ranks_.own(own_, n);
   if (phases) ranks_.measure(*phases);
   layer_.place(wall.net);
-  if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
-
-  stokes::Layer own_layer(stokes::Layer::Kernel::single_layer, surface_.space, surface_.space.collocation, sharper(quadrature));
-  own_layer.place(wall.net);
-  own_layer.assemble(own_, rows_);
-  assembly_ = own_layer.evaluations();
+  targets_ = sites_, own_targets_ = own_;
+  if (wall.channel) {
+    boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
+    add_middles();
+  }
+  assemble(sharper(quadrature));
   factors_ = DenseFactors(symmetry_.order() > 1 ? folded() : everybodys(rows_, own_, n, phases));
-
-  inlet_column_ = inlet_.integral(sites_);
+  inlet_column_ = collocated(inlet_.integral(targets_));
   pumped_ = solve(inlet_column_);
+}
+
+/// To the targets.
+void Wall::add_middles() {
+  const spline::Space& space = surface_.space;
+  const auto n = static_cast<int>(space.elements.size());
+  targets_.conservativeResize(space.n_points + n, 3);
+  for (int e = 0; e < n; ++e) targets_.row(space.n_points + e) = surface::value(space, surface_.net, {e, 0.5, 0.5}).transpose();
+  std::vector<bool> needed(static_cast<std::size_t>(n));
+  for (const int i : own_)
+    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)]) needed[static_cast<std::size_t>(site.element)] = true;
+  for (int e = 0; e < n; ++e)
+    if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(space.n_points + e);
+}
+
+/// Of the middle of each element around a collocation point, in the mean around that: what is left of a velocity is nearly a wave, which vanishes at
+/// these points and whose mean is `mean_of_wave` times what it is in the middles.
+double Wall::share_of_middle(int point) const {
+  return mean_of_wave / static_cast<double>(surface_.space.collocation[static_cast<std::size_t>(point)].size());
+}
+
+/// Rows of this rank; those of the middles, a few at a time, are added to those of the collocation points around.
+void Wall::assemble(const quadrature::Options& quadrature) {
+  const spline::Space& space = surface_.space;
+  stokes::Sites sites = space.collocation;
+  if (targets_.rows() > sites_.rows())
+    for (std::size_t e = 0; e < space.elements.size(); ++e) sites.push_back({{static_cast<int>(e), 0.5, 0.5}});
+  stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
+  layer.place(surface_.net);
+  layer.assemble(own_, rows_);
+  const std::span<const int> middles = std::span(own_targets_).subspan(own_.size());
+  if (!middles.empty()) rows_ *= 1 - mean_of_wave;
+  std::vector<std::vector<Eigen::Index>> around(space.elements.size());  // rows of this rank, by the elements that they take the middles of
+  for (std::size_t k = 0; k < own_.size() && !middles.empty(); ++k)
+    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(own_[k])])
+      around[static_cast<std::size_t>(site.element)].push_back(static_cast<Eigen::Index>(k));
+  stokes::Rows<double> part;
+  for (std::size_t first = 0; first < middles.size(); first += middles_at_a_time) {
+    const auto some = middles.subspan(first, std::min(middles_at_a_time, middles.size() - first));
+    layer.assemble(some, part);
+    for (std::size_t j = 0; j < some.size(); ++j)
+      for (const Eigen::Index k : around[static_cast<std::size_t>(some[j] - space.n_points)])
+        rows_.middleRows<3>(3 * k) += share_of_middle(own_[static_cast<std::size_t>(k)]) * part.middleRows<3>(3 * static_cast<Eigen::Index>(j));
+  }
+  assembly_ = layer.evaluations();
+}
+
+Net Wall::collocated(const Net& u) const {
+  Net all = u.topRows(sites_.rows());
+  if (targets_.rows() > sites_.rows())
+    for (const int i : own_) {
+      all.row(i) *= 1 - mean_of_wave;
+      for (const spline::Site& site : surface_.space.collocation[static_cast<std::size_t>(i)])
+        all.row(i) += share_of_middle(i) * u.row(surface_.space.n_points + site.element);
+    }
+  ranks_.replicate(all);
+  return all;
+}
+
+Net Wall::spread(const Net& weights) const {
+  Net all = Net::Zero(targets_.rows(), 3);
+  const bool middles = targets_.rows() > sites_.rows();
+  for (const int i : own_) {
+    all.row(i) = (middles ? 1 - mean_of_wave : 1) * weights.row(i);
+    for (const spline::Site& site : surface_.space.collocation[static_cast<std::size_t>(i)])
+      if (middles) all.row(surface_.space.n_points + site.element) += share_of_middle(i) * weights.row(i);
+  }
+  return all;
 }
 
 /// The matrix between the components of fundamental points that are not zero by the symmetry (4.12).
@@ -112,22 +182,42 @@ Net Wall::apply(const Net& f) const {
 
 Net Wall::solve(const Net& rhs) const {
   if (symmetry_.order() > 1) {
-    const Net& signs = symmetry_.signs();
-    std::vector<double> right;
-    for (const int a : symmetry_.fundamental())
-      for (int c = 0; c < 3; ++c)
-        if (signs(a, c) != 0) right.push_back(rhs(a, c));
-    const Eigen::VectorXd found = factors_.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), static_cast<Eigen::Index>(right.size())));
-    Net f = Net::Zero(rhs.rows(), 3);
-    Eigen::Index n = 0;
-    for (const int a : symmetry_.fundamental())
-      for (int c = 0; c < 3; ++c)
-        if (signs(a, c) != 0) f(a, c) = found[n++];
+    Net f = fundamental_net(factors_.solve(fundamental(rhs)));
     symmetry_.complete(f);
     return f;
   }
   const Eigen::VectorXd f = factors_.solve(flat(rhs));
   return Eigen::Map<const Net>(f.data(), rhs.rows(), 3);
+}
+
+Net Wall::solve_transposed(const Net& weights) const {
+  if (symmetry_.order() > 1) {
+    Net folded = weights;
+    for (Eigen::Index p = 0; p < weights.rows(); ++p)
+      if (const int a = symmetry_.source()[static_cast<std::size_t>(p)]; a != p) folded.row(a) += symmetry_.signs().row(p).cwiseProduct(weights.row(p));
+    return fundamental_net(factors_.solve_transposed(fundamental(folded)));
+  }
+  const Eigen::VectorXd a = factors_.solve_transposed(flat(weights));
+  return Eigen::Map<const Net>(a.data(), weights.rows(), 3);
+}
+
+/// Components of fundamental points that are not zero by the symmetry, one after the other.
+Eigen::VectorXd Wall::fundamental(const Net& net) const {
+  std::vector<double> numbers;
+  for (const int a : symmetry_.fundamental())
+    for (int c = 0; c < 3; ++c)
+      if (symmetry_.signs()(a, c) != 0) numbers.push_back(net(a, c));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+/// The same back, images zero.
+Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
+  Net net = Net::Zero(sites_.rows(), 3);
+  Eigen::Index n = 0;
+  for (const int a : symmetry_.fundamental())
+    for (int c = 0; c < 3; ++c)
+      if (symmetry_.signs()(a, c) != 0) net(a, c) = numbers[n++];
+  return net;
 }
 
 /// Along the wall with the points crowded towards the ends of each element, where the inlet's integral is steep at the rim: s = 3 q^2 - 2 q^3.

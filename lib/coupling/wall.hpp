@@ -21,6 +21,9 @@ namespace tanktread::coupling {
 /// The rows are shared out, the factors are on every rank: 72 bytes a pair of control points each.
 ///
 /// With a symmetry, which all that is asked for has, only rows of fundamental points are assembled, and the others' columns added to theirs (4.12).
+///
+/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through. On the wall of a channel, where
+/// the leak would be a part of the flow rate, what vanishes is its mean around each of them, (2.39).
 class Wall {
  public:
   /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
@@ -31,14 +34,28 @@ class Wall {
   const surface::Symmetry& symmetry() const { return symmetry_; }
   const std::vector<int>& own() const { return own_; }  ///< rows of this rank, among the fundamental ones
   const Net& sites() const { return sites_; }           ///< collocation points
+
+  /// Where velocities are taken that vanish on the wall: its collocation points; of a channel then the middles of its elements.
+  const Net& targets() const { return targets_; }
+  const std::vector<int>& own_targets() const { return own_targets_; }  ///< those that rows of this rank need
+
+  /// Right-hand side for `solve`, a row a collocation point, from what u is at the targets; rows that no rank needs are not read. Collective.
+  Net collocated(const Net& u) const;
+
+  /// The transpose of that, of rows of this rank: what has with u at own_targets the product that `weights` has with collocated(u).
+  Net spread(const Net& weights) const;
+
   const Ranks& ranks() const { return ranks_; }  ///< of these rows; the others are their images
   stokes::Layer& layer() { return layer_; }  ///< of the wall, at points off it
   const stokes::Cap& inlet() const { return inlet_; }
 
-  Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG
+  Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, its means as of `collocated`
   Net solve(const Net& rhs) const;  ///< A^-1 rhs
 
-  const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet at the collocation points
+  /// What has with every rhs the product that `weights` has with solve(rhs).
+  Net solve_transposed(const Net& weights) const;
+
+  const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet, collocated
   const Net& pumped() const { return pumped_; }              ///< A^-1 c: the traction of the open, empty tube with a unit of pressure drop
 
   /// int N_A c dG and int N_A e1 dG for every A: what a traction does to the flow rate through the inlet, and to the axial force.
@@ -53,16 +70,21 @@ class Wall {
  private:
   Net weights(const std::function<Vec3(const Vec3&)>& field) const;
   Eigen::MatrixXd folded() const;
+  void add_middles();
+  void assemble(const quadrature::Options& quadrature);
+  double share_of_middle(int point) const;
+  Eigen::VectorXd fundamental(const Net& net) const;
+  Net fundamental_net(const Eigen::VectorXd& numbers) const;
 
   surface::TubeWall surface_;
   surface::Symmetry symmetry_;
   std::optional<surface::Patches> patches_;
   std::optional<surface::ElementBoxes> boxes_;
-  std::vector<int> own_;
+  std::vector<int> own_, own_targets_;
   Ranks ranks_;
   stokes::Layer layer_;
   stokes::Cap inlet_;
-  Net sites_, inlet_column_, pumped_;
+  Net sites_, targets_, inlet_column_, pumped_;
   stokes::Rows<double> rows_;
   DenseFactors factors_;  // of A
   stokes::Evaluations assembly_;

@@ -124,10 +124,10 @@ Net Cap::integral(const Net& x) const {
   return c;
 }
 
-/// 6 v_j n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS, s = x - y, which by the divergence theorem in the plane is
+/// 6 n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS, s = x - y, which by the divergence theorem in the plane is
 ///   M_1a = -h^2/3 oint nu_a / s^3,   M_ab = -h/3 oint rho_a nu_b / s^3 + delta_ab W/3,   M_11 = W - M_22 - M_33,
 /// W the solid angle of the cap, sign(h) oint rho.nu / (s (s + |h|)).
-double Cap::double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const {
+Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   const double h = place_ - y[0];
   const Nodes& nodes = nodes_for(std::abs(h));
   Mat3 m = Mat3::Zero();
@@ -142,7 +142,7 @@ double Cap::double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const
   m.bottomRightCorner<2, 2>() += angle / 3 * Eigen::Matrix2d::Identity();
   m.block<2, 1>(1, 0) = m.block<1, 2>(0, 1).transpose();
   m(0, 0) = angle - m(1, 1) - m(2, 2);
-  return 6 * over_8_pi * v.dot(m * n);
+  return 6 * over_8_pi * (m * n);
 }
 
 /// int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'

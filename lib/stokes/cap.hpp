@@ -32,9 +32,9 @@ class Cap {
   /// c at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
-  /// Flow rate along x1 through the cap of the double layer of one point: int (1 / 8 pi) v_j T_ijk(y, x) n_k dS(x) with T's index i along x1. Of
-  /// points off the plane of the cap.
-  double double_layer_flow(const Vec3& y, const Vec3& v, const Vec3& n) const;
+  /// Flow rate along x1 through the cap of the double layer of one point, for each component j of its strength: int (1 / 8 pi) T_ijk(y, x) n_k dS(x)
+  /// with T's index i along x1. Of points off the plane of the cap.
+  Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 
   /// Flow rate through the cap of c itself: int c_1 dS.
   double own_flow() const;

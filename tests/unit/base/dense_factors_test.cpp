@@ -16,6 +16,7 @@ TEST(DenseFactors, SolveSystemsThatNeedPivots) {
     const DenseFactors factors(a);
     const double rounding = 1e-15 * n * (a.norm() * factors.inverse().norm());
     EXPECT_LT((factors.solve(a * x) - x).norm(), rounding * x.norm()) << n;
+    EXPECT_LT((factors.solve_transposed(a.transpose() * x.col(0)) - x.col(0)).norm(), rounding * x.norm()) << n;
     EXPECT_LT((factors.inverse() * a - Eigen::MatrixXd::Identity(n, n)).norm(), rounding) << n;
   }
 }

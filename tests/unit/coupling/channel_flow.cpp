@@ -1,4 +1,5 @@
-// The flow of an empty channel: a straight one's is that of the duct, and the same fluid passes every section of another.
+// The flow of an empty channel: a straight one's is that of the duct, and the same fluid passes every section of another. What a channel answers to a
+// particle: a straight one, what the tube does.
 
 #include <cmath>
 #include <numbers>
@@ -6,9 +7,16 @@
 #include <gtest/gtest.h>
 
 #include "coupling/channel_flow.hpp"
+#include "coupling/tube.hpp"
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
 
 namespace tanktread::coupling {
 namespace {
+
+using std::numbers::pi;
 
 surface::TubeOptions channel(const std::string& profile, int around) {
   surface::TubeOptions options;
@@ -51,6 +59,57 @@ TEST(ChannelFlow, CostsInASlenderChannelWhatLubricationSays) {
     lubrication += 8 * 16. / n * (std::pow(flow.channel().section(s).factor[0], -4) - 1);
   }
   EXPECT_NEAR(flow.extra_pressure_drop() / lubrication, 1, 1e-2);
+}
+
+/// A sphere of radius 0.5 off the axis of the unit tube, or of a straight channel; a load, and a velocity that keeps its volume.
+struct InStraightChannel {
+  spline::TMesh mesh = spline::cube(3);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  Phases phases;
+  Net x, f, v;
+  std::unique_ptr<Tube> tube, channel;
+
+  InStraightChannel(double ratio, int around) {
+    surface::ParticleShape shape;
+    shape.radius = 0.5, shape.center = Vec3(0.2, 0.1, -0.05);
+    x = surface::initial_shape(space, mesh, shape);
+    f = Net(x.rows(), 3), v = f;
+    for (Eigen::Index i = 0; i < f.rows(); ++i) {
+      f.row(i) << 1 + x(i, 1) * x(i, 1), x(i, 0), std::sin(3 * x(i, 2));
+      v.row(i) << 1 + x(i, 2), x(i, 0) * x(i, 0), -x(i, 1);
+    }
+    const Net flux = surface::Geometry(space).volume_gradient(x);
+    v -= flux.cwiseProduct(v).sum() / flux.squaredNorm() * flux;
+    TubeParameters parameters;
+    parameters.viscosity = 1.7, parameters.viscosity_ratio = ratio;
+    parameters.quadrature.tolerance = 1e-7;
+    surface::TubeOptions options = coupling::channel("straight", around);
+    options.channel->start = -pi + 0.2, options.channel->end = pi + 0.2, options.channel->axial_elements = around;
+    channel = std::make_unique<Tube>(std::make_shared<const ChannelFlow>(options, 1.7, 1.3, parameters.quadrature), space, parameters, phases);
+    options.channel.reset(), options.axial_elements = around;
+    const stokes::DuctFlow flow(options, 1.7, 1.3);
+    tube = std::make_unique<Tube>(surface::tube_wall(flow.outline(), options, 2 * pi), flow, space, parameters, phases);
+    for (Tube* one : {tube.get(), channel.get()}) one->set_reference(x), one->place(x);
+  }
+};
+
+TEST(Channel, AnswersAsTheTubeDoesWhereItIsStraight) {
+  for (const double ratio : {1., 5.}) {
+    InStraightChannel s(ratio, 16);
+    const Tube::Response tube = s.tube->respond(s.f, s.v), channel = s.channel->respond(s.f, s.v);
+    EXPECT_LT((tube.velocity - channel.velocity).norm() / tube.velocity.norm(), 1e-4) << ratio;
+    EXPECT_NEAR(channel.pressure_drop / tube.pressure_drop, 1, 1e-4) << ratio;
+    const Tube::Response alone = s.tube->respond({}, s.v), of_channel = s.channel->respond({}, s.v);
+    EXPECT_NEAR(of_channel.pressure_drop, alone.pressure_drop, 1e-4 * std::abs(tube.pressure_drop)) << ratio;
+  }
+}
+
+TEST(Channel, KeepsItsAnswerFrozen) {
+  InStraightChannel s(5, 12);
+  s.channel->freeze();
+  const Net now = s.channel->respond(s.f, s.v).velocity;
+  s.channel->place(s.x + Eigen::RowVector3d(0.2, 0, 0.1).replicate(s.x.rows(), 1));
+  EXPECT_LT((s.channel->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits an entry
 }
 
 }  // namespace
