@@ -23,10 +23,12 @@ namespace tanktread {
 
 namespace {
 
-/// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque.
+/// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque; then the work that the density
+/// does on the velocity that is left between collocation points.
 Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {
   std::vector<Net> z;
   for (int k = 0; k < 6; ++k) z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), coupling::unit_motion(k), centre)));
+  z.push_back(f);
   return body.residual_work(u, f, z);
 }
 
@@ -75,13 +77,16 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
   s.iterations = resistance.last_iterations();
   s.integral = s.force = -resistance.force(s.density);
   s.torque = -resistance.torque(s.density, centre);
+  double drop_lacking = 0;
   if (scene.reciprocal_forces()) {
     const Eigen::VectorXd lacking = reciprocal_correction(resistance, relative_velocity, s.density, centre);
     s.force -= lacking.head<3>();
-    s.torque -= lacking.tail<3>();
+    s.torque -= lacking.segment<3>(3);
+    const double rate = tube && body.flow.duct() ? tube->flow().flow_rate() * body.flow.amplitude() : 0;  // the duct's flow is the ambient one
+    if (rate != 0) drop_lacking = (lacking[6] - lacking.head<3>().dot(motion.velocity) - lacking.segment<3>(3).dot(motion.angular_velocity)) / rate;
   }
   if (tube) {
-    s.pressure_drop = resistance.pressure_drop(s.density);
+    s.pressure_drop = resistance.pressure_drop(s.density) + drop_lacking;
     s.gap = tube->gap();
     return s;
   }

@@ -139,10 +139,10 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
 
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
-  particle_->freeze(*wall_);
-  if (!fixed() || !particle_->dual) return;
-  weigh_flow();
-  particle_->freeze_pressure_of_velocity(*wall_, flow_of_wall_, flow_of_pressure_);
+  const bool by_flow = fixed() && particle_->dual;
+  if (by_flow) weigh_flow();
+  particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
+  if (by_flow) particle_->frozen.pressure_of_velocity -= particle_->contrasts.asDiagonal() * particle_->flow_of_strength(wall_->inlet()) / flow_of_pressure_;
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {

@@ -1,5 +1,7 @@
 #include "coupling/tube_particle.hpp"
 
+#include <span>
+
 #include "coupling/collocation.hpp"
 #include "surface/partition.hpp"
 
@@ -142,7 +144,7 @@ Net Tube::Particle::nearest_values(const Net& v) const {
   return values;
 }
 
-void Tube::Particle::freeze(Wall& wall) {
+void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
   using Targets = std::span<const int>;
   const auto of_copies = [&](Layer& layer, const Net& at, bool itself) {
     return [&, itself](Targets targets, stokes::Rows<float>& rows) {
@@ -157,8 +159,18 @@ void Tube::Particle::freeze(Wall& wall) {
       }
     };
   };
-  frozen.single.assemble(wall.own(), space.n_points, of_copies(single, wall.sites(), true));
-  if (dual) frozen.dual.assemble(wall.own(), space.n_points, of_copies(*dual, wall.sites(), true));
+  const auto on_wall = [&](Layer& layer) {
+    return [&](Targets targets, stokes::Rows<float>& rows) { wall.collocate<float>(targets, of_copies(layer, wall.targets(), true), rows); };
+  };
+  Net weights = Net::Zero(space.n_points, 3);
+  frozen.single.assemble(wall.own(), space.n_points, on_wall(single));
+  if (dual)
+    frozen.dual.assemble(wall.own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
+      on_wall(*dual)(targets, rows);
+      Eigen::Map<Eigen::RowVectorXd> sum(weights.data(), weights.size());
+      for (std::size_t k = 0; k < targets.size() && pressure_of_wall.size() > 0; ++k)
+        for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
+    });
   if (!shifts.empty()) {
     frozen.single_of_copies.assemble(own, space.n_points, of_copies(single, sites, false));
     if (dual) frozen.dual_of_copies.assemble(own, space.n_points, of_copies(*dual, sites, false));
@@ -166,23 +178,9 @@ void Tube::Particle::freeze(Wall& wall) {
   frozen.wall.assemble(own, wall.surface().space.n_points,
                        [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
   frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
-}
-
-void Tube::Particle::freeze_pressure_of_velocity(const Wall& wall, const Net& flow_of_wall, double flow_of_pressure) {
-  constexpr std::size_t at_a_time = 64;
-  const Net weights = wall.spread(flow_of_wall);
-  const std::span<const int> targets = wall.own_targets();
-  Net sum = Net::Zero(space.n_points, 3);
-  Eigen::Map<Eigen::RowVectorXd> flat(sum.data(), sum.size());
-  stokes::Rows<float> rows;
-  for (std::size_t first = 0; first < targets.size(); first += at_a_time) {
-    const auto some = targets.subspan(first, std::min(at_a_time, targets.size() - first));
-    dual->assemble(wall.targets(), some, rows);
-    for (std::size_t k = 0; k < some.size(); ++k)
-      for (int c = 0; c < 3; ++c) flat += weights(some[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
-  }
-  ranks.add({sum.data(), static_cast<std::size_t>(sum.size())});
-  frozen.pressure_of_velocity = contrasts.asDiagonal() * (sum - flow_of_strength(wall.inlet())) / flow_of_pressure;
+  if (pressure_of_wall.size() == 0) return;
+  ranks.add({weights.data(), static_cast<std::size_t>(weights.size())});
+  frozen.pressure_of_velocity = contrasts.asDiagonal() * weights;
 }
 
 stokes::Evaluations Tube::Particle::evaluations() const {

@@ -24,10 +24,9 @@ struct Tube::Particle {
 
   void set_contrasts(const Eigen::VectorXd& of_points);
   void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
-  void freeze(Wall& wall);
 
-  /// The weights of v in dp of a channel, Tube::pressure_of_velocity, which frozen rows of few bits are too coarse for.
-  void freeze_pressure_of_velocity(const Wall& wall, const Net& flow_of_wall, double flow_of_pressure);
+  /// `pressure_of_wall`: weights of a velocity on the wall in dp, through which v adds to its own weights, for rows of few bits are too coarse; or none.
+  void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
 

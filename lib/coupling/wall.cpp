@@ -11,7 +11,6 @@ namespace tanktread::coupling {
 namespace {
 
 constexpr double mean_of_wave = 0.516;  // harmonics k^-5, as of the single layer of what interpolation by cubic splines leaves
-constexpr std::size_t middles_at_a_time = 64;
 
 /// The wall's own matrix is made once, so it can be sharper than what changes with the particle.
 quadrature::Options sharper(quadrature::Options options) {
@@ -100,52 +99,53 @@ double Wall::share_of_middle(int point) const {
   return mean_of_wave / static_cast<double>(surface_.space.collocation[static_cast<std::size_t>(point)].size());
 }
 
-/// Rows of this rank; those of the middles, a few at a time, are added to those of the collocation points around.
+/// Rows of this rank, many at a time, for those that are neighbours take the same middles.
 void Wall::assemble(const quadrature::Options& quadrature) {
+  constexpr std::size_t at_a_time = 240;
   const spline::Space& space = surface_.space;
   stokes::Sites sites = space.collocation;
-  if (targets_.rows() > sites_.rows())
+  if (has_middles())
     for (std::size_t e = 0; e < space.elements.size(); ++e) sites.push_back({{static_cast<int>(e), 0.5, 0.5}});
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
   layer.place(surface_.net);
-  layer.assemble(own_, rows_);
-  const std::span<const int> middles = std::span(own_targets_).subspan(own_.size());
-  if (!middles.empty()) rows_ *= 1 - mean_of_wave;
-  std::vector<std::vector<Eigen::Index>> around(space.elements.size());  // rows of this rank, by the elements that they take the middles of
-  for (std::size_t k = 0; k < own_.size() && !middles.empty(); ++k)
-    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(own_[k])])
-      around[static_cast<std::size_t>(site.element)].push_back(static_cast<Eigen::Index>(k));
+  rows_.resize(3 * static_cast<Eigen::Index>(own_.size()), 3 * space.n_points);
   stokes::Rows<double> part;
-  for (std::size_t first = 0; first < middles.size(); first += middles_at_a_time) {
-    const auto some = middles.subspan(first, std::min(middles_at_a_time, middles.size() - first));
-    layer.assemble(some, part);
-    for (std::size_t j = 0; j < some.size(); ++j)
-      for (const Eigen::Index k : around[static_cast<std::size_t>(some[j] - space.n_points)])
-        rows_.middleRows<3>(3 * k) += share_of_middle(own_[static_cast<std::size_t>(k)]) * part.middleRows<3>(3 * static_cast<Eigen::Index>(j));
+  for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
+    const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
+    collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { layer.assemble(targets, rows); }, part);
+    rows_.middleRows(3 * static_cast<Eigen::Index>(first), part.rows()) = part;
   }
   assembly_ = layer.evaluations();
 }
 
+template <class Real>
+void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
+                     stokes::Rows<Real>& rows) const {
+  if (!has_middles()) return assemble(sites, rows);
+  const spline::Space& space = surface_.space;
+  std::vector<int> targets(sites.begin(), sites.end()), row(space.elements.size(), -1);  // of middles, among the targets
+  for (const int i : sites)
+    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)])
+      if (int& own = row[static_cast<std::size_t>(site.element)]; own < 0) own = static_cast<int>(targets.size()), targets.push_back(space.n_points + site.element);
+  stokes::Rows<Real> all;
+  assemble(targets, all);
+  rows = static_cast<Real>(1 - mean_of_wave) * all.topRows(3 * static_cast<Eigen::Index>(sites.size()));
+  for (std::size_t k = 0; k < sites.size(); ++k)
+    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(sites[k])])
+      rows.template middleRows<3>(3 * static_cast<Eigen::Index>(k)) +=
+          static_cast<Real>(share_of_middle(sites[k])) * all.template middleRows<3>(3 * row[static_cast<std::size_t>(site.element)]);
+}
+template void Wall::collocate(std::span<const int>, const std::function<void(std::span<const int>, stokes::Rows<float>&)>&, stokes::Rows<float>&) const;
+
 Net Wall::collocated(const Net& u) const {
   Net all = u.topRows(sites_.rows());
-  if (targets_.rows() > sites_.rows())
+  if (has_middles())
     for (const int i : own_) {
       all.row(i) *= 1 - mean_of_wave;
       for (const spline::Site& site : surface_.space.collocation[static_cast<std::size_t>(i)])
         all.row(i) += share_of_middle(i) * u.row(surface_.space.n_points + site.element);
     }
   ranks_.replicate(all);
-  return all;
-}
-
-Net Wall::spread(const Net& weights) const {
-  Net all = Net::Zero(targets_.rows(), 3);
-  const bool middles = targets_.rows() > sites_.rows();
-  for (const int i : own_) {
-    all.row(i) = (middles ? 1 - mean_of_wave : 1) * weights.row(i);
-    for (const spline::Site& site : surface_.space.collocation[static_cast<std::size_t>(i)])
-      if (middles) all.row(surface_.space.n_points + site.element) += share_of_middle(i) * weights.row(i);
-  }
   return all;
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/dense_factors.hpp"
@@ -42,8 +43,10 @@ class Wall {
   /// Right-hand side for `solve`, a row a collocation point, from what u is at the targets; rows that no rank needs are not read. Collective.
   Net collocated(const Net& u) const;
 
-  /// The transpose of that, of rows of this rank: what has with u at own_targets the product that `weights` has with collocated(u).
-  Net spread(const Net& weights) const;
+  /// The same of rows of an operator, three a collocation point of `sites`, from those that `assemble` fills for some targets.
+  template <class Real>
+  void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
+                 stokes::Rows<Real>& rows) const;
 
   const Ranks& ranks() const { return ranks_; }  ///< of these rows; the others are their images
   stokes::Layer& layer() { return layer_; }  ///< of the wall, at points off it
@@ -72,6 +75,7 @@ class Wall {
   Eigen::MatrixXd folded() const;
   void add_middles();
   void assemble(const quadrature::Options& quadrature);
+  bool has_middles() const { return surface_.channel != nullptr; }
   double share_of_middle(int point) const;
   Eigen::VectorXd fundamental(const Net& net) const;
   Net fundamental_net(const Eigen::VectorXd& numbers) const;
