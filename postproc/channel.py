@@ -80,7 +80,7 @@ def cut_open(axis, run, c, n, across):
     axis.set_aspect("equal")
     axis.grid(False)
     shown = lines[:, (c["s"] > way.min() - 1.5) & (c["s"] < way.max() + 1.5)].reshape(-1, 3)
-    axis.set_xlim(shown[:, 0].min(), shown[:, 0].max())
+    axis.set_xlim(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0))
     if bent:
         axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
     axis.set_xlabel("x₁")

@@ -142,7 +142,9 @@ void Tube::freeze() {
   const bool by_flow = fixed() && particle_->dual;
   if (by_flow) weigh_flow();
   particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
-  if (by_flow) particle_->frozen.pressure_of_velocity -= particle_->contrasts.asDiagonal() * particle_->flow_of_strength(wall_->inlet()) / flow_of_pressure_;
+  if (!by_flow) return;
+  const Net& through_inlet = particle_->flow_of_strength(wall_->inlet());
+  particle_->frozen.pressure_of_velocity -= particle_->contrasts.asDiagonal() * through_inlet / flow_of_pressure_;
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {

@@ -65,14 +65,14 @@ void Tube::Particle::add_copies(Layer& layer, const Net& density, const Net& at,
   }
 }
 
-const Net& Tube::Particle::flow_of_strength(const stokes::Cap& inlet) {
+const Net& Tube::Particle::flow_of_strength(const stokes::Cap& end) {
   if (flow_of_strength_.size() > 0) return flow_of_strength_;
   const auto &node = dual->nodes(), &normal = dual->normals();
   std::vector<double> flow[3];
   for (auto& component : flow) component.assign(node[0].size(), 0.);
   for (const double shift : all_shifts())
     for (std::size_t k = 0; k < node[0].size(); ++k) {
-      const Vec3 one = inlet.double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
+      const Vec3 one = end.double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
       for (int c = 0; c < 3; ++c) flow[c][k] += one[c];
     }
   flow_of_strength_.resize(sites.rows(), 3);

@@ -25,7 +25,7 @@ struct Tube::Particle {
   void set_contrasts(const Eigen::VectorXd& of_points);
   void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
 
-  /// `pressure_of_wall`: weights of a velocity on the wall in dp, through which v adds to its own weights, for rows of few bits are too coarse; or none.
+  /// `pressure_of_wall`: weights of a velocity on the wall in dp, which those of v are made from, for rows of few bits are too coarse; or none.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
@@ -46,8 +46,8 @@ struct Tube::Particle {
   /// Adds to rows of u what a layer of this density does from the other copies of a train.
   void add_copies(stokes::Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Weights of (1 - lambda) v: the flow rate through the inlet of its double layer, copies included. Kept for the present shape.
-  const Net& flow_of_strength(const stokes::Cap& inlet);
+  /// Weights of (1 - lambda) v: the flow rate through an end of its double layer, copies included. Kept for the present shape.
+  const Net& flow_of_strength(const stokes::Cap& end);
 
   stokes::Evaluations evaluations() const;
 

@@ -126,7 +126,10 @@ void Wall::collocate(std::span<const int> sites, const std::function<void(std::s
   std::vector<int> targets(sites.begin(), sites.end()), row(space.elements.size(), -1);  // of middles, among the targets
   for (const int i : sites)
     for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)])
-      if (int& own = row[static_cast<std::size_t>(site.element)]; own < 0) own = static_cast<int>(targets.size()), targets.push_back(space.n_points + site.element);
+      if (int& own = row[static_cast<std::size_t>(site.element)]; own < 0) {
+        own = static_cast<int>(targets.size());
+        targets.push_back(space.n_points + site.element);
+      }
   stokes::Rows<Real> all;
   assemble(targets, all);
   rows = static_cast<Real>(1 - mean_of_wave) * all.topRows(3 * static_cast<Eigen::Index>(sites.size()));
@@ -135,7 +138,8 @@ void Wall::collocate(std::span<const int> sites, const std::function<void(std::s
       rows.template middleRows<3>(3 * static_cast<Eigen::Index>(k)) +=
           static_cast<Real>(share_of_middle(sites[k])) * all.template middleRows<3>(3 * row[static_cast<std::size_t>(site.element)]);
 }
-template void Wall::collocate(std::span<const int>, const std::function<void(std::span<const int>, stokes::Rows<float>&)>&, stokes::Rows<float>&) const;
+template void Wall::collocate(std::span<const int>, const std::function<void(std::span<const int>, stokes::Rows<float>&)>&,
+                              stokes::Rows<float>&) const;
 
 Net Wall::collocated(const Net& u) const {
   Net all = u.topRows(sites_.rows());
@@ -193,8 +197,10 @@ Net Wall::solve(const Net& rhs) const {
 Net Wall::solve_transposed(const Net& weights) const {
   if (symmetry_.order() > 1) {
     Net folded = weights;
-    for (Eigen::Index p = 0; p < weights.rows(); ++p)
-      if (const int a = symmetry_.source()[static_cast<std::size_t>(p)]; a != p) folded.row(a) += symmetry_.signs().row(p).cwiseProduct(weights.row(p));
+    for (Eigen::Index p = 0; p < weights.rows(); ++p) {
+      const int a = symmetry_.source()[static_cast<std::size_t>(p)];
+      if (a != p) folded.row(a) += symmetry_.signs().row(p).cwiseProduct(weights.row(p));
+    }
     return fundamental_net(factors_.solve_transposed(fundamental(folded)));
   }
   const Eigen::VectorXd a = factors_.solve_transposed(flat(weights));

@@ -23,8 +23,8 @@ namespace tanktread::coupling {
 ///
 /// With a symmetry, which all that is asked for has, only rows of fundamental points are assembled, and the others' columns added to theirs (4.12).
 ///
-/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through. On the wall of a channel, where
-/// the leak would be a part of the flow rate, what vanishes is its mean around each of them, (2.39).
+/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through. On the wall of a channel
+/// the leak would be a part of the flow rate: there what vanishes is the mean around each of them, (2.39).
 class Wall {
  public:
   /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.

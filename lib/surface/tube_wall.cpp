@@ -177,9 +177,10 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     centre.push_back(at.centre.head<2>());
     across.push_back(at.factor[0] * at.across.head<2>());
     upward.emplace_back(at.factor[1], 0);
-    if (k == 0 || at.factor.minCoeff() >= narrowest) continue;
+    if (k == 0 || at.factor.minCoeff() > narrowest) continue;
+    const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
+    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // the ends of a straight one are coarser
     narrowest = at.factor.minCoeff();
-    wall.widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * narrowest / azimuthal_elements);
   }
   const auto control = [&](const std::vector<Vec2>& points) { return control_points(interpolate_open(knots, points)); };
   const std::vector<Vec2> c = control(centre), a = control(across), u = control(upward);

@@ -86,4 +86,19 @@ def the_pressure_drop_may_be_held():
     check(series("pressure", "velocity_x1")[-1] < series("flow", "velocity_x1")[-1], "it is not slower")
 
 
+def viscosities_may_differ():
+    straight = "{profile: straight, azimuthal elements: 16, axial elements: 32, start: -3.1, end: 3.1}"
+    first = ["Time/final time=1e-6", "Time/end when past=3", "Particle/center=[0, 0, 0]", "Quadrature/tolerance=1e-6"]
+    built = "{profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 20, start: -3.4, end: 3.4}"
+    for ratio, law in (5, "neo-Hookean"), (0.2, "surface tension"):
+        words = _words(first + [f"Particle/viscosity ratio={ratio}", f"Membrane/law={law}"])
+        for name, walls in ("channel", f"Channel: {straight}"), ("tube", "Tube: {azimuthal elements: 24, axial elements: 30}"):
+            run(deck(DECK.replace(f"Channel: {built}", walls), f"{name}.yaml"), *words, "--output", f"{name} {ratio}", "--quiet")
+        for series_name in "velocity_x1", "disturbed_pressure_drop":
+            one, other = (series(f"{name} {ratio}", series_name)[0] for name in ("channel", "tube"))
+            check(abs(one / other - 1) < 2e-5, f"viscosity ratio {ratio}, {series_name}: {one} in a channel, {other} in the tube")
+        run(deck(DECK), *_words([f"Particle/viscosity ratio={ratio}", f"Membrane/law={law}", "Time/end when past=-0.9"]), "--output", f"narrow {ratio}", "--quiet")
+        check(numpy.abs(series(f"narrow {ratio}", "volume_error")).max() < 1e-12, "the volume is not kept")
+
+
 main()
