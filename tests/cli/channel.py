@@ -101,4 +101,19 @@ def viscosities_may_differ():
         check(numpy.abs(series(f"narrow {ratio}", "volume_error")).max() < 1e-12, "the volume is not kept")
 
 
+def a_bend_is_its_own_mirror_image():
+    """What passes it backwards, on another wall, is as fast: by the flow's reversal, along and across."""
+    bend = "profile: straight, azimuthal elements: 12, bend radius: 2.0, bend start: 0.0, start: -3.0, end: 6.141592653589793"
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 20, start: -3.4, end: 3.4", bend)
+    first = ["Time/final time=1e-6", "Time/end when past=8", "Particle/viscosity ratio=5", "Surface/elements per side=3"]
+    found = []
+    for center, elements in ("[-0.5, 0.2, 0]", 40), ("[1.8, 2.5, 0]", 46):
+        run(deck(lines), *_words(first + [f"Particle/center={center}", f"Channel/axial elements={elements}"]), "--output", f"wall {elements}", "--quiet")
+        found.append([series(f"wall {elements}", name)[0] for name in ("velocity_x1", "velocity_x2", "disturbed_pressure_drop")])
+    (along, across, drop), (across_after, along_after, drop_after) = found
+    check(abs(along / along_after - 1) < 2e-4, f"{along} before, {along_after} after")
+    check(abs(abs(across) - abs(across_after)) < 2e-4 * along, f"{across} before, {across_after} after")
+    check(abs(drop / drop_after - 1) < 5e-3, f"{drop} before, {drop_after} after")
+
+
 main()
