@@ -366,6 +366,9 @@ void Scene::check_several() const {
     if (tube.present || domain.present)
       throw UserError(std::string(word) + " and " + (tube.present ? tube.list() : "Domain") +
                       " contradict each other: it is for unbounded space or beside a Wall.");
+    double n_points = 0;
+    for (const Scene& one : alone()) n_points += points(one);
+    check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
   }
   for (Scene one : alone()) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'

@@ -15,13 +15,10 @@ Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
 Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
 
-/// Rows of the six unit motions of a body, at points or as control values; column k, of all bodies' rows.
-void add_unit_motions(const Net& x, Eigen::Index first, Eigen::Index n, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
-  const Net own = x.middleRows(first, n);
-  for (int k = 0; k < 6; ++k) {
-    const Net field = rigid_velocity(own, unit_motion(k), centre);
-    columns.col(k).segment(3 * first, 3 * n) = flat(field);
-  }
+/// The six unit motions of a body in its rows of six columns, at points or as control values.
+void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net own = block.rows(x);
+  for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
 }
 
 /// The motions, of those that are free, that take this much force and torque; 0 of the others.
@@ -38,14 +35,13 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
                                const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks)
-    : space_(space),
-      particles_(particles),
+    : particles_(particles),
       viscosity_(viscosity),
       ranks_(ranks),
       own_points_(ranks.share(space.n_points)),
-      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
-      between_layer_(stokes::Layer::Kernel::single_layer, space, between_sites(space, rest).places, quadrature),
       between_(between_sites(space, rest)),
+      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
+      between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       sites_(collocation_matrix(space)),
       between_values_(value_matrix(space, between_.places)),
       mass_(space, 8),  // eight points: the area is no polynomial
@@ -120,9 +116,8 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, const st
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
-    const spline::Block& block = particles_[p].block;
-    add_unit_motions(at, block.first_point, block.n_points, centres[p], velocities.middleCols<6>(column));
-    add_unit_motions(x, block.first_point, block.n_points, centres[p], fields.middleCols<6>(column));
+    set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
+    set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
   }
   velocities.col(m) = flat(flow.velocities(at));
   const Eigen::MatrixXd of_all = viscosity_ * DenseFactors(system(x)).solve(velocities), z = of_all.leftCols(m);

@@ -54,13 +54,12 @@ class RigidTractions {
   Eigen::VectorXd work_left_over(const Net& x, const Eigen::MatrixXd& densities, const Eigen::VectorXd& f, const Eigen::VectorXd& motion,
                                  std::span<const Vec3> centres, const stokes::AmbientFlow& flow);
 
-  const spline::Space& space_;
   std::span<const Particle> particles_;
   double viscosity_;
   Ranks& ranks_;
   std::vector<int> own_points_;
-  stokes::Layer layer_, between_layer_;  // at the collocation sites, and between them
   BetweenSites between_;
+  stokes::Layer layer_, between_layer_;  // at the collocation sites, and between them
   Eigen::SparseMatrix<double> sites_, between_values_;
   membrane::MassMatrix mass_;
   std::vector<int> free_;  // numbers, six a body, of motions that are not given
