@@ -34,26 +34,8 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   solution_.motion = {turn * own.velocity, turn * own.angular_velocity};
   solution_.density = f * turn.transpose();
   solution_.stresslet = -turn * body_.stresslet(f, centre_) * turn.transpose();
+  solution_.pressure_drop = body_.pressure_drop(f);
   return solution_;
-}
-
-/// Of the body over the ambient flow; everything in the body's axes, x at rest.
-Net FreeBodyInTube::relative_velocity(const Net& x, const Net& place, const RigidMotion& own) const {
-  const Mat3 turn = rotation_of(place);
-  const Net in_space = ((x.rowwise() - centre_.transpose()) * turn.transpose()).rowwise() + place.row(0);
-  return rigid_velocity(x, own, centre_) - flow_.velocities(in_space) * turn;
-}
-
-/// With what it lacks by (2.11): the work of f itself, for it is the density of the relative velocity, whose rigid part no free force works on.
-double FreeBodyInTube::pressure_drop(const Net& place) const {
-  const Solution& now = solution(place);
-  const Mat3 turn = rotation_of(place);
-  const Net f = now.density * turn;
-  const double drop = body_.pressure_drop(f);
-  if (!body_.tube() || !flow_.duct() || flow_.amplitude() == 0) return drop;
-  const RigidMotion own{turn.transpose() * now.motion.velocity, turn.transpose() * now.motion.angular_velocity};
-  const Eigen::VectorXd lacking = body_.residual_work([&](const Net& x) { return relative_velocity(x, place, own); }, f, std::span(&f, 1));
-  return drop + lacking[0] / (body_.tube()->flow().flow_rate() * flow_.amplitude());
 }
 
 /// Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
@@ -104,7 +86,11 @@ void FreeBodyInTube::solve_beside_wall(const Net& place, Net& f, RigidMotion& ow
   Six given;
   given << turn.transpose() * driven_.force, turn.transpose() * driven_.torque;
   move(given - integrals(f));
-  move(-body_.residual_work([&](const Net& x) { return relative_velocity(x, place, own); }, f, z));
+  const auto relative = [&](const Net& x) -> Net {
+    const Net in_space = ((x.rowwise() - centre_.transpose()) * turn.transpose()).rowwise() + place.row(0);
+    return rigid_velocity(x, own, centre_) - flow_.velocities(in_space) * turn;
+  };
+  move(-body_.residual_work(relative, f, z));
 }
 
 }  // namespace tanktread::coupling

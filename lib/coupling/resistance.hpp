@@ -59,7 +59,6 @@ class Resistance {
   bool inside() const { return (!tube_ || tube_->gap() > 0) && in_front_; }
 
   const std::optional<stokes::PlaneWall>& wall() const { return wall_; }
-  const Tube* tube() const { return tube_; }
 
   /// The pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);

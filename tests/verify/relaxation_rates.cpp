@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -131,15 +132,16 @@ TEST(RelaxationRates, OfACapsuleAreBothElasticModes) {
 
 TEST(RelaxationRates, OfRigidMotionsAndOfTheVolumeAreZeroAndNamed) {
   const Sphere sphere({"Membrane/shear modulus=1", "Symmetry/use=none"}, 3);
-  int count[4] = {};
+  std::map<motion::ModeKind, int> count;
   for (const motion::Mode& mode : sphere.modes) {
     if (mode.kind == motion::ModeKind::shape) continue;
-    ++count[static_cast<int>(mode.kind)];
+    ++count[mode.kind];
     EXPECT_NEAR(std::abs(mode.rate), 0, 1e-8) << name(mode.kind);
   }
-  EXPECT_EQ(count[1], 3);
-  EXPECT_EQ(count[2], 3);
-  EXPECT_EQ(count[3], 1);
+  EXPECT_EQ(count[motion::ModeKind::translation], 3);
+  EXPECT_EQ(count[motion::ModeKind::rotation], 3);
+  EXPECT_EQ(count[motion::ModeKind::labels], 0);  // at rest a sphere's are its rotations
+  EXPECT_EQ(count[motion::ModeKind::volume], 1);
 }
 
 TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {

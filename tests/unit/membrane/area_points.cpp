@@ -40,7 +40,9 @@ TEST(AreaPoints, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), u = random_net(x.rows(), 31);
   const double h = 1e-4;
-  const auto difference = [&](const auto& f) { return ((8 * (f(x + h * u) - f(x - h * u)) - (f(x + 2 * h * u) - f(x - 2 * h * u))) / (12 * h)); };
+  const auto difference = [&](const auto& f) -> decltype(f(x)) {
+    return (8 * (f(x + h * u) - f(x - h * u)) - (f(x + 2 * h * u) - f(x - 2 * h * u))) / (12 * h);
+  };
   for (const Law& law : stiff) {
     const Membrane membrane = with_points(s, law, 1);
     const double expected = difference([&](const Net& y) { return membrane.energy(y); });
