@@ -24,9 +24,12 @@ namespace tanktread::coupling {
 
 namespace {
 
-Net net(const Eigen::VectorXd& numbers) { return Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
+/// NOX gets places and residuals in so small a unit: what differs by less than 1e-16, of many residuals near the solution, it takes for singular.
+constexpr double unit = 0x1p-20;
 
-Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()); }
+Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
+
+Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
 
 /// F(x) = g(x) - x, with products F' d by differences above the noise of adaptive quadrature.
 class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
