@@ -7,9 +7,9 @@
 #include "app/member.hpp"
 #include "app/numbers.hpp"
 #include "base/formatted.hpp"
-#include "deck/units.hpp"
 #include "base/instruction_set.hpp"
 #include "coupling/frozen_operator.hpp"
+#include "deck/units.hpp"
 #include "stokes/layer_surface.hpp"
 
 namespace tanktread {

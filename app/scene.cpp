@@ -238,7 +238,8 @@ void check_contradictions(const Scene& scene) {
   refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
   refuse(steady && drop && scene.interface_motion() == "material", sought, "Interface/motion `material`",
          "points that go with the fluid along an interface do not rest");
-  refuse(scene.steady.present && !drop && !rigid && particle.shape.shape != "sphere" && turns(scene), sought, flow,
+  const std::string& unstressed = scene.membrane.stress_free == "resting" ? particle.shape.shape : scene.membrane.stress_free;
+  refuse(scene.steady.present && !drop && !rigid && unstressed != "sphere" && turns(scene), sought, flow,
          "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
   const std::string confined = scene.tube.list();
   refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
@@ -357,19 +358,23 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
+/// What tractions of the first kind cannot do.
+void Scene::check_first_kind() const {
+  const std::string word = "Solvers/rigid bodies `first kind`";
+  double n_points = 0;
+  for (const Scene& one : alone()) {
+    if (!one.particle.rigid())
+      throw UserError(word + " is for rigid bodies alone, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
+    n_points += points(one);
+  }
+  if (tube.present || domain.present)
+    throw UserError(word + " and " + (tube.present ? tube.list() : "Domain") +
+                    " contradict each other: it is for unbounded space or beside a Wall.");
+  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
+}
+
 /// What cannot be done with several particles yet, and each of them by itself.
 void Scene::check_several() const {
-  if (solvers.rigid_bodies == "first kind") {
-    const char* word = "Solvers/rigid bodies `first kind`";
-    for (const ParticleKind& kind : particles)
-      if (!kind.particle.rigid()) throw UserError(std::string(word) + " is for rigid bodies alone, but Particles/" + kind.name + " deforms.");
-    if (tube.present || domain.present)
-      throw UserError(std::string(word) + " and " + (tube.present ? tube.list() : "Domain") +
-                      " contradict each other: it is for unbounded space or beside a Wall.");
-    double n_points = 0;
-    for (const Scene& one : alone()) n_points += points(one);
-    check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
-  }
   for (Scene one : alone()) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
     const std::string list = "Particles/" + one.name;
@@ -385,6 +390,7 @@ void Scene::check_several() const {
 
 void Scene::check() const {
   quadrature.check();
+  if (solvers.rigid_bodies == "first kind") check_first_kind();
   if (!particles.empty()) return check_several();
   flow.check();
   check_motion(*this);

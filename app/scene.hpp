@@ -97,6 +97,7 @@ struct Scene : ParticleKind {
 
   /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
   void check() const;
+  void check_first_kind() const;
   void check_several() const;
   bool runs_in_time() const { return !spectrum.present && !steady.present; }  ///< otherwise steady shapes are looked at
   bool load_is_strong() const { return membrane.load == "strong"; }

@@ -385,40 +385,6 @@ Net Capsule::evaluate_tractions(const Net& x) {
   return v;
 }
 
-/// Whether the defect of a velocity comes without a system of its own.
-bool Capsule::defect_without_system() const { return (viscous_ || double_layer_) && !interface_ && !tube_ && !cell_ && rigid_.empty(); }
-
-/// P (w - B P u) - (1 - P) u, of which B v = w is the system of the velocity (solve_velocity): the load of u in a viscous membrane joins the elastic
-/// one, in one sum. (3.14)
-Net Capsule::defect(const Net& x, const Net& u) {
-  if (!defect_without_system()) return velocity(x) - u;
-  ++work_.evaluations;
-  if (!x.allFinite() || !in_front_of_wall(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
-  const bool constrained = parameters_.volume.constraint != "none";
-  const Net b = constrained ? flux_vector(x) : Net();
-  Net c = b, inside = u;
-  Net f = membrane_load(x, constrained ? &c : nullptr);
-  if (constrained) constrain(inside, b, c);
-  if (viscous_) {
-    viscous_->update(x, own_elements_);
-    f += viscous_load(*viscous_, inside);
-  }
-  Net lacking = explicit_velocity(x, f) - inside;
-  if (double_layer_) {
-    Net hv = zero_at_targets();
-    {
-      const auto clock = phases_.time("velocity system");
-      double_layer_->place(x);
-      double_layer_->apply(inside, own_targets(), hv);
-    }
-    gather_targets(double_layer_->shared(), hv);
-    const auto clock = phases_.time("projection");
-    lacking += control_values(std::move(hv));
-  }
-  if (constrained) constrain(lacking, b, c);
-  return symmetric(lacking - (u - inside));
-}
-
 /// Of a velocity at the targets.
 Net Capsule::control_values(Net at_targets) {
   return projection_ ? projection_->control_values(at_targets) : solved(collocation_, std::move(at_targets));
@@ -435,6 +401,14 @@ Net Capsule::single_layer_of(const Net& x, const Net& f) {
   }
   gather_targets(layer_.shared(), u);
   return u;
+}
+
+/// H v at the targets, where the double layer was placed.
+Net Capsule::double_layer_of(const Net& v) {
+  Net hv = zero_at_targets();
+  double_layer_->apply(v, own_targets(), hv);
+  gather_targets(double_layer_->shared(), hv);
+  return hv;
 }
 
 /// v_inf - (1/mu) R^-1 A f, and what the wall answers to the load where it is eliminated.
@@ -547,13 +521,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
     if (!double_layer_ && !viscous_) return v;
-    Net hv = zero_at_targets();
-    if (assembled) {
-      hv = times(double_rows_, v);
-    } else if (double_layer_) {
-      double_layer_->apply(v, own_targets(), hv);
-      gather_targets(double_layer_->shared(), hv);
-    }
+    Net hv = assembled ? times(double_rows_, v) : double_layer_ ? double_layer_of(v) : zero_at_targets();
     if (load.size() > 0) hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
     Net bv = v - (projection_ ? projection_->control_values(hv) : collocation_.solve(hv));
     rigid_.complete(v, bv);

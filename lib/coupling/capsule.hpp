@@ -180,6 +180,7 @@ class Capsule : public Dynamics {
   bool deform_cell(double time);
   std::vector<Vec3> put_into_cell(Net& x) const;
   Net single_layer_of(const Net& x, const Net& f);
+  Net double_layer_of(const Net& v);
   Net membrane_load(const Net& x, Net* other);
   void place(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f);

@@ -163,6 +163,34 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
   return stiff_system(shift, interface_ ? r : frozen_viscous(r), tolerance, secants);
 }
 
+/// Whether the defect of a velocity comes without a system of its own.
+bool Capsule::defect_without_system() const { return (viscous_ || double_layer_) && !interface_ && !tube_ && !cell_ && rigid_.empty(); }
+
+/// P (w - B P u) - (1 - P) u, of which B v = w is the system of the velocity (solve_velocity): the load of u in a viscous membrane joins the elastic
+/// one, in one sum. (3.14)
+Net Capsule::defect(const Net& x, const Net& u) {
+  if (!defect_without_system()) return velocity(x) - u;
+  ++work_.evaluations;
+  if (!x.allFinite() || !in_front_of_wall(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  const bool constrained = parameters_.volume.constraint != "none";
+  const Net b = constrained ? flux_vector(x) : Net();
+  Net c = b, inside = u;
+  Net f = membrane_load(x, constrained ? &c : nullptr);
+  if (constrained) constrain(inside, b, c);
+  if (viscous_) {
+    viscous_->update(x, own_elements_);
+    f += viscous_load(*viscous_, inside);
+  }
+  Net lacking = explicit_velocity(x, f) - inside;
+  if (double_layer_) {
+    const auto clock = phases_.time("velocity system");
+    double_layer_->place(x);
+    lacking += control_values(double_layer_of(inside));
+  }
+  if (constrained) constrain(lacking, b, c);
+  return symmetric(lacking - (u - inside));
+}
+
 Net Capsule::correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
   if (!defect_without_system()) return Dynamics::correction(shift, defect, tolerance, secants);
   const auto clock = phases_.time("implicit solve");

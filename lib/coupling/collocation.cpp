@@ -9,16 +9,18 @@
 namespace tanktread::coupling {
 
 BetweenSites between_sites(const spline::Space& space, const Net& surface) {
-  BetweenSites between;
+  stokes::Sites places;
+  std::vector<double> areas;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(space.elements[static_cast<std::size_t>(e)].degree);
     for (int q = 0; q < rule.size(); ++q) {
       const spline::Site place{e, rule.s[q], rule.t[q]};
-      between.places.push_back({place});
-      between.areas.push_back(rule.weights[q] * surface::point(space, surface, place).jacobian);
+      places.push_back({place});
+      areas.push_back(rule.weights[q] * surface::point(space, surface, place).jacobian);
     }
   }
-  return between;
+  const Eigen::SparseMatrix<double> values = value_matrix(space, places);
+  return {places, values, values.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), values.rows()).asDiagonal()};
 }
 
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites) {

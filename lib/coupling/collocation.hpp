@@ -13,11 +13,12 @@ namespace tanktread::coupling {
 /// N_A at sites, shape (sites, N).
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites);
 
-/// Gauss points on a surface, and the share of its area that each stands for. What collocation leaves over on an element is like h^4 times a quartic:
-/// as many points a direction as the degree integrate it.
+/// Gauss points q on a surface, for what collocation leaves over: on an element like h^4 times a quartic, which as many points a direction as the degree
+/// integrate.
 struct BetweenSites {
   stokes::Sites places;
-  std::vector<double> areas;
+  Eigen::SparseMatrix<double> values;   ///< N_A at them, shape (places, N)
+  Eigen::SparseMatrix<double> weights;  ///< N_A(q) times the share of the area that q stands for, shape (N, places)
 };
 BetweenSites between_sites(const spline::Space& space, const Net& surface);
 

@@ -57,9 +57,7 @@ Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::S
 }  // namespace
 
 OwnLacking::OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature) {
-  const auto [places, areas] = between_sites(space, surface);
-  const Eigen::SparseMatrix<double> at_places = value_matrix(space, places);
-  const Eigen::SparseMatrix<double> weights = at_places.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), at_places.rows()).asDiagonal();
+  const auto [places, at_places, weights] = between_sites(space, surface);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(weights * at_places);
   membrane::DirectSolver interpolation;
   interpolation.factor(collocation_matrix(space));

@@ -140,8 +140,7 @@ stokes::Evaluations Resistance::kernel_evaluations() const {
 
 Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
   const auto clock = phases_.time("reciprocal correction");
-  const auto [sites, areas] = between_sites(space_, surface_);
-  const Eigen::SparseMatrix<double> at_sites = value_matrix(space_, sites);
+  const auto [sites, at_sites, weights] = between_sites(space_, surface_);
   const std::vector<int> own = ranks_.share(static_cast<int>(sites.size()));
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space_, sites, quadrature_);
   if (wall_) layer.set_wall(*wall_);
@@ -156,10 +155,9 @@ Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>
   }
   ranks_.add({v.data(), static_cast<std::size_t>(v.size())});
   residual_evaluations_ += layer.evaluations();
-  const Net rest = u(at_sites * surface_) - v / viscosity_;
-  const Net weighted = Eigen::Map<const Eigen::VectorXd>(areas.data(), rest.rows()).asDiagonal() * rest;
+  const Net rest = weights * (u(at_sites * surface_) - v / viscosity_);
   Eigen::VectorXd work(static_cast<Eigen::Index>(z.size()));
-  for (std::size_t k = 0; k < z.size(); ++k) work[static_cast<Eigen::Index>(k)] = (at_sites * z[k]).cwiseProduct(weighted).sum();
+  for (std::size_t k = 0; k < z.size(); ++k) work[static_cast<Eigen::Index>(k)] = z[k].cwiseProduct(rest).sum();
   return work;
 }
 

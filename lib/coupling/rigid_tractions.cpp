@@ -43,7 +43,6 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
       layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       sites_(collocation_matrix(space)),
-      between_values_(value_matrix(space, between_.places)),
       mass_(space, 8),  // eight points: the area is no polynomial
       bodies_(particles.size()) {
   for (stokes::Layer* layer : {&layer_, &between_layer_})
@@ -53,8 +52,8 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
       if (!particles[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
 }
 
-/// A at the sites, with s (R c) b^T/(b.c) of each body.
-Eigen::MatrixXd RigidTractions::system(const Net& x) {
+/// A at the sites, which are `at`, with s (R c) b^T/(b.c) of each body.
+Eigen::MatrixXd RigidTractions::system(const Net& x, const Net& at) {
   const Eigen::Index n = 3 * x.rows();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
   stokes::Rows<double> rows;
@@ -65,8 +64,7 @@ Eigen::MatrixXd RigidTractions::system(const Net& x) {
     const Eigen::Index first = 3 * body.block.first_point, length = 3 * body.block.n_points;
     const Net flux = surface::Geometry(*body.space).volume_gradient(body.block.rows(x));
     // Any velocity with a flux makes the system regular; that away from the middle is one.
-    const Net at = sites_.middleRows(body.block.first_point, body.block.n_points) * x;
-    const Net outward = (at.rowwise() - at.colwise().mean()) / body.radius;
+    const Net own = body.block.rows(at), outward = (own.rowwise() - own.colwise().mean()) / body.radius;
     const double weight = 2 * body.radius / 3 / flux.cwiseProduct(outward).sum();
     all.block(first, first, length, length) += weight * flat(outward) * flat(flux).transpose();
   }
@@ -87,26 +85,13 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
   return motion + freed(free_, resistance, given - held - resistance * motion);
 }
 
-/// int z_k.(v - (1/mu) A f) dG at Gauss points between the sites, of the densities z_k.
-Eigen::VectorXd RigidTractions::work_left_over(const Net& x, const Eigen::MatrixXd& densities, const Eigen::VectorXd& f,
-                                               const Eigen::VectorXd& motion, std::span<const Vec3> centres,
-                                               const stokes::AmbientFlow& flow) {
+/// int N_A (v - v_inf - (1/mu) A f) dG, v that of these control values.
+Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow) {
   between_layer_.place(x);
-  Net rest = Net::Zero(between_values_.rows(), 3);
-  const std::vector<int> own = ranks_.share(static_cast<int>(rest.rows()));
-  between_layer_.apply(as_net(f), own, rest);
-  ranks_.add({rest.data(), static_cast<std::size_t>(rest.size())});
-  const Net at = between_values_ * x;
-  Net fields(x.rows(), 3);
-  for (std::size_t p = 0; p < particles_.size(); ++p) {
-    const auto first = static_cast<Eigen::Index>(6 * p);
-    const spline::Block& block = particles_[p].block;
-    block.rows(fields) = rigid_velocity(block.rows(x), {motion.segment<3>(first), motion.segment<3>(first + 3)}, centres[p]);
-  }
-  rest = between_values_ * fields - flow.velocities(at) - rest / viscosity_;
-  rest = Eigen::Map<const Eigen::VectorXd>(between_.areas.data(), rest.rows()).asDiagonal() * rest;
-  const Net spread = between_values_.transpose() * rest;
-  return densities.transpose() * flat(spread);
+  Net u = Net::Zero(between_.values.rows(), 3);
+  between_layer_.apply(f, ranks_.share(static_cast<int>(u.rows())), u);
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  return between_.weights * (between_.values * v - flow.velocities(between_.values * x) - u / viscosity_);
 }
 
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, const stokes::AmbientFlow& flow) {
@@ -120,18 +105,19 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, const st
     set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
   }
   velocities.col(m) = flat(flow.velocities(at));
-  const Eigen::MatrixXd of_all = viscosity_ * DenseFactors(system(x)).solve(velocities), z = of_all.leftCols(m);
+  const Eigen::MatrixXd of_all = viscosity_ * DenseFactors(system(x, at)).solve(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
-  for (Eigen::Index k = 0; k < m; ++k) fields.col(k) = flat(Net(mass * as_net(fields.col(k))));
-  const Eigen::MatrixXd resistance = fields.transpose() * z;
-  Eigen::VectorXd motion = motions(resistance, -fields.transpose() * of_all.col(m));
+  Eigen::MatrixXd work(n, m);  // of a density with each unit motion
+  for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
+  const Eigen::MatrixXd resistance = work.transpose() * z;
+  Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m));
   Eigen::VectorXd f = z * motion - of_all.col(m);
-  const Eigen::VectorXd lacking = work_left_over(x, z, f, motion, centres, flow);
+  const Eigen::VectorXd v = fields * motion, lacking = z.transpose() * flat(left_over(x, as_net(f), as_net(v), flow));
   const Eigen::VectorXd change = freed(free_, resistance, -lacking);
   motion += change;
   f += z * change;
-  const Eigen::VectorXd integrals = fields.transpose() * f + lacking;
+  const Eigen::VectorXd integrals = work.transpose() * f + lacking;
   density_ = as_net(f);
   const Net weighted = mass * density_;
   for (std::size_t p = 0; p < particles_.size(); ++p) {

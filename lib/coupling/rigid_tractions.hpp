@@ -49,10 +49,9 @@ class RigidTractions {
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
  private:
-  Eigen::MatrixXd system(const Net& x);
+  Eigen::MatrixXd system(const Net& x, const Net& at);
   Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held) const;
-  Eigen::VectorXd work_left_over(const Net& x, const Eigen::MatrixXd& densities, const Eigen::VectorXd& f, const Eigen::VectorXd& motion,
-                                 std::span<const Vec3> centres, const stokes::AmbientFlow& flow);
+  Net left_over(const Net& x, const Net& f, const Net& fields, const stokes::AmbientFlow& flow);
 
   std::span<const Particle> particles_;
   double viscosity_;
@@ -60,7 +59,7 @@ class RigidTractions {
   std::vector<int> own_points_;
   BetweenSites between_;
   stokes::Layer layer_, between_layer_;  // at the collocation sites, and between them
-  Eigen::SparseMatrix<double> sites_, between_values_;
+  Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;
   std::vector<int> free_;  // numbers, six a body, of motions that are not given
   std::vector<Body> bodies_;

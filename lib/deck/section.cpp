@@ -62,9 +62,9 @@ std::vector<double> numbers_with_units(const std::string& path, const Teuchos::P
   if (!units) refuse(path, "a plain number in a deck without the list Units", unit, description(entry));
   std::vector<double> numbers;
   for (const std::string& text : texts) try {
-      numbers.push_back(has_unit(text) ? units->number(text, unit) : std::stod(text));
+      numbers.push_back(units->number(text, unit));
     } catch (const std::invalid_argument& error) {
-      refuse(path, "a number with a unit", unit, in_quotes(shortened(text, 80)) + ", which " + (has_unit(text) ? error.what() : "is no number"));
+      refuse(path, "a number with a unit", unit, in_quotes(shortened(text, 80)) + ", which " + error.what());
     }
   return numbers;
 }

@@ -72,7 +72,9 @@ std::string Units::scaled(std::string_view kind) const {
 double Units::number(const std::string& text, std::string_view kind) const {
   double number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const Unit unit = parsed(system_, std::string(rest, text.data() + text.size()));
+  const std::string rest_of_text(rest, text.data() + text.size());
+  if (error == std::errc() && rest_of_text.empty()) return number;
+  const Unit unit = parsed(system_, rest_of_text);
   if (error != std::errc() || !unit) throw std::invalid_argument("is no number with a unit that is known");
   const Unit own = parsed(system_, scaled(kind));
   const double factor = ratio(unit, own);

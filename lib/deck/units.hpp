@@ -23,7 +23,7 @@ class Units {
   /// Throws UserError where a text is no length, time or force.
   explicit Units(const UnitOptions& options);
 
-  /// The number in the deck's units that `text`, a number and a unit, stands for. Throws std::invalid_argument, with the rest of a sentence on
+  /// The number in the deck's units that `text`, a number and a unit or a plain number, stands for. Throws std::invalid_argument, with the rest of a sentence on
   /// `text`, where it is not of this kind.
   double number(const std::string& text, std::string_view kind) const;
 

@@ -5,6 +5,23 @@
 
 namespace tanktread::membrane {
 
+namespace {
+
+void check_stress_free(const Options& options) {
+  if (options.law == "surface tension" && options.stress_free != "resting")
+    throw UserError("Membrane/stress-free shape and Membrane/law `surface tension` contradict each other: a fluid interface has no such shape.");
+  if (options.reduced_volume.has_value() != (options.stress_free == "spheroid"))
+    throw UserError(options.reduced_volume
+                        ? "Membrane/stress-free reduced volume belongs to Membrane/stress-free shape `spheroid`, not to `" + options.stress_free + "`."
+                        : "Membrane/stress-free shape `spheroid` needs Membrane/stress-free reduced volume.");
+  if (options.stress_free_file.has_value() != (options.stress_free == "file"))
+    throw UserError(options.stress_free_file
+                        ? "Membrane/stress-free file belongs to Membrane/stress-free shape `file`, not to `" + options.stress_free + "`."
+                        : "Membrane/stress-free shape `file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
+}
+
+}  // namespace
+
 void Options::declare(deck::Section& section) {
   section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "surface tension"},
               "constitutive law (3.3): rubber of constant volume, `neo-Hookean` (P-7) or `Mooney-Rivlin`; resistance to a change of area, "
@@ -82,7 +99,7 @@ void Options::check() const {
   if (law == "surface tension" && pre_inflation != 0.0)
     throw UserError(
         "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
-  check_stress_free();
+  check_stress_free(*this);
   if (spontaneous_curvature && bending_reference == "unstressed")
     throw UserError("Membrane/spontaneous curvature and Membrane/bending reference `unstressed` contradict each other: one says the curvature.");
   if (spontaneous_curvature && bending(1, 1) == 0)
@@ -101,18 +118,6 @@ void Options::check() const {
     throw UserError("Membrane/forces and Membrane/load `strong` contradict each other: the forces are part of the weak load.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
-}
-
-void Options::check_stress_free() const {
-  if (law == "surface tension" && stress_free != "resting")
-    throw UserError("Membrane/stress-free shape and Membrane/law `surface tension` contradict each other: a fluid interface has no such shape.");
-  if (reduced_volume.has_value() != (stress_free == "spheroid"))
-    throw UserError(reduced_volume
-                        ? "Membrane/stress-free reduced volume belongs to Membrane/stress-free shape `spheroid`, not to `" + stress_free + "`."
-                        : "Membrane/stress-free shape `spheroid` needs Membrane/stress-free reduced volume.");
-  if (stress_free_file.has_value() != (stress_free == "file"))
-    throw UserError(stress_free_file ? "Membrane/stress-free file belongs to Membrane/stress-free shape `file`, not to `" + stress_free + "`."
-                                     : "Membrane/stress-free shape `file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
 }
 
 double Options::modulus(double viscosity, double rate, double radius) const {

@@ -42,7 +42,6 @@ struct Options {
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
 
-  void check_stress_free() const;
 
   bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }  ///< whether the law has a C
 

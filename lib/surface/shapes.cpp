@@ -43,7 +43,8 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits)
 
 Vec3 red_cell(const Vec3& x) {
   const double r2 = x[0] * x[0] + x[1] * x[1];
-  return {x[0], x[1], x[2] / 2 * (0.21 + 2.0 * r2 - 1.12 * r2 * r2)};
+  const auto [c0, c1, c2] = red_cell_profile;
+  return {x[0], x[1], x[2] / 2 * (c0 + c1 * r2 + c2 * r2 * r2)};
 }
 
 namespace {

@@ -49,8 +49,11 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits 
 /// radius a half.
 Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int axis = 2);
 
+/// c of the half thickness sqrt(1 - r^2)/2 (c0 + c1 r^2 + c2 r^4) of a red cell with unit radius       (Evans & Fung 1972)
+constexpr double red_cell_profile[] = {0.21, 2.0, -1.12};
+
 /// The biconcave disc of a red cell with unit radius and axis x3, as an image of the unit sphere:
-///   (x1, x2, x3) -> (x1, x2, x3/2 (0.21 + 2.0 r^2 - 1.12 r^4)),  r^2 = x1^2 + x2^2        (Evans & Fung 1972)
+///   (x1, x2, x3) -> (x1, x2, x3/2 (c0 + c1 r^2 + c2 r^4)),  r^2 = x1^2 + x2^2
 Vec3 red_cell(const Vec3& on_unit_sphere);
 
 /// The resting shape of a deck, in place, from a fitted unit sphere. Nothing is scaled after the fit, so the volume errs as the fit does; lengths

@@ -42,9 +42,10 @@ Meridian spheroid(double equator, double pole) {
 
 Meridian red_cell_meridian(double radius) {
   const auto half_thickness = [](double z) { return red_cell({std::sqrt(1 - z * z), 0, z})[2]; };
-  const auto slope = [](double z) {  // of z/2 (0.21 + 2 r^2 - 1.12 r^4), r^2 = 1 - z^2
+  const auto slope = [](double z) {  // of z/2 (c0 + c1 r^2 + c2 r^4), r^2 = 1 - z^2
+    const auto [c0, c1, c2] = red_cell_profile;
     const double r2 = 1 - z * z;
-    return (0.21 + 2.0 * r2 - 1.12 * r2 * r2) / 2 - z * z * (2.0 - 2.24 * r2);
+    return (c0 + c1 * r2 + c2 * r2 * r2) / 2 - z * z * (c1 + 2 * c2 * r2);
   };
   return {radius, [=](double z) { return radius * half_thickness(z); }, [=](double z) { return radius * slope(z); }};
 }

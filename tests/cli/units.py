@@ -90,6 +90,7 @@ def values_with_units_give_the_same_as_their_numbers():
         check(summary(name)["final in SI"]["volume"].endswith("e-17 m^3"), summary(name)["final in SI"]["volume"])
     refused(["Flow/shear rate", "list Units", "100 1/s"], deck(said.replace("  Units: {%s}\n", "")))
     refused(["Particle/radius", "another kind", "2 uN"], deck(said % ""), "--set", "Particle/radius=2 uN")
+    refused(["Particle/center", "1e999"], deck(said.replace("[0, 0, 1 um]", "[1e999, 0, 1 um]") % ""))
     refused(["Units/force", "unit of force", "1 kg"], deck(said % "force: 1 kg"))
 
 

@@ -32,6 +32,7 @@ SETTINGS = [
     (["Steady/tolerance=1e-8", "Particle/shape=spheroid", "Particle/semi-axes=[1, 1, 0.5]"], ["Steady", "simple shear", "treads"]),
     (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
     (["Solvers/rigid bodies=third kind"], ["Solvers/rigid bodies", "first kind"]),
+    (["Solvers/rigid bodies=first kind"], ["Solvers/rigid bodies", "Particle deforms"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
     (["Spectrum/number=4", "Particle/motion=free"], ["Spectrum", "Particle/motion", "rigid"]),
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "membrane/membrane.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
 
@@ -51,5 +52,27 @@ inline Net random_net(Eigen::Index n, unsigned seed) {
 }
 
 inline double inner(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+
+/// df/dx u by a central difference of fourth order: truncation and round-off near 1e-11.
+template <class F>
+std::invoke_result_t<F, Net> difference(const F& f, const Net& x, const Net& u) {
+  const double h = 1e-4;
+  return (8 * (f(x + h * u) - f(x - h * u)) - (f(x + 2 * h * u) - f(x - 2 * h * u))) / (12 * h);
+}
+
+/// By how much, relative, the load along u is not the gradient of the energy.
+inline double gradient_error(const Membrane& membrane, const Net& x, const Net& u) {
+  return std::abs(inner(membrane.load(x), u) / difference([&](const Net& y) { return membrane.energy(y); }, x, u) - 1);
+}
+
+/// By how much, relative, the tangent applied to u is not the gradient of the load.
+inline double tangent_error(const Membrane& membrane, const Sphere& s, const Net& x, const Net& u) {
+  Tangent tangent(membrane);
+  tangent.update(x, s.elements);
+  Net hu;
+  tangent.apply(u, hu);
+  const Net expected = difference([&](const Net& y) { return membrane.load(y); }, x, u);
+  return (hu - expected).norm() / expected.norm();
+}
 
 }  // namespace tanktread::membrane
