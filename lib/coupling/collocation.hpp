@@ -13,8 +13,8 @@ namespace tanktread::coupling {
 /// N_A at sites, shape (sites, N).
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites);
 
-/// Gauss points q on a surface, for what collocation leaves over: on an element like h^4 times a quartic, which as many points a direction as the degree
-/// integrate.
+/// Gauss points q on a surface, for what collocation leaves over: on an element like h^4 times a quartic, which as many points a direction as the
+/// degree integrate.
 struct BetweenSites {
   stokes::Sites places;
   Eigen::SparseMatrix<double> values;   ///< N_A at them, shape (places, N)

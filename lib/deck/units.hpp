@@ -23,8 +23,8 @@ class Units {
   /// Throws UserError where a text is no length, time or force.
   explicit Units(const UnitOptions& options);
 
-  /// The number in the deck's units that `text`, a number and a unit or a plain number, stands for. Throws std::invalid_argument, with the rest of a sentence on
-  /// `text`, where it is not of this kind.
+  /// The number in the deck's units that `text`, a number and a unit or a plain number, stands for. Throws std::invalid_argument, with the rest of a
+  /// sentence on `text`, where it is not of this kind.
   double number(const std::string& text, std::string_view kind) const;
 
   /// So many of this kind in SI units, `1e-06 N/m`; of a number without dimension nothing.

@@ -10,14 +10,13 @@ namespace {
 void check_stress_free(const Options& options) {
   if (options.law == "surface tension" && options.stress_free != "resting")
     throw UserError("Membrane/stress-free shape and Membrane/law `surface tension` contradict each other: a fluid interface has no such shape.");
+  const std::string shape = "Membrane/stress-free shape `", chosen = "`, not to `" + options.stress_free + "`.";
   if (options.reduced_volume.has_value() != (options.stress_free == "spheroid"))
-    throw UserError(options.reduced_volume
-                        ? "Membrane/stress-free reduced volume belongs to Membrane/stress-free shape `spheroid`, not to `" + options.stress_free + "`."
-                        : "Membrane/stress-free shape `spheroid` needs Membrane/stress-free reduced volume.");
+    throw UserError(options.reduced_volume ? "Membrane/stress-free reduced volume belongs to " + shape + "spheroid" + chosen
+                                           : shape + "spheroid` needs Membrane/stress-free reduced volume.");
   if (options.stress_free_file.has_value() != (options.stress_free == "file"))
-    throw UserError(options.stress_free_file
-                        ? "Membrane/stress-free file belongs to Membrane/stress-free shape `file`, not to `" + options.stress_free + "`."
-                        : "Membrane/stress-free shape `file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
+    throw UserError(options.stress_free_file ? "Membrane/stress-free file belongs to " + shape + "file" + chosen
+                                             : shape + "file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
 }
 
 }  // namespace
