@@ -18,6 +18,7 @@ membrane::Law law(const membrane::Options& options, double modulus) {
   if (options.law == "Skalak") return membrane::Skalak{modulus, options.area_dilatation.value_or(1.0)};
   if (options.law == "Evans-Skalak") return membrane::EvansSkalak{modulus, options.area_dilatation.value_or(1.0)};
   if (options.law == "Mooney-Rivlin") return membrane::MooneyRivlin{modulus, options.neo_hookean_share.value()};
+  if (options.law == "expression") return membrane::UserLaw{modulus, options.strain_energy()};
   if (options.law == "surface tension") return membrane::SurfaceTension{modulus};
   return membrane::NeoHookean{modulus};
 }

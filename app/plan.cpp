@@ -8,6 +8,7 @@
 #include "app/numbers.hpp"
 #include "base/formatted.hpp"
 #include "base/instruction_set.hpp"
+#include "membrane/strain_energy.hpp"
 #include "coupling/frozen_operator.hpp"
 #include "deck/units.hpp"
 #include "stokes/layer_surface.hpp"
@@ -82,7 +83,11 @@ std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
 std::string membrane_line(const Scene& scene) {
   const std::size_t forces = scene.membrane.forces.all.size();
   const std::string pulled = forces > 0 ? formatted(", pulled at %d patch%s", static_cast<int>(forces), forces > 1 ? "es" : "") : "";
-  const std::string load = scene.membrane.law + pulled + ", load " + scene.membrane.load;
+  const auto own = scene.membrane.strain_energy();
+  const std::string law = own ? formatted(" with shear modulus %.6g G_s and area modulus %.6g G_s for small strains", own->shear_modulus(),
+                                          own->area_modulus())
+                              : "";
+  const std::string load = scene.membrane.law + law + pulled + ", load " + scene.membrane.load;
   if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
   if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
   if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";

@@ -2,6 +2,7 @@
 // Numbers that carry their derivative along one direction, and vectors of any kind of number.
 
 #include <array>
+#include <cmath>
 
 #include "base/register.hpp"
 
@@ -32,6 +33,11 @@ struct Dual {
     const Number root = tanktread::sqrt(a.value);
     return {root, 0.5 * a.slope / root};
   }
+  friend Dual exp(const Dual& a) {
+    const Number e = std::exp(a.value);
+    return {e, e * a.slope};
+  }
+  friend Dual log(const Dual& a) { return {std::log(a.value), a.slope / a.value}; }
 };
 
 /// Vectors in space, of any kind of number.

@@ -6,11 +6,13 @@
 // l1, l2: principal stretches. Psi is a force per length (energy per area), and so are all of its derivatives.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "base/register.hpp"
+#include "membrane/strain_energy.hpp"
 
 namespace tanktread::membrane {
 
@@ -124,6 +126,24 @@ struct AreaElasticity {
   double area_modulus() const { return area; }
 };
 
+/// Psi = G_s times a strain energy of the user's own.
+struct UserLaw {
+  double unit = 1;  ///< G_s of the deck, which the energy and its moduli are over
+  std::shared_ptr<const StrainEnergy> strain_energy;
+
+  template <class Number>
+  Number energy(const Number& i1, const Number& i2) const {
+    return unit * strain_energy->at(i1, i2).value;
+  }
+  template <class Number>
+  Response<Number> response(const Number& i1, const Number& i2) const {
+    const Taylor<Number> psi = unit * strain_energy->at(i1, i2);
+    return {psi.by1, psi.by2, psi.by11, psi.by12, psi.by22};
+  }
+  double modulus() const { return unit; }
+  double area_modulus() const { return unit * strain_energy->area_modulus(); }
+};
+
 /// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
 struct SurfaceTension {
   double tension = 1;  ///< sigma
@@ -161,7 +181,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 }
 
 /// A law of the deck's choice; visited once outside the hot loops.
-using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, SurfaceTension, AreaElasticity>;
+using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity>;
 
 /// A law in two parts, whose energies add up to its own: without its resistance to a change of area as far as that is apart, and this one.
 struct SplitLaw {

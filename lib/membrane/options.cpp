@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
+#include "membrane/strain_energy.hpp"
 
 namespace tanktread::membrane {
 
@@ -19,12 +20,45 @@ void check_stress_free(const Options& options) {
                                              : shape + "file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
 }
 
+/// `Membrane/constants/<name>`.
+struct Constants {
+  std::map<std::string, double>& all;
+
+  void declare(deck::Section& section) {
+    section.each("a number of that name in Membrane/energy", [this](const std::string& name, deck::Section& inner) {
+      if (!inner.documenting() && !inner.given("value"))
+        throw UserError(inner.path("value") + " is missing: it is the number that `" + name + "` stands for.");
+      inner.key("value", all[name], deck::any(), "1", "what the name stands for (required)");
+    });
+    if (section.documenting()) all.clear();
+  }
+};
+
+void declare_energy(Options& options, deck::Section& section) {
+  section.key("energy", options.energy, deck::Choice{},
+              "of the law `expression`: the strain energy per unstressed area over G_s, in I1 = l1^2 + l2^2 - 2 and I2 = l1^2 l2^2 - 1 of the "
+              "principal stretches l1 and l2, J = l1 l2, numbers and `constants`, by + - * / ^ exp log sqrt and parentheses. It is "
+              "differentiated exactly; `(I1 - 1 + 1/(I2 + 1))/2` is the law `neo-Hookean`");
+  Constants named{options.constants};
+  section.optional_section("constants", named, "numbers with names in `energy`, none without this list");
+}
+
+void check_energy(const Options& options) {
+  const std::string other = " belongs to Membrane/law `expression`, but Membrane/law is `" + options.law + "`.";
+  if (options.energy.has_value() != (options.law == "expression"))
+    throw UserError(options.energy ? "Membrane/energy" + other
+                                   : "Membrane/law `expression` needs Membrane/energy, the strain energy over G_s in I1 and I2.");
+  if (!options.energy && !options.constants.empty()) throw UserError("Membrane/constants" + other);
+  options.strain_energy();
+}
+
 }  // namespace
 
 void Options::declare(deck::Section& section) {
-  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "surface tension"},
+  section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression", "surface tension"},
               "constitutive law (3.3): rubber of constant volume, `neo-Hookean` (P-7) or `Mooney-Rivlin`; resistance to a change of area, "
-              "`Skalak` (P-8) or `Evans-Skalak`; or a fluid interface (3.4)");
+              "`Skalak` (P-8) or `Evans-Skalak`; an `expression` of your own, the `energy`; or a fluid interface (3.4)");
+  declare_energy(*this, section);
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
               "Ca = viscosity x rate x R_C / G_s (over the surface tension for a drop); R_C: radius of the sphere of equal volume, rate: "
@@ -95,6 +129,7 @@ void Options::check() const {
   if (neo_hookean_share && law != "Mooney-Rivlin")
     throw UserError("Membrane/neo-Hookean share belongs to Membrane/law `Mooney-Rivlin`, but Membrane/law is `" + law + "`.");
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
+  check_energy(*this);
   if (law == "surface tension" && pre_inflation != 0.0)
     throw UserError(
         "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
@@ -117,6 +152,11 @@ void Options::check() const {
     throw UserError("Membrane/forces and Membrane/load `strong` contradict each other: the forces are part of the weak load.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
+}
+
+std::shared_ptr<const StrainEnergy> Options::strain_energy() const {
+  if (!energy) return nullptr;
+  return std::make_shared<const StrainEnergy>("Membrane/energy", *energy, constants);
 }
 
 double Options::modulus(double viscosity, double rate, double radius) const {

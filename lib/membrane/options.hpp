@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,14 +16,18 @@ class Section;
 
 namespace tanktread::membrane {
 
+class StrainEnergy;
+
 /// The membrane: `Membrane/*` of the deck.
 struct Options {
-  std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), Mooney-Rivlin, Evans-Skalak, surface tension (3.4)
+  std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), Mooney-Rivlin, Evans-Skalak, expression, surface tension (3.4)
   std::optional<double> capillary_number;  ///< Ca = mu rate R_C / G_s, or over sigma; 0.3 if none of the three is given
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
   std::optional<double> area_dilatation;   ///< C of Skalak, Evans-Skalak; set for these laws, 1 if not given, empty otherwise
   std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin; given for this law alone
+  std::optional<std::string> energy;        ///< Psi/G_s of the law `expression`, a text in I1, I2 and J; given for this law alone
+  std::map<std::string, double> constants;  ///< of that text
   std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
   std::optional<double> reduced_volume;    ///< of the stress-free spheroid; given for it alone
   std::optional<std::string> stress_free_file;
@@ -42,6 +47,8 @@ struct Options {
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
 
+
+  std::shared_ptr<const StrainEnergy> strain_energy() const;  ///< of the law `expression`, nothing of others; UserError where it is none
 
   bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }  ///< whether the law has a C
 

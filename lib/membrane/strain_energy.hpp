@@ -1,0 +1,135 @@
+#pragma once
+// A law by a strain energy of the user's own, an expression in the two invariants of the strain, differentiated exactly: every operation is
+// carried out on Taylor polynomials of second degree.
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/register.hpp"
+
+namespace tanktread::membrane {
+
+/// A function of I1 and I2 with its first and second derivatives; `Number` is double, a register or a dual number.
+template <class Number>
+struct Taylor {
+  Number value, by1, by2, by11, by12, by22;
+
+  friend Taylor operator+(const Taylor& a, const Taylor& b) {
+    return {a.value + b.value, a.by1 + b.by1, a.by2 + b.by2, a.by11 + b.by11, a.by12 + b.by12, a.by22 + b.by22};
+  }
+  friend Taylor operator*(double c, const Taylor& a) { return {c * a.value, c * a.by1, c * a.by2, c * a.by11, c * a.by12, c * a.by22}; }
+  friend Taylor operator*(const Taylor& a, const Taylor& b) {
+    return {a.value * b.value,
+            a.value * b.by1 + a.by1 * b.value,
+            a.value * b.by2 + a.by2 * b.value,
+            a.value * b.by11 + 2.0 * (a.by1 * b.by1) + a.by11 * b.value,
+            a.value * b.by12 + a.by1 * b.by2 + a.by2 * b.by1 + a.by12 * b.value,
+            a.value * b.by22 + 2.0 * (a.by2 * b.by2) + a.by22 * b.value};
+  }
+  /// f(a), from f and its first two derivatives there.
+  static Taylor composed(const Number& f, const Number& slope, const Number& bend, const Taylor& a) {
+    return {f,
+            slope * a.by1,
+            slope * a.by2,
+            slope * a.by11 + bend * a.by1 * a.by1,
+            slope * a.by12 + bend * a.by1 * a.by2,
+            slope * a.by22 + bend * a.by2 * a.by2};
+  }
+};
+
+/// Psi(I1, I2) of a text: numbers, named constants, I1, I2, J = sqrt(I2 + 1), + - * / ^, exp, log, sqrt, parentheses; exponents are constants.
+/// The constructor throws UserError, a sentence that starts with `what`, the key that the text is of, where it is no energy of a membrane.
+class StrainEnergy {
+ public:
+  StrainEnergy(const std::string& what, const std::string& text, const std::map<std::string, double>& constants);
+
+  /// Psi, 0 on an unstretched membrane, with its derivatives.
+  template <class Number>
+  Taylor<Number> at(const Number& i1, const Number& i2) const {
+    std::array<Taylor<Number>, most_operations> results;
+    const Number zero = 0.0 * i1, one = zero + 1.0;
+    results[0] = {i1, one, zero, zero, zero, zero};
+    results[1] = {i2, zero, one, zero, zero, zero};
+    std::size_t next = 2;
+    for (const Operation& o : operations_) results[next++] = result(o, results[o.first], results[o.second]);
+    Taylor<Number>& psi = results[next - 1];
+    psi.value = psi.value - at_rest_;
+    return psi;
+  }
+
+  double shear_modulus() const { return shear_modulus_; }  ///< of small strains, in the unit of the text
+  double area_modulus() const { return area_modulus_; }    ///< the same against a change of area
+
+ private:
+  friend class ExpressionParser;
+  enum class Kind { sum, product, shifted, scaled, power, root, exponential, logarithm };
+  /// Of earlier results `first` and `second`, the first two of which are I1 and I2, and a constant.
+  struct Operation {
+    Kind kind;
+    std::size_t first, second;
+    double constant;
+  };
+  static constexpr std::size_t most_operations = 96;
+
+  template <class Number>
+  static Taylor<Number> result(const Operation& o, const Taylor<Number>& a, const Taylor<Number>& b) {
+    using std::exp, std::log, tanktread::sqrt;
+    switch (o.kind) {
+      case Kind::sum: return a + b;
+      case Kind::product: return a * b;
+      case Kind::shifted: return {a.value + o.constant, a.by1, a.by2, a.by11, a.by12, a.by22};
+      case Kind::scaled: return o.constant * a;
+      case Kind::power: {
+        const Number bend = power(a.value, o.constant - 2), slope = bend * a.value;
+        return Taylor<Number>::composed(slope * a.value, o.constant * slope, (o.constant * (o.constant - 1)) * bend, a);
+      }
+      case Kind::root: {
+        const Number root = sqrt(a.value), slope = 0.5 / root;
+        return Taylor<Number>::composed(root, slope, -0.5 * slope / a.value, a);
+      }
+      case Kind::exponential: {
+        const Number e = by_lane(a.value, [](const auto& x) { return exp(x); });
+        return Taylor<Number>::composed(e, e, e, a);
+      }
+      case Kind::logarithm: break;
+    }
+    const Number slope = 1.0 / a.value;
+    return Taylor<Number>::composed(by_lane(a.value, [](const auto& x) { return log(x); }), slope, -slope * slope, a);
+  }
+
+  /// A function of one number on each lane of a register.
+  template <class Number, class Function>
+  static Number by_lane(const Number& a, const Function& f) {
+    if constexpr (std::is_same_v<Number, Register>) {
+      Register result;
+      for (int l = 0; l < lanes; ++l) result[l] = f(a[l]);
+      return result;
+    } else {
+      return f(a);
+    }
+  }
+
+  /// a^p, of whole p by products.
+  template <class Number>
+  static Number power(const Number& a, double p) {
+    constexpr double most_products = 32;
+    if (p != std::floor(p) || std::abs(p) > most_products) {
+      using std::exp, std::log;
+      return by_lane(a, [p](const auto& x) { return exp(p * log(x)); });
+    }
+    const Number base = p < 0 ? 1.0 / a : a;
+    Number product = 0.0 * a + 1.0;
+    for (int k = 0; k < std::abs(p); ++k) product = product * base;
+    return product;
+  }
+
+  void check(const std::string& what) const;
+
+  std::vector<Operation> operations_;
+  double at_rest_ = 0, shear_modulus_ = 0, area_modulus_ = 0;
+};
+
+}  // namespace tanktread::membrane
