@@ -55,8 +55,9 @@ class ParticleSystem {
 /// What `Particle/motion` asks for.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// The two kinds.
+/// The kinds.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> surfactant_drop(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

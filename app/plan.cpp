@@ -234,6 +234,9 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   add_fluid(lines, scene, body, ranks);
   lines.emplace_back("viscosity", viscosity_line(scene, n, tree));
   lines.emplace_back("membrane", membrane_line(scene));
+  if (scene.surfactant)
+    lines.emplace_back("surfactant", formatted("%s equation of state, tension %.6g of that of the clean interface at the start: %d unknowns",
+                                               scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1), n));
   lines.emplace_back("deformation", body.plane.description());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   lines.emplace_back("far sum", far_sum_line(scene, tree));

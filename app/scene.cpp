@@ -60,6 +60,24 @@ void ParticleKind::declare(deck::Section& section) {
   declare_lists(section);
 }
 
+namespace {
+
+/// The list Interface.
+struct InterfaceList {
+  coupling::InterfaceOptions& interface;
+  std::optional<membrane::SurfactantOptions>& surfactant;
+
+  void declare(deck::Section& section) {
+    interface.declare(section);
+    membrane::SurfactantOptions given;
+    const char* meaning = "an insoluble surfactant on a drop, a clean interface without this list; what series and pictures say of tension and "
+                          "energy is of the clean one";
+    if (section.optional_section("surfactant", given, meaning)) surfactant = given;
+  }
+};
+
+}  // namespace
+
 void ParticleKind::declare_lists(deck::Section& section) {
   membrane_given = section.given("Membrane");
   if (!particle.rigid() || membrane_given) section.section("Membrane", membrane, "what its surface is made of");
@@ -68,7 +86,8 @@ void ParticleKind::declare_lists(deck::Section& section) {
   else if (section.given("Surface"))
     throw UserError(section.path("Surface") + " and " + (name.empty() ? "Particle/shape" : section.path("shape")) +
                     " `file` contradict each other: the spline space is the file's.");
-  section.section("Interface", interface, "how the mesh of a drop moves along its interface");
+  InterfaceList list{interface, surfactant};
+  section.section("Interface", list, "the interface of a drop: how its mesh moves along it, and what is on it");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   if (!name.empty()) adaptation.film_resolution = 0.7;
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
@@ -282,6 +301,13 @@ void check_contradictions(const Scene& scene) {
   refuse(desingularised && degenerate, "Quadrature/rule `desingularised`", "Surface/poles `plain`",
          "a degenerate element has no normal at its pole");
   refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
+  const std::string surfactant = "Interface/surfactant";
+  refuse(scene.surfactant && (rigid || !drop), surfactant, rigid ? motion : law, "it is on the interface of a drop");
+  refuse(scene.surfactant && !alone, surfactant, "Particles", "it is for one drop");
+  refuse(scene.surfactant && adapts, surfactant, "Adaptation/enabled", "its concentration does not go over to another mesh");
+  refuse(scene.surfactant && steady, surfactant, sought, "the search leaves its concentration out");
+  refuse(scene.surfactant && scene.time.scheme != "bs3" && scene.time.scheme != "rkc2", surfactant, "Time/scheme `" + scene.time.scheme + "`",
+         "what it does is in no Jacobian; `rkc2` and `bs3` need none");
   refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
   refuse(held && (tube || rigid), "Particle/drift `held`", tube ? confined : motion,
          "it is for particles that deform in a flow whose gradient is the same everywhere");
@@ -401,6 +427,7 @@ void Scene::check() const {
   surface.check();
   check_viscosity_ratio(*this);
   if (!particle.rigid()) membrane.check();
+  if (surfactant) surfactant->check(), surfactant->diffusivity_of(flow.rate(), radius());
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");

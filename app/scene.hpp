@@ -14,6 +14,7 @@
 #include "coupling/symmetry.hpp"
 #include "deck/expectation.hpp"
 #include "membrane/options.hpp"
+#include "membrane/surfactant_options.hpp"
 #include "motion/adaptation.hpp"
 #include "motion/options.hpp"
 #include "motion/continuation.hpp"
@@ -56,6 +57,7 @@ struct ParticleKind {
   membrane::Options membrane;
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
+  std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; none: a clean interface
   motion::AdaptationOptions adaptation;
   CopiesOptions copies;
   bool membrane_given = false;  ///< whether the deck has this list at all

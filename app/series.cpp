@@ -174,6 +174,11 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.pressure_error; }, Needs::exact_pressure},
     {"normal_l2_error", "", "1", "L2 norm of n_h - n over that of n (6.3), where that is known", of_prescribed,
      [](const Moment& m, int) { return m.normal_error; }, Needs::exact},
+    {"surfactant_mass", "", "1", "integral of the concentration over the interface, over the initial one: stays 1 to round-off", of_surfactant,
+     [](const Moment& m, int) { return m.surfactant_mass; }},
+    {"smallest_concentration", "", "1", "of surfactant over the initial one", of_surfactant,
+     [](const Moment& m, int) { return m.smallest_concentration; }},
+    {"largest_concentration", "", "1", "the same", of_surfactant, [](const Moment& m, int) { return m.largest_concentration; }},
     {"parameter", "", "of the key", "Continuation/parameter", of_branch, [](const Moment& m, int) { return m.parameter; }},
     {"fold", "", "1", "1 where the parameter turns back along the branch, else 0", of_branch, [](const Moment& m, int) { return m.fold; }},
     {"leading_rate", "", "1/time",
@@ -250,6 +255,7 @@ std::vector<Series> run_series(const Scene& scene) {
       if (!one.name.empty()) own.name = one.name + "/" + own.name;
       all.push_back(std::move(own));
     }
+  if (scene.surfactant) std::ranges::move(series(scene, of_surfactant), std::back_inserter(all));
   std::ranges::move(steady_series(scene), std::back_inserter(all));
   return all;
 }

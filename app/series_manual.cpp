@@ -29,6 +29,7 @@ constexpr Entry fields[] = {
     {"smallest tension", "1", "capsule, drop", "smaller principal tension (3.2) over G_s, of a drop over sigma"},
     {"largest tension", "1", "capsule, drop", "larger principal tension (3.2) over G_s, of a drop over sigma"},
     {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
+    {"concentration", "1", "drop with surfactant", "of surfactant over the initial one"},
     {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
     {"mode k", "1", "capsule, drop", "displacement of mode k of a spectrum, at its largest 1; of one that oscillates its real part"},
     {"mode k imaginary", "1", "capsule, drop", "its imaginary part"},
@@ -57,7 +58,8 @@ std::string owners(const Series& one) {
   constexpr std::pair<unsigned, const char*> all[] = {{of_run | of_deforming, "capsule, drop"}, {of_rigid, "rigid one of several"},
                                                       {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
                                                       {of_prescribed, "prescribed body"}, {of_mode | of_spectrum, "spectrum of a capsule or drop"},
-                                                      {of_branch, "branch of steady shapes"}, {of_run | of_several, "several particles together"}};
+                                                      {of_branch, "branch of steady shapes"}, {of_surfactant, "drop with surfactant"},
+                                                      {of_run | of_several, "several particles together"}};
   std::string list;
   for (const auto& [owner, text] : all)
     if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);

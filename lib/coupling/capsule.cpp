@@ -208,8 +208,15 @@ const Net& Capsule::energy_gradient(const Net& x) {
   replicate_sums(gradient_);
   for (const Particle& particle : particles())
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
+  if (further_load_.size() > 0) gradient_ += further_load_;
   gradient_at_ = x;
   return gradient_;
+}
+
+/// What was evaluated without it does not stand.
+void Capsule::set_further_load(Net load) {
+  further_load_ = std::move(load);
+  latest_ = {}, gradient_at_ = {};
 }
 
 /// -int f.x dV is the energy of a body force f.

@@ -118,6 +118,9 @@ class Capsule : public Dynamics {
   /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
   Net load(const Net& x);
 
+  /// What joins the gradient of the energy from now on, shape (N, 3): the load of a tension that the shape alone does not tell (3.18).
+  void set_further_load(Net load);
+
   /// Whether control points slide along the interface, so that their velocity is not the fluids'.
   bool slides() const { return interface_.has_value(); }
 
@@ -266,6 +269,7 @@ class Capsule : public Dynamics {
   };
   Latest latest_;  // evaluation
   Net gradient_at_, gradient_;  // x and dE/dx there
+  Net further_load_;  // none: empty
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle
 };

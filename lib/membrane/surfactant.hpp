@@ -1,0 +1,63 @@
+#pragma once
+// Insoluble surfactant on a fluid interface: the load of its tension, its transport along a surface that moves.
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "membrane/mass.hpp"
+#include "membrane/mass_solver.hpp"
+#include "membrane/surfactant_options.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::membrane {
+
+/// A concentration c on a moving surface x with the shape functions N_A: what is conserved is m_A = int c N_A dG, whose sum is the mass,
+///
+///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dG,   sum_A dm_A/dt = 0                              (3.17)
+///
+/// with u the velocity of the control points and v that of the fluid, both the same across the surface. Kept are q_A = m_A/int N_A dG of the initial
+/// surface, 1 at the start. Serial.
+class Surfactant {
+ public:
+  /// `clean_tension` sigma(0); `space` must outlive it.
+  Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
+
+  Eigen::Index size() const { return share_.size(); }  ///< of q: one a control point
+
+  /// Takes the surface x and q there: what follows is of both. Throws RunFailure where no tension is left somewhere.
+  void place(const Net& x, const Eigen::VectorXd& q);
+
+  const Eigen::VectorXd& concentration() const { return concentration_; }  ///< control values of c
+
+  /// What the surfactant adds to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).     (3.18)
+  Net load() const;
+
+  /// dq/dt, where the fluid is faster than the control points by `faster` (control values).
+  Eigen::VectorXd rate(const Net& faster) const;
+
+  double mass(const Eigen::VectorXd& q) const { return share_.dot(q) / share_.sum(); }  ///< int c dG over the initial one
+  double smallest() const { return smallest_; }                          ///< c at the Gauss points
+  double largest() const { return largest_; }
+
+ private:
+  /// The functions of an element at its Gauss points, one a row, and the surface there.
+  struct ElementPoints {
+    Eigen::MatrixXd value, by_s, by_t;           // of each function
+    Eigen::VectorXd weight;                      // of the Gauss rule
+    Eigen::MatrixX3d s, t;                       // tangents
+    Eigen::VectorXd g11, g12, g22, area;         // contravariant metric; weight times J
+    Eigen::VectorXd c;
+  };
+  void scatter(const ElementPoints& at, std::size_t e, const Eigen::MatrixXd& along_s, const Eigen::MatrixXd& along_t, auto& sum) const;
+
+  const spline::Space& space_;
+  SurfactantOptions options_;
+  double clean_tension_, diffusivity_;
+  std::vector<ElementPoints> elements_;
+  MassMatrix mass_;
+  MassSolver solver_;
+  Eigen::VectorXd share_, concentration_;  // int N_A dG of the initial surface
+  double smallest_ = 1, largest_ = 1;
+};
+
+}  // namespace tanktread::membrane

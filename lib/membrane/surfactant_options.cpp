@@ -1,0 +1,46 @@
+#include "membrane/surfactant_options.hpp"
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/section.hpp"
+
+namespace tanktread::membrane {
+
+void SurfactantOptions::declare(deck::Section& section) {
+  section.key("equation of state", equation_of_state, deck::Choice{"linear", "Langmuir"},
+              "tension over that of the clean interface, which Membrane says, at the concentration c over the initial one: 1 - E c, or, "
+              "`Langmuir`, 1 + E ln(1 - x c)");
+  section.key("elasticity number", elasticity, deck::positive(), "1",
+              "E: gas constant x temperature x initial concentration (`Langmuir`: the largest one) over the tension of the clean interface");
+  section.key("coverage", coverage, deck::between(1e-6, 0.999999), "1",
+              "x of `Langmuir`: the initial concentration over the largest one; needed there");
+  section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time", "D_s along the interface; 0 if none is given");
+  section.key("Peclet number", peclet_number, deck::positive(), "1", "rate R_C^2/D_s, instead of `diffusivity`");
+}
+
+void SurfactantOptions::check() const {
+  const std::string list = "Interface/surfactant/";
+  const bool langmuir = equation_of_state == "Langmuir";
+  if (coverage.has_value() != langmuir)
+    throw UserError(langmuir ? list + "equation of state `Langmuir` needs " + list + "coverage, the initial concentration over the largest one."
+                             : list + "coverage belongs to " + list + "equation of state `Langmuir`, not to `" + equation_of_state + "`.");
+  if (diffusivity && peclet_number)
+    throw UserError(list + "diffusivity and " + list + "Peclet number contradict each other: give one of them.");
+  if (!(tension(1) > 0))
+    throw UserError(list + formatted("elasticity number %g leaves no surface tension at the initial concentration: %g of the clean interface's.",
+                                     elasticity, tension(1)));
+}
+
+double SurfactantOptions::tension(double c) const {
+  return coverage ? 1 + elasticity * std::log(1 - *coverage * c) : 1 - elasticity * c;
+}
+
+double SurfactantOptions::diffusivity_of(double rate, double radius) const {
+  if (!peclet_number) return diffusivity.value_or(0);
+  if (rate == 0) throw UserError("Interface/surfactant/Peclet number needs a flow with a gradient: give Interface/surfactant/diffusivity instead.");
+  return rate * radius * radius / *peclet_number;
+}
+
+}  // namespace tanktread::membrane

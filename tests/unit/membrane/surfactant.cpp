@@ -1,0 +1,56 @@
+#include "membrane/surfactant.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "capsules.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+SurfactantOptions linear(double elasticity) {
+  SurfactantOptions options;
+  options.elasticity = elasticity;
+  return options;
+}
+
+TEST(Surfactant, IsConservedWhateverMoves) {
+  const Sphere& s = sphere(3);
+  Surfactant surfactant(s.space, s.net, linear(0.2), 1.3, 0.4);
+  const Eigen::VectorXd q = Eigen::VectorXd::Ones(s.net.rows()) + 0.3 * random_net(s.net.rows(), 1).col(0);
+  surfactant.place(deformed(s.net), q);
+  const Eigen::VectorXd rate = surfactant.rate(random_net(s.net.rows(), 2));
+  EXPECT_GT(rate.cwiseAbs().maxCoeff(), 1);
+  EXPECT_NEAR(surfactant.mass(rate), 0, 1e-15 * rate.cwiseAbs().maxCoeff() * std::sqrt(static_cast<double>(rate.size())));  // round-off
+  EXPECT_NEAR(surfactant.mass(Eigen::VectorXd::Ones(q.size())), 1, 1e-15);
+}
+
+TEST(Surfactant, OfAnEvenConcentrationLowersTheTensionOfTheInterface) {
+  const Sphere& s = sphere(3);
+  const Net load = Membrane(s.space, s.net, SurfaceTension{1.3}).load(s.net);
+  Surfactant surfactant(s.space, s.net, linear(0.2), 1.3, 0);
+  surfactant.place(s.net, Eigen::VectorXd::Ones(s.net.rows()));
+  EXPECT_LT((surfactant.load() + 0.2 * load).norm(), 1e-12 * load.norm());
+  EXPECT_NEAR(surfactant.smallest(), 1, 1e-12);
+  EXPECT_NEAR(surfactant.largest(), 1, 1e-12);
+  EXPECT_LT(surfactant.rate(Net::Zero(s.net.rows(), 3)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Surfactant, HasTheEquationsOfStateOfItsName) {
+  SurfactantOptions langmuir = linear(0.3);
+  langmuir.coverage = 0.25;
+  EXPECT_DOUBLE_EQ(linear(0.3).tension(2), 0.4);
+  EXPECT_DOUBLE_EQ(langmuir.tension(2), 1 + 0.3 * std::log(0.5));
+  const double h = 1e-5;  // little of it: the linear one of E x
+  langmuir.coverage = h;
+  EXPECT_NEAR((langmuir.tension(1) - 1) / h, -0.3, 1e-5);
+}
+
+TEST(Surfactant, ThatLeavesNoTensionIsAFailureWithItsConcentration) {
+  const Sphere& s = sphere(3);
+  Surfactant surfactant(s.space, s.net, linear(0.4), 1, 0);
+  EXPECT_THROW(surfactant.place(s.net, Eigen::VectorXd::Constant(s.net.rows(), 2.6)), RunFailure);
+}
+
+}  // namespace
+}  // namespace tanktread::membrane
