@@ -8,9 +8,9 @@
 #include "app/numbers.hpp"
 #include "base/formatted.hpp"
 #include "base/instruction_set.hpp"
-#include "membrane/strain_energy.hpp"
 #include "coupling/frozen_operator.hpp"
 #include "deck/units.hpp"
+#include "membrane/strain_energy.hpp"
 #include "stokes/layer_surface.hpp"
 
 namespace tanktread {
