@@ -70,9 +70,7 @@ struct InterfaceList {
   void declare(deck::Section& section) {
     interface.declare(section);
     membrane::SurfactantOptions given;
-    const char* meaning = "an insoluble surfactant on a drop, a clean interface without this list; what series and pictures say of tension and "
-                          "energy is of the clean one";
-    if (section.optional_section("surfactant", given, meaning)) surfactant = given;
+    if (section.optional_section("surfactant", given, "an insoluble surfactant on a drop; a clean interface without this list")) surfactant = given;
   }
 };
 

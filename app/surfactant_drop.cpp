@@ -55,6 +55,11 @@ class SurfactantDrop : public ParticleSystem {
     std::vector<double> row = drop_->row(of_drop(state), report, wall_seconds);
     const Eigen::VectorXd content = motion_->content(state.x);
     surfactant_.place(motion_->shape(state.x), content);
+    const std::vector<Series> all = run_series(scene_);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (all[k].name == "energy") row[k] += surfactant_.energy();
+      if (all[k].name == "smallest_tension") row[k] = scene_.surfactant->tension(surfactant_.largest());
+    }
     Moment now;
     now.surfactant_mass = surfactant_.mass(content);
     now.smallest_concentration = surfactant_.smallest(), now.largest_concentration = surfactant_.largest();
@@ -68,10 +73,13 @@ class SurfactantDrop : public ParticleSystem {
     pictured_ = of_drop(state);
     SurfacePicture picture = drop_->picture(pictured_);
     const auto of_shape = picture.fields;
-    picture.fields = [of_shape, concentration = surfactant_.concentration()](const output::Nodes& nodes) {
+    picture.fields = [of_shape, options = *scene_.surfactant, concentration = surfactant_.concentration()](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);
-      const Net rows = concentration.replicate(1, 3);
-      fields.push_back({"concentration", nodes.values(rows).col(0)});
+      const Eigen::VectorXd c = nodes.values(concentration.replicate(1, 3)).col(0);
+      for (output::Field& field : fields)
+        if (field.name == "smallest tension" || field.name == "largest tension")
+          field.values = c.unaryExpr([&](double here) { return options.tension(here); });
+      fields.push_back({"concentration", c});
       return fields;
     };
     return picture;

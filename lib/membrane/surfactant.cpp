@@ -1,32 +1,52 @@
 #include "membrane/surfactant.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "membrane/surfactant_kernel.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 
 namespace tanktread::membrane {
 
+namespace {
+constexpr int most_points = 144, most_functions = 64;  // of an element
+}  // namespace
+
 Surfactant::Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity)
     : space_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space) {
-  constexpr int points = 4;  // a direction at degree 3, as the membrane's
+  constexpr int order = 4;  // Gauss points a direction at degree 3, as the membrane's
   for (const spline::Element& element : space.elements) {
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(points + std::max(0, element.degree - 3));
-    const auto n = static_cast<Eigen::Index>(rule.size()), functions = static_cast<Eigen::Index>(element.points.size());
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(order + std::max(0, element.degree - 3));
     ElementPoints& at = elements_.emplace_back();
-    for (Eigen::MatrixXd* table : {&at.value, &at.by_s, &at.by_t}) table->resize(n, functions);
-    at.weight = rule.weights;
-    for (Eigen::Index q = 0; q < n; ++q) {
-      const spline::Basis basis = spline::basis(element, rule.s[q], rule.t[q]);
-      at.value.row(q) = basis.value.transpose(), at.by_s.row(q) = basis.s.transpose(), at.by_t.row(q) = basis.t.transpose();
+    at.n = rule.size(), at.functions = static_cast<int>(element.points.size());
+    assert(at.n <= most_points && at.functions <= most_functions);
+    const auto n = static_cast<std::size_t>(at.n), table = n * element.points.size();
+    for (std::vector<double>* one : {&at.value, &at.by_s, &at.by_t}) one->resize(table);
+    for (std::vector<double>* one : {&at.s, &at.t, &at.metric}) one->resize(4 * n);
+    at.c.resize(n);
+    at.weight.assign(rule.weights.begin(), rule.weights.end());
+    for (std::size_t q = 0; q < n; ++q) {
+      const auto k = static_cast<Eigen::Index>(q);
+      const spline::Basis basis = spline::basis(element, rule.s[k], rule.t[k]);
+      for (std::size_t a = 0; a < element.points.size(); ++a) {
+        const auto function = static_cast<Eigen::Index>(a);
+        at.value[a * n + q] = basis.value[function], at.by_s[a * n + q] = basis.s[function], at.by_t[a * n + q] = basis.t[function];
+      }
     }
   }
   const Eigen::SparseMatrix<double>& mass = mass_.update(initial);
   solver_.factor(mass);
   share_ = mass * Eigen::VectorXd::Ones(initial.rows());
+}
+
+/// Contravariant components at Gauss point q.
+std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, double along_t) const {
+  const double *g11 = &metric[static_cast<std::size_t>(q)], *g12 = g11 + n, *g22 = g12 + n;
+  return {*g11 * along_s + *g12 * along_t, *g12 * along_s + *g22 * along_t};
 }
 
 void Surfactant::place(const Net& x, const Eigen::VectorXd& q) {
@@ -37,35 +57,38 @@ void Surfactant::place(const Net& x, const Eigen::VectorXd& q) {
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
-    const Eigen::MatrixX3d own = x(points, Eigen::all);
-    at.s = at.by_s * own, at.t = at.by_t * own;
-    const Eigen::VectorXd ss = at.s.rowwise().squaredNorm(), tt = at.t.rowwise().squaredNorm(), st = at.s.cwiseProduct(at.t).rowwise().sum();
-    const Eigen::VectorXd det = ss.cwiseProduct(tt) - st.cwiseAbs2();
-    at.g11 = tt.cwiseQuotient(det), at.g12 = -st.cwiseQuotient(det), at.g22 = ss.cwiseQuotient(det);
-    at.area = at.weight.cwiseProduct(det.cwiseSqrt());
-    at.c = at.value * concentration_(points);
-    smallest_ = std::min(smallest_, at.c.minCoeff()), largest_ = std::max(largest_, at.c.maxCoeff());
+    double own[4 * most_functions], c[most_functions];
+    for (std::size_t a = 0; a < points.size(); ++a) {
+      for (int k = 0; k < 3; ++k) own[4 * a + static_cast<std::size_t>(k)] = x(points[a], k);
+      c[a] = own[4 * a + 3] = concentration_[points[a]];
+    }
+    sample(4, at.n, at.functions, at.by_s.data(), own, at.s.data());
+    sample(4, at.n, at.functions, at.by_t.data(), own, at.t.data());
+    sample(1, at.n, at.functions, at.value.data(), c, at.c.data());
+    membrane::metric(at.n, at.s.data(), at.t.data(), at.weight.data(), at.metric.data());
+    const auto [least, most] = std::ranges::minmax(at.c);
+    smallest_ = std::min(smallest_, least), largest_ = std::max(largest_, most);
   }
   if (!(options_.tension(largest_) > 0))
     throw RunFailure(formatted("the surfactant leaves no surface tension where its concentration is %.4g of the initial one", largest_));
-}
-
-/// sum_A += sum_q (N_A,s along_s + N_A,t along_t), rows of the functions of element e.
-void Surfactant::scatter(const ElementPoints& at, std::size_t e, const Eigen::MatrixXd& along_s, const Eigen::MatrixXd& along_t, auto& sum) const {
-  const Eigen::MatrixXd rows = at.by_s.transpose() * along_s + at.by_t.transpose() * along_t;
-  const std::vector<int>& points = space_.elements[e].points;
-  for (std::size_t a = 0; a < points.size(); ++a) sum.row(points[a]) += rows.row(static_cast<Eigen::Index>(a));
 }
 
 Net Surfactant::load() const {
   Net d = Net::Zero(space_.n_points, 3);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
-    const Eigen::VectorXd less = clean_tension_ * at.area.cwiseProduct(at.c.unaryExpr([&](double c) { return options_.tension(c) - 1; }));
-    const auto contravariant = [&](const Eigen::VectorXd& by_s, const Eigen::VectorXd& by_t) -> Eigen::MatrixXd {
-      return less.cwiseProduct(by_s).asDiagonal() * at.s + less.cwiseProduct(by_t).asDiagonal() * at.t;
-    };
-    scatter(at, e, contravariant(at.g11, at.g12), contravariant(at.g12, at.g22), d);
+    double along_s[3 * most_points], along_t[3 * most_points], rows[3 * most_functions];
+    for (int q = 0; q < at.n; ++q) {
+      const double less = clean_tension_ * (options_.tension(at.c[static_cast<std::size_t>(q)]) - 1) * at.area()[q];
+      for (int k = 0; k < 3; ++k) {
+        const int i = k * at.n + q;
+        const auto [up_s, up_t] = at.raised(q, at.s[static_cast<std::size_t>(i)], at.t[static_cast<std::size_t>(i)]);
+        along_s[i] = less * up_s, along_t[i] = less * up_t;
+      }
+    }
+    test(3, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);
+    const std::vector<int>& points = space_.elements[e].points;
+    for (std::size_t a = 0; a < points.size(); ++a) d.row(points[a]) += Eigen::Map<const Eigen::RowVector3d>(rows + 3 * a);
   }
   return d;
 }
@@ -75,15 +98,28 @@ Eigen::VectorXd Surfactant::rate(const Net& faster) const {
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
-    const Eigen::MatrixX3d w = at.value * Eigen::MatrixX3d(faster(points, Eigen::all));
-    const Eigen::VectorXd c = concentration_(points);
-    const Eigen::VectorXd by_s = at.c.cwiseProduct(w.cwiseProduct(at.s).rowwise().sum()) - diffusivity_ * (at.by_s * c);
-    const Eigen::VectorXd by_t = at.c.cwiseProduct(w.cwiseProduct(at.t).rowwise().sum()) - diffusivity_ * (at.by_t * c);
-    const Eigen::VectorXd along_s = at.area.cwiseProduct(at.g11.cwiseProduct(by_s) + at.g12.cwiseProduct(by_t));
-    const Eigen::VectorXd along_t = at.area.cwiseProduct(at.g12.cwiseProduct(by_s) + at.g22.cwiseProduct(by_t));
-    scatter(at, e, along_s, along_t, rate);
+    double own[3 * most_functions], w[3 * most_points], along_s[most_points], along_t[most_points], rows[most_functions];
+    for (std::size_t a = 0; a < points.size(); ++a) Eigen::Map<Eigen::RowVector3d>(own + 3 * a) = faster.row(points[a]);
+    sample(3, at.n, at.functions, at.value.data(), own, w);
+    const double *s = at.s.data(), *t = at.t.data();
+    for (int q = 0; q < at.n; ++q) {
+      double ws = 0, wt = 0;
+      for (int i = q; i < 3 * at.n; i += at.n) ws += w[i] * s[i], wt += w[i] * t[i];
+      const double c = at.c[static_cast<std::size_t>(q)];
+      const auto [up_s, up_t] = at.raised(q, c * ws - diffusivity_ * s[3 * at.n + q], c * wt - diffusivity_ * t[3 * at.n + q]);
+      along_s[q] = at.area()[q] * up_s, along_t[q] = at.area()[q] * up_t;
+    }
+    test(1, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);
+    for (std::size_t a = 0; a < points.size(); ++a) rate[points[a]] += rows[a];
   }
   return rate.cwiseQuotient(share_);
+}
+
+double Surfactant::energy() const {
+  double sum = 0;
+  for (const ElementPoints& at : elements_)
+    for (int q = 0; q < at.n; ++q) sum += at.area()[q] * (options_.free_energy(at.c[static_cast<std::size_t>(q)]) - 1);
+  return clean_tension_ * sum;
 }
 
 }  // namespace tanktread::membrane

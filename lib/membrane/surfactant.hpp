@@ -1,6 +1,7 @@
 #pragma once
 // Insoluble surfactant on a fluid interface: the load of its tension, its transport along a surface that moves.
 
+#include <array>
 #include <vector>
 
 #include "base/types.hpp"
@@ -36,19 +37,23 @@ class Surfactant {
   Eigen::VectorXd rate(const Net& faster) const;
 
   double mass(const Eigen::VectorXd& q) const { return share_.dot(q) / share_.sum(); }  ///< int c dG over the initial one
+  /// int (f(c) - sigma(0)) dG of the free energy f of the surface: what the surfactant adds to that of the clean interface.     (3.21)
+  double energy() const;
   double smallest() const { return smallest_; }                          ///< c at the Gauss points
   double largest() const { return largest_; }
 
  private:
-  /// The functions of an element at its Gauss points, one a row, and the surface there.
+  /// The functions of an element at its n Gauss points, and the surface and the concentration there; arrays as surfactant_kernel.hpp has them.
   struct ElementPoints {
-    Eigen::MatrixXd value, by_s, by_t;           // of each function
-    Eigen::VectorXd weight;                      // of the Gauss rule
-    Eigen::MatrixX3d s, t;                       // tangents
-    Eigen::VectorXd g11, g12, g22, area;         // contravariant metric; weight times J
-    Eigen::VectorXd c;
+    int n, functions;
+    std::vector<double> value, by_s, by_t, weight;
+    std::vector<double> s, t;    // x and c by each parameter: four fields
+    std::vector<double> metric;  // contravariant, and weight times J
+    std::vector<double> c;
+
+    const double* area() const { return &metric[3 * static_cast<std::size_t>(n)]; }
+    std::array<double, 2> raised(int q, double by_s, double by_t) const;
   };
-  void scatter(const ElementPoints& at, std::size_t e, const Eigen::MatrixXd& along_s, const Eigen::MatrixXd& along_t, auto& sum) const;
 
   const spline::Space& space_;
   SurfactantOptions options_;

@@ -37,6 +37,11 @@ double SurfactantOptions::tension(double c) const {
   return coverage ? 1 + elasticity * std::log(1 - *coverage * c) : 1 - elasticity * c;
 }
 
+double SurfactantOptions::free_energy(double c) const {
+  if (c <= 0) return 1;
+  return coverage ? tension(c) + elasticity * *coverage * c * std::log(c / (1 - *coverage * c)) : tension(c) + elasticity * c * std::log(c);
+}
+
 double SurfactantOptions::diffusivity_of(double rate, double radius) const {
   if (!peclet_number) return diffusivity.value_or(0);
   if (rate == 0) throw UserError("Interface/surfactant/Peclet number needs a flow with a gradient: give Interface/surfactant/diffusivity instead.");

@@ -46,6 +46,35 @@ TEST(Surfactant, HasTheEquationsOfStateOfItsName) {
   EXPECT_NEAR((langmuir.tension(1) - 1) / h, -0.3, 1e-5);
 }
 
+TEST(Surfactant, FreeEnergyLessWhatTheConcentrationIsWorthIsTheTension) {
+  SurfactantOptions langmuir = linear(0.3);
+  langmuir.coverage = 0.25;
+  const double c = 1.3, h = 1e-5;  // central differences: 1e-11
+  for (const SurfactantOptions& state : {linear(0.3), langmuir})
+    EXPECT_NEAR(state.free_energy(c) - c * (state.free_energy(c + h) - state.free_energy(c - h)) / (2 * h), state.tension(c), 1e-9);
+}
+
+/// Where control points carry their surfactant along; c is projected, so that this is not exact on a mesh.
+TEST(Surfactant, LoadIsTheGradientOfTheFreeEnergy) {
+  const auto error = [](int n) {
+    const Sphere& s = sphere(n);
+    Surfactant surfactant(s.space, s.net, linear(0.4), 1, 0);
+    const Eigen::VectorXd q = Eigen::VectorXd::Ones(s.net.rows()) + 0.3 * s.net.col(2);
+    const Net x = deformed(s.net), u = deformed(x) - x;
+    const double h = 1e-4;
+    const auto energy = [&](double part) {
+      surfactant.place(x + part * u, q);
+      return surfactant.energy();
+    };
+    const double slope = (energy(h) - energy(-h)) / (2 * h);
+    surfactant.place(x, q);
+    return std::abs(inner(surfactant.load(), u) / slope - 1);
+  };
+  const double coarse = error(4), fine = error(8);
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_LT(fine, coarse / 4) << coarse << ' ' << fine;
+}
+
 TEST(Surfactant, ThatLeavesNoTensionIsAFailureWithItsConcentration) {
   const Sphere& s = sphere(3);
   Surfactant surfactant(s.space, s.net, linear(0.4), 1, 0);
