@@ -124,6 +124,26 @@ TEST_P(SurfactantOfASphere, RelaxesAsTheTwoByTwoSystemHasIt) {
 INSTANTIATE_TEST_SUITE_P(Surfactant, SurfactantOfASphere,
                          testing::Values(Case{1, "relaxed"}, Case{1, "material"}, Case{0.2, "relaxed"}, Case{5, "relaxed"}));
 
+TEST(Surfactant, TheFreeEnergyOfADropLeftAloneFalls) {
+  Laden drop({"Flow/type=quiescent", "Membrane/surface tension=1", "Interface/surfactant/elasticity number=0.4", "Particle/shape=spheroid",
+              "Particle/semi-axes=[0.8, 0.8, 1.6]", "Surface/elements per side=4"},
+             0.02);
+  motion::State state;
+  state.x = drop.motion.start(drop.rest());
+  const auto scheme = motion::integrator(drop.scene.scene.time);
+  motion::begin(drop.motion, state);
+  state.step = motion::first_step(drop.motion, state, drop.scene.scene.time);
+  const auto energy = [&] {
+    drop.motion.place(state.x);
+    return drop.scene.capsule->membrane().energy(drop.motion.shape(state.x)) + drop.surfactant.energy();
+  };
+  for (double before = energy(); state.time < 10; before = energy()) {
+    scheme->advance(drop.motion, state, 10);
+    EXPECT_LT(energy(), before) << state.time;
+  }
+  EXPECT_LT(drop.surfactant.largest() - drop.surfactant.smallest(), 0.1);
+}
+
 /// D/Ca where it is steady.
 double slope(double ca, double diffusivity, const std::vector<std::string>& equation) {
   std::vector<std::string> settings = {"Flow/type=uniaxial extension", "Surface/elements per side=5", "Solvers/projection=least squares",
