@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+# ranks: 2
+# A drop with surfactant as a run: its mass, meshes that slide or go with the fluid, ranks, a run that goes on, and one that runs out of tension.
+import numpy
+
+from harness import check, deck, main, run, series, summary
+
+DECK = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particle: {shape: sphere, viscosity ratio: 2}
+  Membrane: {law: surface tension, capillary number: 0.2}
+  Interface: {surfactant: {elasticity number: 0.3, diffusivity: 0.05}}
+  Surface: {elements per side: 4}
+  Time: {scheme: bs3, fixed step: 0.04, final time: 0.8}
+  Solvers: {tolerance: 1.0e-12}
+  Output: {interval: 0.4}
+"""
+SERIES = "taylor_inertia", "stresslet_13", "energy", "largest_concentration", "smallest_concentration"
+
+
+def _close(one, other, tolerance):
+    for name in SERIES:
+        a, b = series(one, name), series(other, name)
+        check(len(a) == len(b) and numpy.max(abs(a - b)) <= tolerance * numpy.max(abs(a)), f"{name} differs by {numpy.max(abs(a - b))}")
+
+
+def two_processes_do_what_one_does_and_the_mass_is_kept():
+    for ranks in 1, 2:
+        run(deck(DECK), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
+        mass = series(f"on_{ranks}", "surfactant_mass")
+        check(numpy.max(abs(mass - 1)) < 1e-14, f"the mass is off by {numpy.max(abs(mass - 1))}")
+    _close("on_1", "on_2", 1e-10)
+
+
+def a_run_goes_on_as_if_it_had_not_stopped():
+    run(deck(DECK), "--output", "whole", "--quiet")
+    run(deck(DECK), "--set", "Time/final time=0.4", "--output", "parts", "--quiet")
+    run("--resume", "parts", "--set", "Time/final time=0.8", "--quiet")
+    _close("whole", "parts", 1e-13)  # the time of 0.4 is met by different sums
+
+
+def a_mesh_that_slides_and_one_that_goes_with_the_fluid_carry_it_alike():
+    for motion in "relaxed", "material":
+        words = ["--set", "Flow/type=uniaxial extension", "--set", f"Interface/motion={motion}", "--set", "Surface/elements per side=8"]
+        words += ["--set", "Membrane/capillary number=0.05", "--set", "Time/scheme=rkc2"]
+        run(deck(DECK), *words, "--output", motion, "--quiet")
+    d = [series(motion, "taylor_inertia")[-1] for motion in ("relaxed", "material")]
+    check(abs(d[0] / d[1] - 1) < 1e-4, f"D is {d[0]} and {d[1]}")  # 1.7e-4 with 6 elements a side
+    largest = series("material", "largest_concentration")[-1]
+    check(largest > 1.2, f"hardly anything is swept to the poles: {largest}")
+
+
+def a_run_without_tension_left_says_so_and_leaves_a_checkpoint():
+    words = ["--set", "Interface/surfactant/elasticity number=0.9", "--set", "Flow/type=uniaxial extension", "--set", "Membrane/capillary number=0.5"]
+    told = run(deck(DECK), *words, "--output", "spent", "--quiet", code=3).stderr
+    check("leaves no surface tension where its concentration is 1." in told, told)
+    check("failed" in summary("spent")["status"], summary("spent")["status"])
+
+
+main()
