@@ -52,6 +52,13 @@ void check_surface(const Scene& scene, const output::Checkpoint& run, const std:
   if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
+/// The control points of a run; behind them, a drop with surfactant has what is on it.
+Net shape_of(const output::Checkpoint& run) {
+  const Eigen::MatrixXd& x = run.arrays.at("x");
+  const auto alone = run.arrays.find("unstressed");
+  return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
+}
+
 }  // namespace
 
 std::optional<output::Checkpoint> run_before(const Scene& scene) try {
@@ -82,7 +89,7 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
   const surface::InitialShape& initial = *shape.initial;
   const bool own = initial.volume == "own";
   if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
-  const Net x = before ? Net(before->arrays.at("x")) : net_of_file(body.space, initial.file.value(), key + "file");
+  const Net x = before ? shape_of(*before) : net_of_file(body.space, initial.file.value(), key + "file");
   if (x.rows() != body.space.n_points)
     throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));

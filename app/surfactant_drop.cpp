@@ -17,7 +17,7 @@ class SurfactantDrop : public ParticleSystem {
  public:
   SurfactantDrop(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), drop_(deforming(scene, ranks, phases)),
-        surfactant_(body().space, body().rest, *scene.surfactant, scene.modulus(),
+        surfactant_(body().space, body().initial, *scene.surfactant, scene.modulus(),
                     scene.surfactant->diffusivity_of(scene.flow.rate(), scene.radius())) {
     take_drop();
   }
