@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "deck/words.hpp"
 #include "membrane/laws.hpp"
 
 namespace tanktread::membrane {
@@ -19,6 +20,9 @@ class ExpressionParser {
       : what_(what), text_(text), constants_(constants), energy_(energy) {}
 
   void parse() {
+    constexpr std::size_t longest = 2000;  // what is longer might be deeper than the stack
+    if (text_.size() > longest)
+      throw UserError(what_ + formatted(" is too long: it has %zu characters, more than %zu.", text_.size(), longest));
     const Term all = sum();
     if (here() != '\0') refuse("an operator or the end is expected");
     if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is the same for every strain.");
@@ -37,7 +41,7 @@ class ExpressionParser {
 
   [[noreturn]] void refuse(const std::string& reason) const {
     const std::string place = next_ < text_.size() ? formatted(" at character %d", static_cast<int>(next_) + 1) : " at the end";
-    throw UserError(what_ + " is not an expression: " + reason + place + " of `" + text_ + "`.");
+    throw UserError(what_ + " is not an expression: " + reason + place + " of `" + deck::shortened(text_, 80) + "`.");
   }
 
   char here() {

@@ -108,6 +108,7 @@ TEST(StrainEnergy, WhatIsNoEnergyIsRefusedWithItsNumbers) {
   std::string sum = neo_hookean;
   for (int k = 0; k < 100; ++k) sum += " + I2^2";
   EXPECT_PRED2(says, refusal(sum), "too long");
+  EXPECT_PRED2(says, refusal(std::string(100000, '-') + "I1"), "100002 characters");
 }
 
 }  // namespace
