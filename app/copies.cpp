@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "app/packing.hpp"
 #include "app/scene.hpp"
 #include "base/csv.hpp"
 #include "base/errors.hpp"
@@ -20,12 +21,6 @@ namespace {
 /// A copy's centre and orientation, a rotation vector in degrees.
 struct Copy {
   Vec3 centre, orientation = Vec3::Zero();
-};
-
-/// A sphere around a particle.
-struct Ball {
-  Vec3 centre;
-  double radius;
 };
 
 Eigen::AngleAxisd rotation(const Vec3& degrees) {
@@ -58,11 +53,8 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Between 0 and 1, the same with every standard library.
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
-
 /// Places that are drawn one after the other, of which those too close to an earlier one are thrown away.
-std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<Ball>& taken,
+std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
   const Vec3 half = how.box ? Vec3(*how.box / 2) : Vec3::Constant(*how.ball);
@@ -75,8 +67,8 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
     Vec3 place;
     for (int c = 0; c < 3; ++c) place[c] = (2 * uniform(random) - 1) * (half[c] - radius);
     if (how.ball && place.norm() > *how.ball - radius) continue;
-    const Ball here{origin + place, radius};
-    const auto meets = [&](const Ball& other) {
+    const PackedSphere here{origin + place, radius, how.least_gap, true};
+    const auto meets = [&](const PackedSphere& other) {
       return (here.centre - other.centre).norm() < (radius + other.radius) + how.least_gap * std::max(radius, other.radius);
     };
     if (std::ranges::any_of(taken, meets)) continue;
@@ -86,28 +78,41 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   return copies;
 }
 
-int count(const CopiesOptions& how, double of_one) {
+int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell) {
   if (how.number) return *how.number;
-  const double room = how.box ? how.box->prod() : 4 * std::numbers::pi / 3 * std::pow(*how.ball, 3);
+  const double room = how.box ? how.box->prod() : how.ball ? 4 * std::numbers::pi / 3 * std::pow(*how.ball, 3) : cell->volume();
   return std::max(1, static_cast<int>(std::lround(*how.volume_fraction * room / of_one)));
 }
 
-std::vector<Copy> places(const ParticleKind& kind, std::vector<Ball>& taken) {
+/// Anywhere in the cell, one over the other: `pack` is to follow.
+std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
+                          std::vector<PackedSphere>& taken) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
+  for (int k = 0; k < number; ++k) {
+    Vec3 place;
+    for (int c = 0; c < 3; ++c) place[c] = uniform(random) - 0.5;
+    taken.push_back({origin + cell.vectors() * place, radius, how.least_gap, false});
+  }
+  return std::vector<Copy>(static_cast<std::size_t>(number));
+}
+
+std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::PeriodicCell>& cell, std::vector<PackedSphere>& taken) {
   const CopiesOptions& how = kind.copies;
   const surface::ParticleShape& shape = kind.particle.shape;
   const std::string list = "Particles/" + kind.name + "/copies";
   const double radius = shape.circumscribed_radius();
   if (!how.present) {
-    taken.push_back({shape.center, radius});
+    taken.push_back({shape.center, radius, 0, true});
     return {};
   }
-  how.check(list);
-  if (how.number || how.volume_fraction) {
-    const double of_one = 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3);
-    return at_random(how, count(how, of_one), radius, shape.center, taken, list);
+  how.check(list, cell && cell->n() == 3);
+  if (how.random()) {
+    const int number = count(how, 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3), cell);
+    if (how.in_cell()) return in_cell(how, number, radius, shape.center, *cell, taken);
+    return at_random(how, number, radius, shape.center, taken, list);
   }
   const std::vector<Copy> copies = how.file ? in_file(*how.file, list) : on_lattice(*how.lattice, *how.spacing);
-  for (const Copy& copy : copies) taken.push_back({shape.center + copy.centre, radius});
+  for (const Copy& copy : copies) taken.push_back({shape.center + copy.centre, radius, 0, true});
   return copies;
 }
 
@@ -119,8 +124,11 @@ void CopiesOptions::declare(deck::Section& section) {
               "may name the columns; looked for where the program is started and beside the deck");
   section.key("lattice", lattice, deck::at_least(1), "1", "how many along x1, x2 and x3, about the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length", "of the lattice, between centres");
-  section.key("number", number, deck::at_least(1), "1", "how many at random in `box` or `ball`");
-  section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1", "of `box` or `ball`, in place of their number");
+  section.key("number", number, deck::at_least(1), "1",
+              "how many at random in `box` or `ball`; in a Domain of three directions without these in all of its cell, across its faces, as hard "
+              "spheres in thermal equilibrium");
+  section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1",
+              "of `box` or `ball`, in place of their number, where spheres go up to 0.3; of the cell, where they go up to 0.55");
   section.key("box", box, deck::positive(), "length", "side lengths of the box about the particle's centre that they lie in");
   section.key("ball", ball, deck::positive(), "length", "radius of the ball about the particle's centre that they lie in");
   section.key("least gap", least_gap, deck::not_negative(), "R",
@@ -128,24 +136,51 @@ void CopiesOptions::declare(deck::Section& section) {
   section.key("seed", seed, deck::at_least(0), "1", "of the random places: the same seed gives the same places");
 }
 
-void CopiesOptions::check(const std::string& list) const {
-  const int ways = file.has_value() + lattice.has_value() + (number || volume_fraction);
+void CopiesOptions::check(const std::string& list, bool cell) const {
+  const int ways = file.has_value() + lattice.has_value() + random();
   if (ways != 1) throw UserError(list + " must have one of `file`, `lattice`, and `number` or `volume fraction`.");
   if (number && volume_fraction) throw UserError(list + "/number and " + list + "/volume fraction contradict each other.");
   if (lattice && !spacing) throw UserError(list + "/spacing is missing: the distance of centres along x1, x2 and x3.");
   if (spacing && !lattice) throw UserError(list + "/spacing belongs to a `lattice`.");
   if (lattice && !lattice->isApprox(lattice->array().round().matrix(), 0)) throw UserError(list + "/lattice must be three whole numbers.");
-  const bool random = number || volume_fraction;
-  if (random != (box || ball))
-    throw UserError(list + (random ? " needs a `box` or a `ball` for places at random." : "/box and ball are for places at random."));
+  if (!random() && (box || ball)) throw UserError(list + "/box and ball are for places at random.");
+  if (in_cell() && !cell)
+    throw UserError(list + " needs a `box` or a `ball` for places at random; without, they are in the cell of a Domain of three directions.");
   if (box && ball) throw UserError(list + "/box and " + list + "/ball contradict each other.");
 }
 
-std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds) {
+namespace {
+
+/// Of all kinds; those in the cell packed together.
+std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds, const std::optional<stokes::PeriodicCell>& cell) {
+  std::vector<std::vector<Copy>> all;
+  std::vector<PackedSphere> taken;
+  for (const ParticleKind& kind : kinds) all.push_back(places(kind, cell, taken));
+  const auto in_cell = std::ranges::find_if(kinds, [](const ParticleKind& kind) { return kind.copies.present && kind.copies.in_cell(); });
+  if (in_cell == kinds.end()) return all;
+  if (!pack(taken, *cell, static_cast<std::uint64_t>(in_cell->copies.seed))) {
+    double volume = 0;
+    for (const PackedSphere& one : taken) volume += 4 * std::numbers::pi / 3 * std::pow(one.radius, 3);
+    throw UserError(formatted("Particles/%s/copies: there is no room: the spheres around the particles fill %.3g of the cell, and they cannot be put "
+                              "clear of each other; give fewer, a larger cell, or a smaller `least gap`.",
+                              in_cell->name.c_str(), volume / cell->volume()));
+  }
+  auto sphere = taken.begin();
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    if (!kinds[k].copies.present) ++sphere;
+    for (Copy& copy : all[k]) copy.centre = (sphere++)->centre - kinds[k].particle.shape.center;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain) {
   std::vector<ParticleKind> all;
-  std::vector<Ball> taken;
-  for (const ParticleKind& kind : kinds) {
-    const std::vector<Copy> copies = places(kind, taken);
+  const std::vector<std::vector<Copy>> of_kinds = all_places(kinds, domain.cell());
+  for (std::size_t number = 0; number < kinds.size(); ++number) {
+    const ParticleKind& kind = kinds[number];
+    const std::vector<Copy>& copies = of_kinds[number];
     if (!kind.copies.present) all.push_back(kind);
     for (std::size_t k = 0; k < copies.size(); ++k) {
       ParticleKind& one = all.emplace_back(kind);

@@ -171,7 +171,8 @@ int run(const Arguments& arguments, bool speaks) {
   }
   find_shapes(scene, arguments, scene);
   for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
-  scene.particles = with_copies(scene.particles);
+  if (scene.domain.present) scene.domain.check(scene.flow);
+  scene.particles = with_copies(scene.particles, scene.domain);
   scene.check();
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))

@@ -100,7 +100,7 @@ Scene at_parameter(const Scene& scene, const std::string& deck, double value) {
   other.particles.clear(), other.expect.all.clear();
   deck::Document changed = deck::read({}, {scene.continuation.parameter + "=" + deck::real_text(value)}, deck);
   changed.declare(other);
-  other.particles = with_copies(other.particles);
+  other.particles = with_copies(other.particles, other.domain);
   other.check();
   return other;
 }

@@ -303,11 +303,27 @@ def copies_at_random_keep_clear_of_each_other_and_come_again():
     check((_centres("third") != x).any(), "another seed, the same places")
 
 
+def copies_fill_a_cell_across_its_faces():
+    text = COPIES.replace("  Particles:", "  Domain: {side lengths: [3.0, 3.5, 4.0]}\n  Particles:").replace("  Time:", "  Output: {interval: 0.01}\n  Time:")
+    text = text.replace("    one: {center: [0.0, 0.0, 9.0]}\n", "    one: {center: [0.2, 0.0, 0.0], radius: 0.6}\n")
+    deck(text % "volume fraction: 0.4, seed: 3, least gap: 0.03")
+    check(run("deck.yaml", "--check").stdout == run("deck.yaml", "--check").stdout, "not the same again")
+    run("deck.yaml", "--output", "cell", "--quiet", "--set", "Quadrature/tolerance=1e-3", "--set", "Time/tolerance=1e-2")
+    x = _centres("cell")
+    check(len(x) == round(0.4 * 42 / (numpy.pi / 6)), len(x))
+    apart = x[:, None] - x[None]
+    apart -= numpy.array([3, 3.5, 4]) * numpy.round(apart / [3, 3.5, 4])
+    distance = numpy.linalg.norm(apart, axis=2) + 10 * numpy.eye(len(x))
+    check(distance.min() >= 1.015, distance.min())
+    check(series("cell", "smallest_gap")[0] > 0.01, "the gap", series("cell", "smallest_gap")[0])
+    check((numpy.abs(x) > numpy.array([1, 1.25, 1.5])).any(), "none crosses a face")
+
+
 def mistakes_of_copies_are_named():
     deck("0, 0, 0\n1.5, 0\n", "short.csv")
     for how, words in (
         ("number: 500, box: [4.0, 4.0, 4.0]", ["Particles/many/copies", "no room", "of 500"]),
-        ("number: 5", ["box", "ball"]),
+        ("number: 5", ["box", "ball", "Domain"]),
         ("lattice: [2, 2, 1]", ["Particles/many/copies/spacing"]),
         ("lattice: [2, 2, 1], spacing: [0.9, 2.0, 2.0]", ["overlap", "many 1", "many 3"]),
         ("file: none.csv", ["none.csv"]),
