@@ -10,12 +10,14 @@
 #include "app/adaptation.hpp"
 #include "app/drift.hpp"
 #include "app/gaps.hpp"
+#include "app/limiter.hpp"
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
 #include "app/plane_wall.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "coupling/power_balance.hpp"
 #include "spline/locate.hpp"
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
@@ -52,10 +54,33 @@ class Deforming : public ParticleSystem {
     if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
     capsule_->work() = resumed.totals.work;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle.at(p);
+    hold_by(resumed.totals.contacts);
     return another_mesh;
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
+
+  bool hold_apart(motion::State& state, double step) override {
+    if (!scene_.contact.limiter) return true;
+    const auto clock = phases_.time("contact");
+    capsule_->at(state.time, state.time - step);
+    const double least = least_radius();
+    Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
+                    scene_.rate());
+    const bool first = contacts_.impulse == 0, holds = limiter.hold(state, step, contacts_);
+    if (first && contacts_.impulse > 0)
+      remarks_.push_back({"limiter", formatted("at time %.4g Contact/limiter begins to hold particles apart, for the film between them is thinner "
+                                               "than Contact/limit, %g R_C = %.4g",
+                                               state.time, scene_.contact.limit, scene_.contact.limit * least)});
+    return holds;
+  }
+
+  coupling::Contacts contacts() const override { return contacts_; }
+
+  void hold_by(const coupling::Contacts& contacts) override {
+    contacts_ = contacts;
+    press();
+  }
 
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, RunTotals& totals) override {
@@ -75,6 +100,7 @@ class Deforming : public ParticleSystem {
     settle(state.x);
     capsule_->restore_volume(state.x);
     if (!state.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
+    press();
     if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
     return true;
   }
@@ -112,6 +138,7 @@ class Deforming : public ParticleSystem {
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
       whole.velocity += now.velocity / static_cast<double>(members_.size());
     }
+    for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
     if (body().wall) {
       check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
       add_tube(*capsule_, state.x, whole);
@@ -120,6 +147,8 @@ class Deforming : public ParticleSystem {
       add_bulk_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), force_on_fluid(state.x), whole);
     if (all_ || capsule_->cell()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
     if (scene_.wall.present) add_wall(*scene_.wall.plane(), members_, state.x, whole);
+    if (scene_.output.power_balance) add_power(state, whole);
+    whole.contact_force = contacts_.force(), whole.contact_impulse = contacts_.impulse;
     std::vector<double> row = tanktread::row(series(scene_, of_run), whole);
     row.insert(row.end(), of_particles.begin(), of_particles.end());
     return row;
@@ -135,6 +164,35 @@ class Deforming : public ParticleSystem {
   const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
   const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
 
+  void add_power(const motion::State& state, Moment& whole) {
+    const auto clock = phases_.time("power balance");
+    if (!power_)
+      power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
+    const coupling::Powers powers = (*power_)(state.x, state.history.front());
+    whole.flow_power = powers.flow, whole.force_power = powers.forces, whole.fluid_dissipation = powers.fluids;
+    const double all = std::abs(powers.flow) + std::abs(powers.forces);
+    whole.power_residual = all > 0 ? powers.left_over / all : 0;
+  }
+
+  double least_radius() const {
+    return std::ranges::min_element(members_, {}, [](const Member& member) { return member.scene.radius(); })->scene.radius();
+  }
+
+  /// The contacts' forces act from now on.
+  void press() {
+    capsule_->press(contacts_.all.empty() ? Net() : coupling::work(capsule_->particles(), contacts_, body().space.n_points));
+  }
+
+  /// That of the forces of a contact at the centroids, beside those of its particles about these.
+  Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
+    const auto centroid = [&](std::size_t k) {
+      const Member& member = members_[contact.particle[k]];
+      return surface::measures(member.body->space, member.own(x)).centroid;
+    };
+    const Vec3 apart = centroid(1) + contact.beyond - centroid(0), force = contact.force * contact.normal;
+    return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
+  }
+
   /// Everything that belongs to the present meshes. The wall of a tube stays what it was.
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
@@ -146,7 +204,7 @@ class Deforming : public ParticleSystem {
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
       around = tube(scene_, body(), phases_);
-    capsule_.reset();
+    power_.reset(), capsule_.reset();
     capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
   }
 
@@ -204,12 +262,24 @@ class Deforming : public ParticleSystem {
     remark_on(member, change, state.time);
     if (!change.body) return;
     const int more = change.body->space.n_points - member.block.n_points;
+    carry_contacts(p, change.body->nested());
     before_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
     state = std::move(change.state);
     member.block.n_points += more;
     if (placed_ && placed_->holds(p)) fit_again(p, state.x);
     for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
+  }
+
+  /// Contacts of particle p to the same places of another mesh.
+  void carry_contacts(std::size_t p, const spline::Space& to) {
+    for (coupling::Contact& contact : contacts_.all)
+      for (std::size_t k = 0; k < 2; ++k)
+        if (contact.particle[k] == p) {
+          auto& [element, s, t] = contact.site[k];
+          s = std::clamp(s, 0., 1.), t = std::clamp(t, 0., 1.);
+          contact.site[k] = spline::Locator(to)(spline::place(members_[p].body->nested(), contact.site[k]));
+        }
   }
 
   /// The shape of a rigid body is known: on another mesh it is fitted again, and goes where it was.
@@ -294,11 +364,13 @@ class Deforming : public ParticleSystem {
   std::vector<Member> members_;
   std::unique_ptr<Body> all_;  // several particles
   std::unique_ptr<coupling::Capsule> capsule_;
+  std::optional<coupling::PowerBalance> power_;  // made when first asked for
   coupling::Work work_;                     // of systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // the same
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had
   std::optional<coupling::RigidParticles> placed_;  // before the mesh changes
   std::vector<Warning> remarks_;
+  coupling::Contacts contacts_;  // that hold particles apart
   bool holds_centre_ = scene_.particles.empty() && holds_centre(scene_);
 };
 

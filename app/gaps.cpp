@@ -1,6 +1,7 @@
 #include "app/gaps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -40,34 +41,60 @@ std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optio
   return all;
 }
 
-/// The nearest of all pairs of which `mine` is true, those first that can be nearest.
+/// All particles, and the pairs of them, those first that can be nearest.
+class Pairs {
+ public:
+  Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell) : members_(members), x_(x) {
+    for (std::size_t p = 0; p < members.size(); ++p) {
+      placed_.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
+      radius_ = std::max(radius_, members[p].body->radius);
+      for (std::size_t q = 0; q <= p; ++q)
+        for (const Vec3& beyond : images(x[q], x[p], q == p, cell)) {
+          surface::ElementBoxes::Box moved = placed_[p]->boxes.boxes()[0];
+          moved.low += beyond.array(), moved.high += beyond.array();
+          all_.push_back({distance(placed_[q]->boxes.boxes()[0], moved), q, p, beyond});
+        }
+    }
+    std::ranges::stable_sort(all_, {}, &Pair::bound);
+  }
+
+  const std::vector<Pair>& all() const { return all_; }
+
+  /// Of one pair, if it is nearer than `reach`.
+  surface::ClosestPoints closest(const Pair& pair, double reach) const {
+    const auto& [bound, p, q, beyond] = pair;
+    std::unique_ptr<Placed> moved;
+    if (!beyond.isZero(0)) moved = std::make_unique<Placed>(surface::BezierMap(members_[q].body->space), x_[q].rowwise() + beyond.transpose());
+    return surface::closest_points(placed_[p]->boxes, moved ? moved->boxes : placed_[q]->boxes, accuracy * radius_, reach);
+  }
+
+ private:
+  const std::vector<Member>& members_;
+  const std::vector<Net>& x_;
+  std::vector<std::unique_ptr<Placed>> placed_;
+  std::vector<Pair> all_;
+  double radius_ = 0;  // the largest
+};
+
+/// The nearest of all pairs of which `mine` is true.
 template <class Mine>
 Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell, const Mine& mine) {
-  std::vector<std::unique_ptr<Placed>> placed;
-  std::vector<Pair> pairs;
-  double radius = 0;
-  for (std::size_t p = 0; p < members.size(); ++p) {
-    placed.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
-    radius = std::max(radius, members[p].body->radius);
-    for (std::size_t q = 0; q <= p; ++q)
-      for (const Vec3& beyond : images(x[q], x[p], q == p, cell)) {
-        surface::ElementBoxes::Box moved = placed[p]->boxes.boxes()[0];
-        moved.low += beyond.array(), moved.high += beyond.array();
-        pairs.push_back({distance(placed[q]->boxes.boxes()[0], moved), q, p, beyond});
-      }
-  }
-  std::ranges::stable_sort(pairs, {}, &Pair::bound);
+  const Pairs pairs(members, x, cell);
   Nearest found;
-  for (std::size_t k = 0; k < pairs.size() && pairs[k].bound < found.gap; ++k) {
+  for (std::size_t k = 0; k < pairs.all().size() && pairs.all()[k].bound < found.gap; ++k) {
     if (!mine(k)) continue;
-    const auto& [bound, p, q, beyond] = pairs[k];
-    std::unique_ptr<Placed> moved;
-    if (!beyond.isZero(0)) moved = std::make_unique<Placed>(surface::BezierMap(members[q].body->space), x[q].rowwise() + beyond.transpose());
-    const surface::ClosestPoints closest =
-        surface::closest_points(placed[p]->boxes, moved ? moved->boxes : placed[q]->boxes, accuracy * radius, found.gap);
-    if (closest.gap < found.gap) found = {closest.gap, static_cast<int>(p) + 1, static_cast<int>(q) + 1, (closest.first + closest.second) / 2};
+    const Pair& pair = pairs.all()[k];
+    const surface::ClosestPoints closest = pairs.closest(pair, found.gap);
+    if (closest.gap >= found.gap) continue;
+    found = {closest.gap, static_cast<int>(pair.first) + 1, static_cast<int>(pair.second) + 1, (closest.first + closest.second) / 2};
   }
   return found;
+}
+
+std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
+  std::vector<Net> own;
+  for (const Member& member : members) own.push_back(member.own(x));
+  return own;
 }
 
 /// Widths of films of which a plane wall is the other side, where they are smaller.
@@ -124,16 +151,55 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
 
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks,
                      const std::optional<stokes::PeriodicCell>& cell) {
-  std::vector<Net> own;
-  for (const Member& member : members) own.push_back(member.own(x));
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
-  const Nearest of_rank = nearest(members, own, cell, mine);
+  const Nearest of_rank = nearest(members, own_nets(members, x), cell, mine);
   const std::array<double, 6> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
                                    of_rank.place[0], of_rank.place[1], of_rank.place[2]};
   Nearest found;
   for (const auto& [gap, first, second, x1, x2, x3] : gathered(ranks, here))
     if (gap < found.gap) found = {gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}};
   return found;
+}
+
+Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact) {
+  const auto element = [&](std::size_t k, const Vec3& beyond) {
+    const Member& member = members[contact.particle[k]];
+    return surface::ElementPoints(member.body->space, member.own(x).rowwise() + beyond.transpose(), contact.site[k].element);
+  };
+  const surface::ElementPoints first = element(0, Vec3::Zero()), second = element(1, contact.beyond);
+  const surface::ClosestPoints found = surface::nearest_points(first.patch(), second.patch(), {Vec3::Zero(), Vec3::Zero(), 0, contact.site});
+  contact.site = found.sites;
+  const auto normal = [](const surface::ElementPoints& of, const spline::Site& at) {
+    const surface::Jet jet = surface::jet(of.patch(), at.s, at.t);
+    return Vec3(jet.s.cross(jet.t).normalized());
+  };
+  contact.normal = (normal(first, contact.site[0]) - normal(second, contact.site[1])).normalized();
+  return {contact, found.gap};
+}
+
+std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
+                                 const std::optional<stokes::PeriodicCell>& cell) {
+  constexpr int n = 7;  // whether they are closer, and the sites
+  const std::vector<Net> own = own_nets(members, x);
+  const Pairs pairs(members, own, cell);
+  const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
+  std::vector<double> sites(n * close, 0.);
+  for (const int k : ranks.share(static_cast<int>(close))) {
+    const surface::ClosestPoints found = pairs.closest(pairs.all()[static_cast<std::size_t>(k)], reach);
+    if (found.gap >= reach) continue;
+    const auto& [a, b] = found.sites;
+    std::ranges::copy(std::array<double, n>{1, double(a.element), a.s, a.t, double(b.element), b.s, b.t}, sites.begin() + n * k);
+  }
+  ranks.add(sites);
+  std::vector<Approach> all;
+  for (std::size_t k = 0; k < close; ++k) {
+    const double* of = &sites[n * k];
+    const Pair& pair = pairs.all()[k];
+    if (of[0] == 0) continue;
+    all.push_back(approach(members, x, {{pair.first, pair.second}, {spline::Site{int(of[1]), of[2], of[3]}, spline::Site{int(of[4]), of[5], of[6]}},
+                                        pair.beyond}));
+  }
+  return all;
 }
 
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x) {

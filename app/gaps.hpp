@@ -6,6 +6,7 @@
 
 #include "app/diagnostics.hpp"
 #include "app/member.hpp"
+#include "coupling/contact.hpp"
 #include "coupling/ranks.hpp"
 
 namespace tanktread {
@@ -14,6 +15,20 @@ namespace tanktread {
 
 /// Throws UserError, which names the two and their gap, where two particles meet in their initial shapes, or one is inside of another.
 void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell);
+
+/// Two particles close to each other: their nearest points, the force not known, and their gap.
+struct Approach {
+  coupling::Contact contact;
+  double gap = 0;
+};
+
+/// Of the two sites of `contact` the true minimum of the distance around, and the normal there.
+Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact);
+
+/// Of every two particles at x that are closer than `reach`, on a lattice as often as they are: the true minimum of their distance, 0 where they
+/// meet. The same on any number of ranks, which share the pairs. Collective.
+std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
+                                 const std::optional<stokes::PeriodicCell>& cell);
 
 /// The smallest gap between any two particles at x, to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);

@@ -10,6 +10,7 @@
 #include "app/diagnostics.hpp"
 #include "app/run_totals.hpp"
 #include "app/warnings.hpp"
+#include "coupling/contact.hpp"
 #include "coupling/dynamics.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
@@ -41,6 +42,10 @@ class ParticleSystem {
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now
   virtual void store(output::Checkpoint& checkpoint) const = 0;                  ///< adds what `resume` takes beside state and totals
+  /// After a step of this size: moves what it left too close apart, if the deck asks for that; whether that could be done.
+  virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
+  virtual coupling::Contacts contacts() const { return {}; }                      ///< that hold now
+  virtual void hold_by(const coupling::Contacts&) {}                              ///< from now on, on the present mesh
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;              ///< after a step; whether body() has another mesh now
   virtual void undo_adapt(const Net&) {}                                         ///< goes back to the mesh before, in this shape, for a last picture
   virtual std::vector<Warning> remarks() { return {}; }                          ///< for the user, who is to hear of each kind once

@@ -204,6 +204,9 @@ Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
   add_fluid(lines, scene, all, ranks);
   lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());
+  lines.emplace_back("contact", formatted(scene.contact.limiter ? "gaps between particles are held at %g R_C by forces that never pull (4.23)"
+                                                                : "a gap between particles below %g R_C ends the run; no force but the fluid's",
+                                          scene.contact.limit));
   lines.emplace_back("volume", scene.volume.constraint + ", of each");
   if (scene.runs_in_time())
     lines.emplace_back("time", time_line(scene, n * n, ranks));

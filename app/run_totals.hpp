@@ -6,6 +6,7 @@
 
 #include "app/warnings.hpp"
 #include "coupling/capsule.hpp"
+#include "coupling/contact.hpp"
 #include "output/checkpoint.hpp"
 #include "output/summary.hpp"
 #include "stokes/kernels.hpp"
@@ -30,6 +31,7 @@ struct RunTotals {
   stokes::Evaluations kernel;       ///< of all ranks
   Warnings::Memory warnings;
   std::vector<PhaseAngle> phase_angle;     ///< of each particle
+  coupling::Contacts contacts;             ///< that hold particles apart
   output::Entries<double> seconds;  ///< of the first rank, by phase
 };
 

@@ -95,6 +95,11 @@ void ParticleKind::declare_lists(deck::Section& section) {
 void ContactOptions::declare(deck::Section& section) {
   section.key("limit", limit, deck::between(1e-6, 1), "R_C",
               "smallest gap between two particles, over the R_C of the smallest one, at which the run goes on; below, it ends with a checkpoint");
+  section.key("limiter", limiter,
+              "whether the gaps between particles are held at the limit instead, by forces along the normals at their nearest points that never pull "
+              "(4.23), which are series and 0 as long as the fluid alone holds the gaps; gaps to a wall are not");
+  if (limiter && !section.given("limit"))
+    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, over R_C, that it is to hold.");
 }
 
 namespace {
@@ -311,6 +316,21 @@ void check_contradictions(const Scene& scene) {
          "it is for particles that deform in a flow whose gradient is the same everywhere");
 }
 
+/// The balance of power is that of all particles (6.11).
+void check_power(const Scene& scene) {
+  if (!scene.name.empty()) return;
+  const std::string word = "Output/power balance", contradict = " contradict each other: ";
+  const auto refuse = [&](bool there, const std::string& other, const char* why) {
+    if (scene.output.power_balance && there) throw UserError(word + " and " + other + contradict + why + ".");
+  };
+  refuse(scene.tube.present, scene.tube.list(), "the checks of its wall are (2.14)");
+  refuse(scene.particle.rigid(), "Particle/motion " + text(scene.particle.motion), "nothing deforms");
+  refuse(!stokes::AmbientFlow(scene.flow).affine(), "Flow/type `" + scene.flow.type + "`", "it is for flows of one gradient");
+  refuse(!scene.runs_in_time(), scene.spectrum.present ? "Spectrum" : "Steady", "it is of rows of a run in time");
+  refuse(scene.alone().front().load_is_strong(), "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
+  refuse(scene.solvers.rigid_bodies == "first kind", "Solvers/rigid bodies `first kind`", "nothing deforms");
+}
+
 /// Lengths that the mesh must be able to have.
 void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;
@@ -399,6 +419,11 @@ void Scene::check_first_kind() const {
 
 /// What cannot be done with several particles yet, and each of them by itself.
 void Scene::check_several() const {
+  if (contact.limiter && !runs_in_time())
+    throw UserError(std::string("Contact/limiter and ") + (spectrum.present ? "Spectrum" : "Steady") +
+                    " contradict each other: it holds gaps after steps in time.");
+  if (contact.limiter && alone().front().load_is_strong())
+    throw UserError("Contact/limiter and Membrane/load `strong` contradict each other: its forces act by the work that they do, `weak`.");
   for (Scene one : alone()) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
     const std::string list = "Particles/" + one.name;
@@ -415,7 +440,7 @@ void Scene::check_several() const {
 void Scene::check() const {
   quadrature.check();
   if (solvers.rigid_bodies == "first kind") check_first_kind();
-  if (!particles.empty()) return check_several();
+  if (!particles.empty()) return check_several(), check_power(*this);
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
@@ -439,6 +464,7 @@ void Scene::check() const {
   check_vectors(*this, "Solvers", solvers.belos);
   for (const coupling::IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step, &solvers.spectrum})
     check_vectors(*this, system->path, system->belos);
+  check_power(*this);
 }
 
 std::string Scene::interface_motion() const {

@@ -69,6 +69,7 @@ struct ParticleKind {
 /// `Contact/*`: of several particles.
 struct ContactOptions {
   double limit = 1e-3;  ///< smallest gap, over the R_C of the smallest particle, at which a run goes on
+  bool limiter = false;  ///< whether gaps are held there by forces between the particles
 
   void declare(deck::Section& section);
 };

@@ -63,6 +63,14 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.tension.smallest; }},
     {"compressed_area", "", "1", "share of the area with a negative principal tension", of_deforming,
      [](const Moment& m, int) { return m.tension.compressed_area; }},
+    {"flow_power", "", "force length/time", "power that the flow puts in beyond what the outer fluid alone would take (6.11)", of_run,
+     [](const Moment& m, int) { return m.flow_power; }, Needs::power},
+    {"force_power", "", "force length/time", "power of weights, of forces on membranes and bodies, and of contacts", of_run,
+     [](const Moment& m, int) { return m.force_power; }, Needs::power},
+    {"fluid_dissipation", "", "force length/time", "power that the fluids turn into heat, beyond what the outer one alone would (6.12)", of_run,
+     [](const Moment& m, int) { return m.fluid_dissipation; }, Needs::power},
+    {"power_residual", "", "1", "what the balance of power lacks (6.13), over |flow_power| + |force_power|", of_run,
+     [](const Moment& m, int) { return m.power_residual; }, Needs::power},
     {"stresslet_", "11 22 33 12 13 23", "force length", "particle stresslet (6.7), component #", all_particles | of_several, stresslet},
     {"length_", axes, "length", "extent along #", moving, [](const Moment& m, int c) { return m.shape.lengths[c]; }},
     {"normal_velocity", "", "1",
@@ -135,6 +143,11 @@ constexpr Statement table[] = {
     {"second_of_gap", "", "1", "number of the second one", of_several, [](const Moment& m, int) { return double(m.nearest.second); }},
     {"gap_", axes, "length", "place between their nearest points, component #", of_several,
      [](const Moment& m, int c) { return m.nearest.place[c]; }},
+    {"contact_force", "", "force",
+     "sum of the forces by which Contact/limiter held particles apart over the step that ended here; 0 where the fluid did", of_several,
+     [](const Moment& m, int) { return m.contact_force; }, Needs::limiter},
+    {"contact_impulse", "", "force time", "sum of these forces times the time that they acted for, so far", of_several,
+     [](const Moment& m, int) { return m.contact_impulse; }, Needs::limiter},
     {"volume_fraction", "", "1", "volume of the particles over that of the cell", of_several, [](const Moment& m, int) { return m.volume_fraction; },
      Needs::cell},
     {"particle_stress_", "11 22 33 12 13 23", "force/length^2", "what the particles add to the mean stress (6.9), without its trace, component #",
@@ -223,6 +236,8 @@ bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::cell || needs == Needs::cell_strain)
     return scene.domain.present && scene.domain.directions() == 3 && (needs == Needs::cell || strains(scene));
   if (needs == Needs::adaptation) return scene.adaptation.enabled;
+  if (needs == Needs::limiter) return scene.contact.limiter;
+  if (needs == Needs::power) return scene.output.power_balance;
   const auto exact = scene.tube.present ? std::nullopt : exact_body(scene);
   if (!exact || needs == Needs::exact) return exact.has_value();
   if (needs == Needs::exact_pressure) return exact->presses();

@@ -50,6 +50,8 @@ struct Moment {
   double flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;  ///< in a tube; of an empty channel
   Nearest at_wall;                    ///< of a plane wall: the particle's number, and its place there
   Nearest nearest;                    ///< among others
+  double contact_force = 0, contact_impulse = 0;
+  double flow_power = 0, force_power = 0, fluid_dissipation = 0, power_residual = 0;
   Mat3 particle_stress = Mat3::Zero();  ///< in a cell: sum of stresslets over its volume; in the axes of the plane of the flow: `turned_stress`
   Mat3 turned_stress = Mat3::Zero();
   double relative_viscosity = 1, volume_fraction = 0;
@@ -69,7 +71,7 @@ enum Owner : unsigned {
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
 enum class Needs {
   nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force,
-  exact_torque, exact_pressure
+  exact_torque, exact_pressure, limiter, power
 };
 
 /// A column of `/series` and its value.

@@ -147,6 +147,7 @@ class Run {
       particle_->undo_adapt(state_.x);
       results_.remesh(particle_->body(), particle_->bezier());
     });
+    particle_->hold_by(totals_.contacts);
     if (!error.empty()) fail(error);
     if (!undone.empty()) fail(undone);
     return by_signal;
@@ -192,7 +193,7 @@ class Run {
       if (motion::cross_kink(motion, state_)) before = state_;
       if (!state_.history.front().allFinite()) throw RunFailure("there is no velocity to go on with");
       began_ = state_.time;
-      report_ = scheme_->advance(motion, state_, limit);
+      advance_apart(motion, limit);
     } catch (const RunFailure& failure) {
       const std::string what = failure.what();
       const std::string& why = motion.failure();
@@ -200,10 +201,26 @@ class Run {
     }
   }
 
+  /// A step after which particles can be held apart, if they are to be.
+  void advance_apart(motion::GuardedDynamics& motion, double limit) {
+    const motion::State before = state_;
+    for (int rejected = 0;; ++rejected) {
+      report_ = scheme_->advance(motion, state_, limit);
+      report_.rejected += rejected;
+      if (particle_->hold_apart(state_, report_.step)) return;
+      if (scene_.time.fixed_step) throw RunFailure("after a step of fixed size particles are too close for Contact/limiter to hold them apart");
+      Net frozen = std::move(state_.frozen);
+      state_ = before;
+      state_.frozen = std::move(frozen);
+      state_.step = report_.step / 2;
+    }
+  }
+
   /// What a step that is done leaves for a checkpoint.
   void settle() {
     totals_.work = particle_->work();
     totals_.phase_angle = particle_->phase_angle();
+    totals_.contacts = particle_->contacts();
     totals_.kernel = earlier_kernel_ + coupling::of_all(particle_->kernel_evaluations(), ranks_);
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
@@ -311,7 +328,7 @@ class Run {
 
   /// Of two of several particles.
   void end_at_contact() {
-    const double gap = entry("smallest_gap"), least = scene_.contact.limit * least_radius();
+    const double gap = entry("smallest_gap"), least = (scene_.contact.limiter ? 0.98 : 1) * scene_.contact.limit * least_radius();
     if (gap >= least) return;
     const auto name = [&](const char* which) { return scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name; };
     fail("Particles/" + name("first_of_gap") + " and Particles/" + name("second_of_gap") +

@@ -209,6 +209,7 @@ const Net& Capsule::energy_gradient(const Net& x) {
   for (const Particle& particle : particles())
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
   if (further_load_.size() > 0) gradient_ += further_load_;
+  if (pressed_.size() > 0) gradient_ -= pressed_;
   gradient_at_ = x;
   return gradient_;
 }
@@ -216,6 +217,14 @@ const Net& Capsule::energy_gradient(const Net& x) {
 /// What was evaluated without it does not stand.
 void Capsule::set_further_load(Net load) {
   further_load_ = std::move(load);
+  latest_ = {}, gradient_at_ = {};
+}
+
+void Capsule::press(Net work) {
+  if (work.size() == 0 && pressed_.size() == 0) return;
+  rigid_.push(work);
+  if (work.size() > 0) rigid_.clear(work);
+  pressed_ = std::move(work);
   latest_ = {}, gradient_at_ = {};
 }
 
@@ -380,8 +389,9 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
 Net Capsule::evaluate_tractions(const Net& x) {
   const auto clock = phases_.time("tractions");
   std::vector<Vec3> centres;
-  for (std::size_t p = 0; p < particles().size(); ++p) centres.push_back(rigid_.centre(p));
-  tractions_->solve(x, centres, flow_);
+  std::vector<Rigid> driven;
+  for (std::size_t p = 0; p < particles().size(); ++p) centres.push_back(rigid_.centre(p)), driven.push_back(rigid_.given(p));
+  tractions_->solve(x, centres, driven, flow_);
   Net v(x.rows(), 3);
   for (std::size_t p = 0; p < particles().size(); ++p) {
     const RigidTractions::Body& body = tractions_->bodies()[p];
@@ -638,7 +648,7 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
     Net work = own(energy_gradient(x));
     if (viscous_) work += own(viscous_work(x, slope));
     moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
-    if (!particle.body_force.isZero(0) || pulled(particle))  // about the centroid
+    if (!particle.body_force.isZero(0) || pulled(particle) || pressed_.size() > 0)  // about the centroid
       moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {

@@ -114,6 +114,10 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
+  /// Virtual work of forces on all particles beside those of the scene, a row a control point, from now on: they stay on their material points and
+  /// keep their directions. Of no rows: none.
+  void press(Net work);
+
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say. Of a rigid body the load of
   /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
   Net load(const Net& x);
@@ -270,6 +274,7 @@ class Capsule : public Dynamics {
   Latest latest_;  // evaluation
   Net gradient_at_, gradient_;  // x and dE/dx there
   Net further_load_;  // none: empty
+  Net pressed_;                 // of what deforms; of no rows: nothing
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle
 };

@@ -87,9 +87,23 @@ Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velo
 
 RigidMotion RigidParticles::Body::load() const { return carrying(force, torque); }
 
+void RigidParticles::push(const Net& work) {
+  for (Body& body : bodies_) body.pushed = work.size() > 0 ? Net(body.block.rows(work)) : Net();
+}
+
+Rigid RigidParticles::Body::given() const {
+  Rigid all = rigid;
+  for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
+    const Vec3 here = pushed.row(a).transpose();
+    all.force += here;
+    all.torque += Vec3(turn * rest.row(a).transpose()).cross(here);
+  }
+  return all;
+}
+
 void RigidParticles::add_load(Net& load) const {
   for (const Body& body : bodies_)
-    if (!body.rigid.prescribed) body.block.rows(load) -= body.field(body.carrying(body.rigid.force, body.rigid.torque));
+    if (const Rigid given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.carrying(given.force, given.torque));
 }
 
 Net RigidParticles::Body::lacking_of(const RigidMotion& load) const {
@@ -108,7 +122,8 @@ Net RigidParticles::Body::lacking_of(const Net& w) const {
 
 void RigidParticles::add_lacking(Net& v) const {
   for (const Body& body : bodies_)
-    if (!body.rigid.prescribed) body.block.rows(v) += body.lacking_of(body.carrying(body.rigid.force, body.rigid.torque)) / body.viscosity;
+    if (const Rigid given = body.given(); !given.prescribed)
+      body.block.rows(v) += body.lacking_of(body.carrying(given.force, given.torque)) / body.viscosity;
 }
 
 void RigidParticles::subtract_prescribed(Net& v) const {
@@ -142,7 +157,8 @@ void RigidParticles::move(Net& v) {
   for (Body& body : bodies_) {
     const RigidMotion mean = body.mean(v);
     body.density = body.block.rows(v);
-    body.force = body.rigid.force, body.torque = body.rigid.torque;
+    const Rigid given = body.given();
+    body.force = given.force, body.torque = given.torque;
     if (body.rigid.prescribed) {
       Motions of_body, integrals;
       of_body << body.turn.transpose() * mean.velocity, body.turn.transpose() * mean.angular_velocity;

@@ -35,6 +35,10 @@ class RigidParticles {
   /// Puts every body where its rows of x are nearest to it, and its rows there.
   void place(Net& x);
 
+  /// Virtual work of forces on the bodies beside those that are given, a row a control point of all particles, on material points, whose directions
+  /// stay; of no rows: none.
+  void push(const Net& work);
+
   void add_load(Net& load) const;            ///< the load of given forces and torques
   void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (own_lacking.hpp)
   void subtract_prescribed(Net& v) const;          ///< V of the bodies that move as prescribed
@@ -54,6 +58,7 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< from where it was at rest
+  Rigid given(std::size_t p) const { return body(p).given(); }         ///< what drives it, with what pushes it
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Whether two bodies are equal where they were at rest, but for where that was.
@@ -71,6 +76,7 @@ class RigidParticles {
   struct Body {
     spline::Block block;
     Rigid rigid;
+    Net pushed;  // of no rows: by nothing
     double radius = 0, viscosity = 0;
     Net rest;             // about the centre
     std::shared_ptr<const OwnLacking> lacking;  // equal bodies have it in common
@@ -85,6 +91,7 @@ class RigidParticles {
     RigidMotion motion;
     Vec3 force, torque;
 
+    Rigid given() const;
     RigidMotion mean(const Net& w) const;      // <w>, w of all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
     Net field(const RigidMotion& of) const;                             // its rows of it

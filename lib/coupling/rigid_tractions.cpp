@@ -72,10 +72,10 @@ Eigen::MatrixXd RigidTractions::system(const Net& x, const Net& at) {
 }
 
 /// Amplitudes of unit motions: those that are given, and those with which force and torque are; `held`: forces and torques of bodies that stay.
-Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held) const {
+Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
-    const Rigid& rigid = *particles_[p].rigid;
+    const Rigid& rigid = driven[p];
     const auto first = static_cast<Eigen::Index>(6 * p);
     if (rigid.prescribed)
       motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
@@ -94,7 +94,7 @@ Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const st
   return between_.weights * (between_.values * v - flow.velocities(between_.values * x) - u / viscosity_);
 }
 
-void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, const stokes::AmbientFlow& flow) {
+void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   layer_.place(x);
   const Net at = sites_ * x;
@@ -111,7 +111,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, const st
   Eigen::MatrixXd work(n, m);  // of a density with each unit motion
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
-  Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m));
+  Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
   Eigen::VectorXd f = z * motion - of_all.col(m);
   const Eigen::VectorXd v = fields * motion, lacking = z.transpose() * flat(left_over(x, as_net(f), as_net(v), flow));
   const Eigen::VectorXd change = freed(free_, resistance, -lacking);

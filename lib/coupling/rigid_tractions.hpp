@@ -41,8 +41,8 @@ class RigidTractions {
     Mat3 moment = Mat3::Zero();                        ///< int f r dG
   };
 
-  /// Of bodies with net x and these centres; kept as `bodies` and `density` until the next call. Collective.
-  void solve(const Net& x, std::span<const Vec3> centres, const stokes::AmbientFlow& flow);
+  /// Of bodies with net x and these centres that are driven so; kept as `bodies` and `density` until the next call. Collective.
+  void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
 
   const std::vector<Body>& bodies() const { return bodies_; }
   const Net& density() const { return density_; }  ///< control values of f
@@ -50,7 +50,7 @@ class RigidTractions {
 
  private:
   Eigen::MatrixXd system(const Net& x, const Net& at);
-  Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held) const;
+  Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
   Net left_over(const Net& x, const Net& f, const Net& fields, const stokes::AmbientFlow& flow);
 
   std::span<const Particle> particles_;

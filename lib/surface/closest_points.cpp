@@ -8,7 +8,9 @@
 #include <memory>
 #include <numeric>
 #include <queue>
+#include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 namespace tanktread::surface {
@@ -31,10 +33,13 @@ Points bezier_points(const Patch& patch) {
 struct Part {
   int degree = 0;
   Points points;
+  spline::Site low{};                       // of its first point
+  std::array<double, 2> sides{1, 1};        // along s and t, of the element's
   mutable std::shared_ptr<const std::array<Part, 2>> halves_kept{};
 
   double size() const { return (corner(1, 1) - corner(0, 0)).cwiseAbs().maxCoeff() + (corner(1, 0) - corner(0, 1)).cwiseAbs().maxCoeff(); }
   Vec3 corner(int i, int j) const { return points.col(degree * (i + (degree + 1) * j)); }
+  spline::Site site(int i, int j) const { return {low.element, low.s + i * sides[0], low.t + j * sides[1]}; }  // of a corner
   Vec3 middle() const { return points.rowwise().mean(); }
   Vec3 normal() const { return (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0)).normalized(); }  // at its middle, about
 
@@ -50,8 +55,10 @@ struct Part {
     const bool along_s = (corner(1, 0) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(0, 1)).squaredNorm() >
                          (corner(0, 1) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(1, 0)).squaredNorm();
     const int step = along_s ? 1 : n, across = along_s ? n : 1;
-    std::array<Part, 2> result{Part{degree, points}, Part{degree, points}};
+    std::array<Part, 2> result{Part{degree, points, low, sides}, Part{degree, points, low, sides}};
     auto& [left, right] = result;  // right in place: after k rounds its first p - k + 1 points of a row are those of the rule
+    left.sides[along_s ? 0 : 1] /= 2, right.sides = left.sides;
+    (along_s ? right.low.s : right.low.t) += left.sides[along_s ? 0 : 1];
     for (int row = 0; row < n; ++row)
       for (int k = 1; k <= p; ++k) {
         for (int i = 0; i <= p - k; ++i) {
@@ -134,7 +141,7 @@ class Search {
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
         const Vec3 x = a.corner(i % 2, i / 2), y = b.corner(j % 2, j / 2);
-        if (const double gap = (y - x).norm(); gap < best_.gap) best_ = {x, y, gap};
+        if (const double gap = (y - x).norm(); gap < best_.gap) best_ = {x, y, gap, {a.site(i % 2, i / 2), b.site(j % 2, j / 2)}};
       }
   }
 
@@ -154,7 +161,7 @@ class Search {
   const Part& whole(int k, int element) {
     Part& part = elements_[k][element];
     const Patch& patch = trees_[k]->surface()[element];
-    if (part.points.size() == 0) part.degree = patch.degree, part.points = bezier_points(patch);
+    if (part.points.size() == 0) part.degree = patch.degree, part.points = bezier_points(patch), part.low.element = element;
     return part;
   }
 
@@ -162,7 +169,7 @@ class Search {
   double tolerance_;
   std::priority_queue<Pair> queue_;
   std::map<int, Part> elements_[2];  // that are looked at
-  ClosestPoints best_{Vec3::Zero(), Vec3::Zero(), 0};
+  ClosestPoints best_{Vec3::Zero(), Vec3::Zero()};
 };
 
 }  // namespace
@@ -198,6 +205,41 @@ double distance(const Box& a, const Box& b) { return (b.low - a.high).max(a.low 
 
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond) {
   return Search(first, second, tolerance, beyond).nearest();
+}
+
+namespace {
+
+/// Of |y - x|^2/2, by s and t of x and of y: minus the Newton step.
+Eigen::Vector4d newton_step(const Jet& x, const Jet& y) {
+  const Vec3 r = y.x - x.x;
+  const Eigen::Vector4d gradient(-r.dot(x.s), -r.dot(x.t), r.dot(y.s), r.dot(y.t));
+  Eigen::Matrix4d h;
+  h(0, 0) = x.s.dot(x.s) - r.dot(x.ss), h(0, 1) = x.s.dot(x.t) - r.dot(x.st), h(1, 1) = x.t.dot(x.t) - r.dot(x.tt);
+  h(2, 2) = y.s.dot(y.s) + r.dot(y.ss), h(2, 3) = y.s.dot(y.t) + r.dot(y.st), h(3, 3) = y.t.dot(y.t) + r.dot(y.tt);
+  h(0, 2) = -x.s.dot(y.s), h(0, 3) = -x.s.dot(y.t), h(1, 2) = -x.t.dot(y.s), h(1, 3) = -x.t.dot(y.t);
+  return h.selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
+}
+
+}  // namespace
+
+ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near) {
+  const auto jets = [&](const Eigen::Vector4d& u) { return std::pair(jet(first, u[0], u[1]), jet(second, u[2], u[3])); };
+  const auto points = [&](const Eigen::Vector4d& u) -> ClosestPoints {
+    const Vec3 x = place(first, u[0], u[1]), y = place(second, u[2], u[3]);
+    return {x, y, (y - x).norm(), {spline::Site{near.sites[0].element, u[0], u[1]}, spline::Site{near.sites[1].element, u[2], u[3]}}};
+  };
+  const Eigen::Vector4d start(near.sites[0].s, near.sites[0].t, near.sites[1].s, near.sites[1].t);
+  Eigen::Vector4d u = start;
+  for (int k = 0; k < 20; ++k) {
+    const auto [x, y] = jets(u);
+    const Eigen::Vector4d step = newton_step(x, y);
+    u -= step;
+    if (!((u.array() - 0.5).abs().maxCoeff() <= 0.6)) break;
+    if (step.norm() > 1e-12) continue;
+    const ClosestPoints found = points(u), before = points(start);
+    return found.gap <= before.gap ? found : before;
+  }
+  return points(start);
 }
 
 namespace {

@@ -1,10 +1,12 @@
 #pragma once
 // The smallest distance of two surfaces, and how narrow the films between surfaces are.
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "base/types.hpp"
+#include "spline/space.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::surface {
@@ -13,6 +15,7 @@ namespace tanktread::surface {
 struct ClosestPoints {
   Vec3 first, second;
   double gap = 0;
+  std::array<spline::Site, 2> sites{};  ///< of these points, where there are any
 };
 
 /// Elements of a surface in a binary tree of boxes around their Bezier points, which hold the elements. Made anew for a surface that has moved.
@@ -46,6 +49,10 @@ double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 /// are halved, those first that can be nearest, until none can be nearer than the best points found by `tolerance`. Parts are bounded by planes
 /// between their Bezier points: by much less than their size where surfaces lie side by side.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
+
+/// The same, moved along their two elements, `first` and `second`, to where the line between them meets both at right angles: by Newton's method,
+/// from the sites of `near`, no farther than a tenth of an element beyond its edges. Where that does not end there, the points at these sites.
+ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near);
 
 /// Of each element of a surface the width of the film between it and others: the smallest of its distances, at 3 x 3 places, from the tangent plane
 /// of the nearest of 5 x 5 places of each element there. Right to the square of a quarter of the others' elements, times their curvature, over eight.

@@ -1,0 +1,109 @@
+#include "coupling/power_balance.hpp"
+
+#include <numeric>
+
+#include "coupling/collocation.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+stokes::Sites middles(const spline::Space& space) {
+  stokes::Sites sites;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) sites.push_back({{e, 0.5, 0.5}});
+  return sites;
+}
+
+double product(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+
+}  // namespace
+
+PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
+                           const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
+    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), middles_(middles(space)), values_(value_matrix(space, middles_)),
+      unstressed_(unstressed), mass_(space), single_(stokes::Layer::Kernel::single_layer, space, middles_, quadrature) {
+  single_.set_reference(unstressed);
+  if (const std::vector<double> contrasts = viscosity_contrasts(capsule.particles()); !contrasts.empty())
+    double_.emplace(stokes::Layer::Kernel::double_layer, space, middles_, quadrature, contrasts);
+  if (!wall) return;
+  single_.set_wall(*wall);
+  if (double_) double_->set_wall(*wall);
+}
+
+Powers PowerBalance::operator()(const Net& x, const Net& slope) {
+  const Net load = capsule_.load(x), v = capsule_.slides() ? capsule_.fluid_velocity(x) : slope;
+  const RigidParticles rigid = capsule_.rigid_at(x);
+  const Net& measured = capsule_.measure() == stokes::Measure::reference ? unstressed_ : x;
+  const Net work = mass_.update(measured) * load, inside = density(v, rigid), flux = capsule_.geometry().volume_gradient(x);
+  const stokes::AmbientFlow& flow = capsule_.flow();
+  const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  Powers powers;
+  powers.flow = product(work, flow.velocities(x));
+  Net stored = Net::Zero(x.rows(), 3);
+  std::vector<int> all(middles_.size());
+  std::iota(all.begin(), all.end(), 0);
+  capsule_.membrane().load(x, all, stored);
+  for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
+    const Particle& particle = capsule_.particles()[p];
+    const Mat3 moment = particle.block.rows(inside).transpose() * particle.block.rows(flux);
+    powers.flow -= 2 * viscosity_ * viscosity_contrast(particle) * strain.cwiseProduct(moment).sum();
+    if (particle.rigid) continue;
+    powers.membranes += capsule_.membrane_dissipation(x, v, p);
+    powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
+  }
+  const double done = product(work, v);  // to all surfaces by the fluids
+  powers.fluids = powers.flow - done;
+  powers.forces = powers.storing + powers.membranes - done;
+  powers.left_over = left_over(load, missed(x, v, inside, load), measured);
+  return powers;
+}
+
+/// int Df.r by the rule of the middles, of r there.
+double PowerBalance::left_over(const Net& load, const Net& left, const Net& measured) const {
+  const Net loads = values_ * load;
+  double sum = 0;
+  for (std::size_t e = 0; e < middles_.size(); ++e) {
+    const auto row = static_cast<Eigen::Index>(e);
+    sum += loads.row(row).dot(left.row(row)) * surface::point(space_, measured, middles_[e].front()).jacobian;
+  }
+  return sum;
+}
+
+/// What the double layers are of: the velocity, and w of (2.23) of rigid bodies.
+Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
+  Net all = v;
+  for (std::size_t p = 0; p < capsule_.particles().size(); ++p)
+    if (rigid.holds(p) && rigid.density(p).size() > 0) capsule_.particles()[p].block.rows(all) = rigid.density(p);
+  return all;
+}
+
+/// v less the right-hand side of (2.22), at the middles.
+Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
+  const stokes::AmbientFlow& flow = capsule_.flow();
+  if (const auto& cell = capsule_.cell()) {
+    single_.repeat(*cell);
+    if (double_) double_->repeat(*cell);
+    for (const Particle& particle : capsule_.particles()) {
+      const Vec3 shift = cell->shift(particle.block.rows(x).colwise().mean().transpose()), slower = flow.gradient(Vec3::Zero()) * shift;
+      particle.block.rows(x).rowwise() -= shift.transpose();
+      particle.block.rows(v).rowwise() -= slower.transpose();
+      if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
+    }
+  }
+  const std::vector<int> own = ranks_.share(static_cast<int>(middles_.size()));
+  Net u = Net::Zero(static_cast<Eigen::Index>(middles_.size()), 3), twice = u;
+  single_.place(x, capsule_.measure());
+  single_.apply(load, own, u);
+  u /= -viscosity_;
+  if (double_) {
+    double_->place(x);
+    double_->apply(density, own, twice);
+    u += twice;
+  }
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  const Net at = values_ * x;
+  return values_ * v - flow.velocities(at) - u;
+}
+
+}  // namespace tanktread::coupling
