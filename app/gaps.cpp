@@ -41,20 +41,20 @@ std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optio
   return all;
 }
 
-/// All particles, and the pairs of them, those first that can be nearest.
+/// All particles, and the pairs of them that can be as near as `reach` and as the nearest, those first that can be nearest.
 class Pairs {
  public:
-  Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell) : members_(members), x_(x) {
+  Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell,
+        double reach = std::numeric_limits<double>::infinity())
+      : members_(members), x_(x) {
     for (std::size_t p = 0; p < members.size(); ++p) {
       placed_.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
       radius_ = std::max(radius_, members[p].body->radius);
-      for (std::size_t q = 0; q <= p; ++q)
-        for (const Vec3& beyond : images(x[q], x[p], q == p, cell)) {
-          surface::ElementBoxes::Box moved = placed_[p]->boxes.boxes()[0];
-          moved.low += beyond.array(), moved.high += beyond.array();
-          all_.push_back({distance(placed_[q]->boxes.boxes()[0], moved), q, p, beyond});
-        }
     }
+    each(cell, [&](const Pair& pair) { reach = std::min(reach, pair.bound + size(pair.first) + size(pair.second)); });
+    each(cell, [&](const Pair& pair) {
+      if (pair.bound <= reach) all_.push_back(pair);
+    });
     std::ranges::stable_sort(all_, {}, &Pair::bound);
   }
 
@@ -69,6 +69,20 @@ class Pairs {
   }
 
  private:
+  const surface::ElementBoxes::Box& box(std::size_t p) const { return placed_[p]->boxes.boxes()[0]; }
+  double size(std::size_t p) const { return (box(p).high - box(p).low).matrix().norm(); }
+
+  template <class Act>
+  void each(const std::optional<stokes::PeriodicCell>& cell, const Act& act) const {
+    for (std::size_t p = 0; p < members_.size(); ++p)
+      for (std::size_t q = 0; q <= p; ++q)
+        for (const Vec3& beyond : images(x_[q], x_[p], q == p, cell)) {
+          surface::ElementBoxes::Box moved = box(p);
+          moved.low += beyond.array(), moved.high += beyond.array();
+          act(Pair{distance(box(q), moved), q, p, beyond});
+        }
+  }
+
   const std::vector<Member>& members_;
   const std::vector<Net>& x_;
   std::vector<std::unique_ptr<Placed>> placed_;
@@ -181,7 +195,7 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
                                  const std::optional<stokes::PeriodicCell>& cell) {
   constexpr int n = 7;  // whether they are closer, and the sites
   const std::vector<Net> own = own_nets(members, x);
-  const Pairs pairs(members, own, cell);
+  const Pairs pairs(members, own, cell, reach);
   const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
   std::vector<double> sites(n * close, 0.);
   for (const int k : ranks.share(static_cast<int>(close))) {
