@@ -318,10 +318,10 @@ void check_contradictions(const Scene& scene) {
 
 /// The balance of power is that of all particles (6.11).
 void check_power(const Scene& scene) {
-  if (!scene.name.empty()) return;
+  if (!scene.output.power_balance || !scene.name.empty()) return;
   const std::string word = "Output/power balance", contradict = " contradict each other: ";
   const auto refuse = [&](bool there, const std::string& other, const char* why) {
-    if (scene.output.power_balance && there) throw UserError(word + " and " + other + contradict + why + ".");
+    if (there) throw UserError(word + " and " + other + contradict + why + ".");
   };
   refuse(scene.tube.present, scene.tube.list(), "the checks of its wall are (2.14)");
   refuse(scene.particle.rigid(), "Particle/motion " + text(scene.particle.motion), "nothing deforms");
