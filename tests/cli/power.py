@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+# Output/power balance: what the flow puts in is dissipated or stored, as far as the velocities are solutions.
+import numpy
+
+from harness import check, close, deck, main, refused, run, series
+
+CAPSULE = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particle: {viscosity ratio: 5.0}
+  Membrane: {capillary number: 0.3}
+  Surface: {elements per side: 4}
+  Time: {final time: 1.0, tolerance: 1.0e-5}
+  Output: {interval: 0.5, power balance: true}
+"""
+
+
+def a_sphere_without_tension_takes_the_power_of_its_stresslet():
+    deck(CAPSULE)
+    run("deck.yaml", "--output", "drop", "--quiet")
+    power = 2 * (4 * numpy.pi / 3) * 0.5 * 5 * (5 - 1) / (2 * 5 + 3)  # Taylor 1932, of a sphere that begins to deform
+    close(series("drop", "flow_power")[0], power, 2e-4 * power, "the power of the flow")
+    close(series("drop", "fluid_dissipation")[0], power, 2e-4 * power, "all of which is dissipated")
+
+
+def what_is_not_dissipated_is_stored():
+    deck(CAPSULE)
+    errors = []
+    for n in (4, 8):
+        run("deck.yaml", "--output", f"mesh_{n}", "--quiet", "--set", f"Surface/elements per side={n}")
+        errors.append(numpy.abs(series(f"mesh_{n}", "power_residual")).max())
+    check(errors[0] < 2e-3 and errors[1] < errors[0] / 3, "the residual does not fall with the mesh", errors)
+    time, power, heat, energy = (series("mesh_8", name) for name in ("time", "flow_power", "fluid_dissipation", "energy"))
+    net = power - heat
+    stored = ((net[1:] + net[:-1]) / 2 * numpy.diff(time)).sum()
+    close(stored, energy[-1] - energy[0], 5e-3 * energy[-1], "the energy stored")
+
+
+def mistakes_are_named():
+    deck(CAPSULE)
+    refused(["Output/power balance", "parabolic"], "deck.yaml", "--set", "Flow/type=parabolic", "--set", "Flow/half width=5")
+
+
+main()
