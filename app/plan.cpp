@@ -115,6 +115,8 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.continuation.present)
     lines.emplace_back("branch", formatted("along %s to %g, ", scene.continuation.parameter.c_str(), scene.continuation.to) +
                                      scene.continuation.method + ", each point by an iteration of its own");
+  if (const auto& second = scene.continuation.second_parameter)
+    lines.emplace_back("folds", formatted("the first one at %zu values of %s", scene.continuation.second_values->size(), second->c_str()));
   if (!scene.spectrum.present) return;
   const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.interface_motion() == "material" ? 3 : 1);
   const bool dense = scene.spectrum.method == "dense";

@@ -196,6 +196,7 @@ constexpr Statement table[] = {
     {"largest_concentration", "", "1", "the same", of_surfactant, [](const Moment& m, int) { return m.largest_concentration; }},
     {"parameter", "", "of the key", "Continuation/parameter", of_branch, [](const Moment& m, int) { return m.parameter; }},
     {"fold", "", "1", "1 where the parameter turns back along the branch, else 0", of_branch, [](const Moment& m, int) { return m.fold; }},
+    {"second_parameter", "", "of the key", "Continuation/second parameter", of_folds, [](const Moment& m, int) { return m.second_parameter; }},
     {"leading_rate", "", "1/time",
      "largest rate of the modes that change the shape, translations and rotations left out: negative where it is stable",
      of_spectrum, [](const Moment& m, int) { return m.leading_rate; }},
@@ -280,6 +281,7 @@ std::vector<Series> run_series(const Scene& scene) {
 std::vector<Series> steady_series(const Scene& scene) {
   std::vector<Series> all;
   if (scene.continuation.present) all = series(scene, of_branch);
+  if (scene.continuation.second_parameter) std::ranges::move(series(scene, of_folds), std::back_inserter(all));
   if (scene.spectrum.present) std::ranges::move(series(scene, of_spectrum), std::back_inserter(all));
   for (int k = 1; scene.spectrum.present && k <= scene.spectrum.number; ++k)
     for (Series one : series(scene, of_mode)) {

@@ -1,6 +1,7 @@
 #include "app/steady.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -94,34 +95,43 @@ struct System {
   std::optional<motion::SteadyEquations> equations;
 };
 
-/// The scene with another value of the parameter of its branch.
-Scene at_parameter(const Scene& scene, const std::string& deck, double value) {
+/// The one of a branch, and the second, 0 where there is none.
+using Parameters = std::array<double, 2>;
+
+/// The scene with other values of the parameters of its branch.
+Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values) {
   Scene other = scene;
   other.particles.clear(), other.expect.all.clear();
-  deck::Document changed = deck::read({}, {scene.continuation.parameter + "=" + deck::real_text(value)}, deck);
+  std::vector<std::string> settings{scene.continuation.parameter + "=" + deck::real_text(values[0])};
+  if (scene.continuation.second_parameter) settings.push_back(*scene.continuation.second_parameter + "=" + deck::real_text(values[1]));
+  deck::Document changed = deck::read({}, settings, deck);
   changed.declare(other);
   other.particles = with_copies(other.particles, other.domain);
   other.check();
   return other;
 }
 
-/// The number with which the branch begins. Throws UserError where the deck has none.
-double first_parameter(const Scene& scene, const std::string& deck) {
-  const std::string& path = scene.continuation.parameter;
+/// The number that the deck gives to the key at `path`, of which the key `of` tells. Throws UserError where it has none.
+double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
   deck::Document read = deck::read_text(deck);
   Scene again = scene;
   again.particles.clear(), again.expect.all.clear();
   read.declare(again);
   const auto values = read.values();
   const auto found = values.find(path);
-  if (found == values.end())
-    throw UserError("Continuation/parameter must be the path of a key that this deck gives, but is " + deck::in_quotes(path) + ".");
+  if (found == values.end()) throw UserError(of + " must be the path of a key that this deck gives, but is " + deck::in_quotes(path) + ".");
   char* end = nullptr;
   const double value = std::strtod(found->second.c_str(), &end);
-  if (end == found->second.c_str() || *end != 0)
-    throw UserError("Continuation/parameter must be the path of a number, but " + path + " is " + found->second + ".");
-  if (value == scene.continuation.to) throw UserError("Continuation/to must differ from " + path + ", where the branch begins.");
+  if (end == found->second.c_str() || *end != 0) throw UserError(of + " must be the path of a number, but " + path + " is " + found->second + ".");
   return value;
+}
+
+/// With which the branch begins.
+Parameters first_parameters(const Scene& scene, const std::string& deck) {
+  const motion::ContinuationOptions& branch = scene.continuation;
+  const double first = number_of(scene, deck, branch.parameter, "Continuation/parameter");
+  if (first == branch.to) throw UserError("Continuation/to must differ from " + branch.parameter + ", where the branch begins.");
+  return {first, branch.second_parameter ? number_of(scene, deck, *branch.second_parameter, "Continuation/second parameter") : 0};
 }
 
 /// The shapes that are looked at, one after another, and what is written of each.
@@ -176,8 +186,8 @@ class SteadyRun {
   }
 
   /// The same at a point of a branch; other shapes of it go along.
-  bool adapt_at(double parameter, std::vector<Net>& shapes) {
-    system_ = system_at(parameter);
+  bool adapt_at(const Parameters& parameters, std::vector<Net>& shapes) {
+    system_ = system_at(parameters);
     state_.history.clear(), state_.places.clear();
     for (Net& shape : shapes) state_.places.push_back({state_.time, std::move(shape)});
     state_.x = state_.places.back().x;
@@ -192,33 +202,38 @@ class SteadyRun {
 
   /// All shapes of a branch.
   void follow() {
-    const double first = first_parameter(scene_, request_.deck_text);
+    const Parameters first = first_parameters(scene_, request_.deck_text);
     systems_.emplace_front(first, system_);
-    motion::Branch branch([this](double parameter) { return equations_at(parameter); },
-                          [this](double parameter, std::vector<Net>& shapes) { return adapt_at(parameter, shapes); }, scene_.continuation,
-                          scene_.steady, scene_.solvers, first, state_.x);
+    motion::Branch branch([this](double parameter, double second) { return equations_at({parameter, second}); },
+                          [&](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first[1]}, shapes); }, scene_.continuation,
+                          scene_.steady, scene_.solvers, first[0], first[1], state_.x);
     for (int k = 0; const auto point = branch.next(); ++k) {
       stop_where_told();
-      system_ = system_at(point->parameter);
+      system_ = system_at({point->parameter, point->second});
       results_.remesh(system_->particle->body(), system_->particle->bezier());
       state_.x = point->x, state_.time = k, totals_.step = k;
       report_.iterations = point->iterations, report_.error = point->rest;
-      moment_.parameter = point->parameter, moment_.fold = point->fold;
+      moment_.parameter = point->parameter, moment_.second_parameter = point->second, moment_.fold = point->fold;
       write();
-      if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %-11d %s %.8g%s\n", k, scene_.continuation.parameter.c_str(), point->parameter,
-                                                             point->fold ? ", a fold" : "");
+      if (ranks_.rank() == 0 && !request_.quiet) tell(k, *point);
     }
   }
 
+  void tell(int k, const motion::BranchPoint& point) const {
+    const std::optional<std::string>& second = scene_.continuation.second_parameter;
+    std::printf("  %-11d %s %.8g%s%s\n", k, scene_.continuation.parameter.c_str(), point.parameter,
+                second ? formatted(", %s %.8g", second->c_str(), point.second).c_str() : "", point.fold ? ", a fold" : "");
+  }
+
   /// The latest few are kept, the one that is asked for in front.
-  std::shared_ptr<System> system_at(double parameter) {
-    const auto known = std::ranges::find(systems_, parameter, &std::pair<double, std::shared_ptr<System>>::first);
+  std::shared_ptr<System> system_at(const Parameters& parameters) {
+    const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
     if (known != systems_.end()) {
       std::rotate(systems_.begin(), known, known + 1);
       return systems_.front().second;
     }
     const auto clock = phases_.time("set-up");
-    auto made = std::make_shared<System>(at_parameter(scene_, request_.deck_text, parameter), ranks_, phases_);
+    auto made = std::make_shared<System>(at_parameters(scene_, request_.deck_text, parameters), ranks_, phases_);
     if (mesh_) {
       Resumed resumed;
       resumed.state.x = state_.x, resumed.totals.phase_angle = made->particle->phase_angle(), resumed.checkpoint = *mesh_;
@@ -226,8 +241,8 @@ class SteadyRun {
       made->begin(state_.x);
     }
     if (made->particle->body().space.n_points != state_.x.rows())
-      throw UserError("Continuation/parameter must leave the mesh as it is, but " + scene_.continuation.parameter + " does not.");
-    systems_.emplace_front(parameter, made);
+      throw UserError("Continuation/parameter and second parameter must leave the mesh as it is.");
+    systems_.emplace_front(parameters, made);
     if (systems_.size() > 3) drop_oldest();
     return made;
   }
@@ -238,8 +253,8 @@ class SteadyRun {
     systems_.pop_back();
   }
 
-  std::shared_ptr<motion::SteadyEquations> equations_at(double parameter) {
-    const std::shared_ptr<System> system = system_at(parameter);
+  std::shared_ptr<motion::SteadyEquations> equations_at(const Parameters& parameters) {
+    const std::shared_ptr<System> system = system_at(parameters);
     return {system, &*system->equations};
   }
 
@@ -279,7 +294,7 @@ class SteadyRun {
       totals_.work = totals_.work + one.work(), totals_.kernel = totals_.kernel + one.kernel_evaluations();
     };
     if (systems_.empty()) add(*system_->particle);
-    for (const auto& [parameter, system] : systems_) add(*system->particle);
+    for (const auto& [parameters, system] : systems_) add(*system->particle);
     totals_.kernel = coupling::of_all(totals_.kernel, ranks_);
     totals_.phase_angle = system_->particle->phase_angle();
   }
@@ -294,6 +309,7 @@ class SteadyRun {
       std::ranges::copy(tanktread::row(series(scene_, owner), now), std::back_inserter(row));
     };
     if (scene_.continuation.present) append(of_branch, moment_);
+    if (scene_.continuation.second_parameter) append(of_folds, moment_);
     if (scene_.spectrum.present) append(of_spectrum, moment_);
     for (const motion::Mode& mode : modes_) {
       moment_.rate = mode.rate;
@@ -341,7 +357,7 @@ class SteadyRun {
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
-  std::deque<std::pair<double, std::shared_ptr<System>>> systems_;  // of a branch, by parameter, the latest first
+  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // of a branch, by its parameters, the latest first
   std::optional<output::Checkpoint> mesh_;                          // that they are on, where it is not the deck's
   output::Entries<std::string> chosen_;
   Results results_;

@@ -1,13 +1,10 @@
 #include "motion/continuation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
-
-#include <Eigen/LU>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -31,12 +28,16 @@ void ContinuationOptions::declare(deck::Section& section) {
               "of the shape from one point to the next: root mean square displacement of the control points over R_C");
   section.key("points", points, deck::between(2, 100000), "1", "most points, folds included");
   section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative, of the parameter at a fold");
+  section.key("second parameter", second_parameter, deck::Choice{},
+              "path of another number, along which the first fold goes on, say Particle/viscosity ratio; the branch ends with that fold");
+  section.key("second values", second_values, deck::any(), "that of the key",
+              "of the second parameter, one fold each, in this order: evenly spaced, or by even factors, they are found with least work");
 }
 
 Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,
-               const coupling::SolverOptions& solvers, double parameter, Net x)
+               const coupling::SolverOptions& solvers, double parameter, double second, Net x)
     : family_(std::move(family)), remesh_(std::move(remesh)), options_(options), steady_(steady), solvers_(solvers), start_(parameter),
-      first_(family_(parameter)), x_(std::move(x)) {}
+      second_(second), first_(family_(parameter, second)), x_(std::move(x)) {}
 
 double Branch::inner(const Place& a, const Place& b) const {
   const double unit = first_->unit_length();
@@ -45,7 +46,7 @@ double Branch::inner(const Place& a, const Place& b) const {
 
 std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& x) {
   Net found = x;
-  const SteadyReport report = find_steady(*family_(parameter), steady_, solvers_, found);
+  const SteadyReport report = find_steady(*family_(parameter, second_), steady_, solvers_, found);
   if (!report.converged && !(report.rest < noise * steady_.tolerance)) return {};
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
@@ -56,10 +57,10 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
-    const std::shared_ptr<SteadyEquations> here = family_(from.q * unit_);
+    const std::shared_ptr<SteadyEquations> here = family_(from.q * unit_, second_);
     const double aside = 1e-3 * std::max(std::abs(from.q), std::abs(step_));
     here->dynamics().freeze(from.x);
-    const Net slope = (family_((from.q + aside) * unit_)->residual(from.x) - here->residual(from.x)) / aside;
+    const Net slope = (family_((from.q + aside) * unit_, second_)->residual(from.x) - here->residual(from.x)) / aside;
     if (!slope.allFinite()) return {};
     const Net b = here->precondition(from.x, slope);
     Net best;
@@ -132,40 +133,6 @@ bool Branch::turned(const Solved& next) const {
   return n > 1 && (next.place.q - last_[n - 1].place.q) * (last_[n - 1].place.q - last_[n - 2].place.q) < 0;
 }
 
-/// The fold between the last point but one and `next`.
-Branch::Solved Branch::fold(Solved next) {
-  constexpr int most = 10;
-  std::array<Solved, 3> three{last_[last_.size() - 2], last_.back(), std::move(next)};
-  for (int k = 0; k < most; ++k) {
-    Eigen::Matrix3d powers;
-    Eigen::Vector3d q;
-    for (int i = 0; i < 3; ++i) {
-      const double s = three[i].s - three[1].s;
-      powers.row(i) << 1, s, s * s;
-      q[i] = three[i].place.q;
-    }
-    const Eigen::Matrix3d inverse = powers.inverse();
-    const Eigen::Vector3d parabola = inverse * q;
-    const double s = -parabola[1] / (2 * parabola[2]);
-    const Eigen::RowVector3d weights = Eigen::RowVector3d(1, s, s * s) * inverse;
-    Place predicted{Net::Zero(x_.rows(), 3), 0};
-    for (int i = 0; i < 3; ++i) predicted = predicted.along(three[i].place, weights[i]);
-    Place normal = three[2].place - three[0].place;
-    const double size = length(normal);
-    normal = {normal.x / size, normal.q / size};
-    auto solved = on_plane(predicted, normal);
-    if (!solved) throw RunFailure("the fold of the branch was passed, but not found");
-    solved->s = three[1].s + s;
-    const double nearest = std::min({std::abs(solved->place.q - three[0].place.q), std::abs(solved->place.q - three[1].place.q),
-                                     std::abs(solved->place.q - three[2].place.q)});
-    if (nearest < options_.fold_tolerance * std::abs(solved->place.q)) return *solved;
-    const std::size_t farthest = std::abs(three[0].s - solved->s) > std::abs(three[2].s - solved->s) ? 0 : 2;
-    three[farthest] = std::move(*solved);
-    std::ranges::sort(three, {}, &Solved::s);
-  }
-  throw RunFailure("the fold of the branch was not found to Continuation/fold tolerance");
-}
-
 /// Goes on from the two latest points, found again on a mesh that fits the last one: while there are finer ones.
 void Branch::adapt() {
   constexpr int most = 6;
@@ -173,7 +140,7 @@ void Branch::adapt() {
     std::vector<Net> shapes{last_[last_.size() - 2].place.x, last_.back().place.x};
     if (!remesh_(last_.back().place.q * unit_, shapes)) return;
     last_.erase(last_.begin(), last_.end() - 2);
-    first_ = family_(last_.back().place.q * unit_);
+    first_ = family_(last_.back().place.q * unit_, second_);
     for (std::size_t i = 0; i < 2; ++i) last_[i].place.x = std::move(shapes[i]);
     ahead_.front().first = last_[1];
     Place t = last_[1].place - last_[0].place;
@@ -205,11 +172,11 @@ std::optional<BranchPoint> Branch::next() {
   }
   if (ahead_.empty()) {
     if (!failure_.empty()) throw RunFailure(failure_);
-    return {};
+    if (!next_fold()) return {};
   }
   const auto [solved, fold] = std::move(ahead_.front());
   ahead_.erase(ahead_.begin());
-  return BranchPoint{solved.place.q * unit_, solved.place.x, fold, solved.iterations, solved.rest};
+  return BranchPoint{solved.place.q * unit_, second_, solved.place.x, fold, solved.iterations, solved.rest};
 }
 
 /// The first or the second point, at values of the parameter.
@@ -238,12 +205,19 @@ void Branch::advance() {
   if (!solved)
     throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));
   solved->s = last_.back().s + length(solved->place - last_.back().place);
-  if (turned(*solved)) {
+  const bool folded = turned(*solved);
+  if (folded) {
     ++count_;
-    ahead_.emplace_back(fold(*solved), true);
+    auto found = fold({last_[last_.size() - 2], last_.back(), *solved});
+    if (!found) throw RunFailure("the fold of the branch was passed, but not found to Continuation/fold tolerance");
+    ahead_.emplace_back(found->at, true);
+    folds_ = {std::move(*found)};
   }
   keep(*solved);
   std::ranges::stable_sort(ahead_, {}, [](const auto& one) { return one.first.s; });
+  if (!folded || !options_.second_parameter) return;
+  ended_ = true;
+  while (!ahead_.back().second) ahead_.pop_back();
 }
 
 }  // namespace tanktread::motion

@@ -1,6 +1,7 @@
 #pragma once
 // Branches of shapes at rest, along a parameter and around its folds.
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -23,13 +24,15 @@ struct ContinuationOptions {
   double largest_change = 0.05;      ///< of the shape from point to point, in the norm of `Time/tolerance`
   int points = 100;                  ///< most
   double fold_tolerance = 1e-6;      ///< of the parameter at a fold, relative
+  std::optional<std::string> second_parameter;      ///< path of another number, along which the first fold goes on
+  std::optional<std::vector<double>> second_values;  ///< of it, one after another; the deck's own comes before them
 
   void declare(deck::Section& section);
 };
 
 /// A shape at rest.
 struct BranchPoint {
-  double parameter = 0;
+  double parameter = 0, second = 0;
   Net x;
   bool fold = false;   ///< the parameter turns round here
   int iterations = 0;  ///< of NOX
@@ -44,20 +47,25 @@ struct BranchPoint {
 /// (x^, p^) one step further along t (`arclength`), or where p = p^ (`natural`). Both are solved as (4.17) is, the change of p being what brings the
 /// correction onto the plane; in the iteration G is linear in p, and taken anew at the p it ends with until that stays. A fold is the vertex of the
 /// parabola p(arclength) through three points, which is solved for and replaces one of them until p there stays.
+///
+/// A fold goes on in a second parameter from one value of it to the next: expected where the two folds before point to, the values taken for evenly
+/// spaced, it lies between three points that (4.20) gives at a distance before, at and after that place, t being the direction of the branch at the
+/// fold before. Where nothing is found the way to the next value is halved. The mesh stays that of the first fold.
 class Branch {
  public:
-  /// The equations at a value of the parameter. Collective.
-  using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter)>;
+  /// The equations at a value of the parameter and one of the second, 0 where there is none. Collective.
+  using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
   /// Carries shapes, the last of which is at rest at this parameter, to a mesh that fits that one better, and the family to it; whether there is one.
   /// Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
-  /// Begins with the shape that `x` leads to at `parameter`.
+  /// Begins with the shape that `x` leads to at `parameter`, and at `second` where the first fold is to go on in a second one.
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
-         double parameter, Net x);
+         double parameter, double second, Net x);
 
-  /// The next point, folds in between included; none at the end of the branch. Throws RunFailure where it cannot be found. Collective.
+  /// The next point, folds in between included; with a second parameter up to the first fold, then that at each of its values. None at the end.
+  /// Throws RunFailure where it cannot be found. Collective.
   std::optional<BranchPoint> next();
 
  private:
@@ -73,6 +81,10 @@ class Branch {
     int iterations = 0;
     double rest = 0;
   };
+  struct Fold {
+    Solved at;
+    Place along;  // the direction of the branch there
+  };
   double inner(const Place& a, const Place& b) const;
   double length(const Place& a) const { return std::sqrt(inner(a, a)); }
   std::optional<Solved> at_parameter(double parameter, const Net& x);
@@ -83,7 +95,9 @@ class Branch {
   void keep(const Solved& solved);
   void adapt();
   bool turned(const Solved& next) const;
-  Solved fold(Solved next);
+  std::optional<Fold> fold(std::array<Solved, 3> three);
+  std::optional<Fold> fold_near(const Place& expected, const Place& along);
+  bool next_fold();
   bool ends(const Solved& solved) const;
 
   Family family_;
@@ -91,11 +105,14 @@ class Branch {
   ContinuationOptions options_;
   SteadyOptions steady_;
   const coupling::SolverOptions& solvers_;
-  double start_, unit_ = 1;  // q = parameter/unit
+  double start_, second_, unit_ = 1;  // q = parameter/unit
   std::shared_ptr<SteadyEquations> first_;
   Net x_;
   std::vector<Solved> last_;  // up to three, the latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // that next() has to give yet, by arclength, and whether each is a fold
+  std::vector<Fold> folds_;       // of the second parameter, the two latest
+  double last_share_ = 1;         // of the way between two values of it that lies between them
+  std::size_t values_ = 0;        // of it that were reached
   std::string failure_;
   double step_ = 0;
   int count_ = 0;
