@@ -59,6 +59,13 @@ Net shape_of(const output::Checkpoint& run) {
   return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
 }
 
+/// One of the modes that a run has found, as a displacement of its control points.
+Net mode_of_run(const output::Checkpoint& run, int number) {
+  const auto found = run.arrays.find("mode " + std::to_string(number));
+  if (found == run.arrays.end()) throw UserError(key + formatted("mode must be one of the modes of the run's Spectrum, and there is no mode %d.", number));
+  return found->second;
+}
+
 }  // namespace
 
 std::optional<output::Checkpoint> run_before(const Scene& scene) try {
@@ -89,10 +96,11 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
   const surface::InitialShape& initial = *shape.initial;
   const bool own = initial.volume == "own";
   if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
-  const Net x = before ? shape_of(*before) : net_of_file(body.space, initial.file.value(), key + "file");
+  Net x = before ? shape_of(*before) : net_of_file(body.space, initial.file.value(), key + "file");
   if (x.rows() != body.space.n_points)
     throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));
+  if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode);
   const surface::Measures measures = surface::measures(body.space, x);
   const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);
   return image(x, measures.centroid, scale * Mat3::Identity());

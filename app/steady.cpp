@@ -323,6 +323,7 @@ class SteadyRun {
     const auto clock = phases_.time("output");
     output::Checkpoint checkpoint;
     system_->particle->store(checkpoint);
+    for (int k = 0; const motion::Mode& mode : modes_) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
     SurfacePicture picture = system_->particle->picture(state_);
     picture.fields = [this, of_shape = picture.fields](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);

@@ -103,6 +103,8 @@ void InitialShape::declare(deck::Section& section) {
   section.key("run", run, deck::Choice{},
               "results of another run on the same mesh, the directory for its newest checkpoint, or one of its snapshots: its shape is taken where "
               "it is, and its mesh, where that adapts; looked for as Particle/file");
+  section.key("mode", mode, deck::at_least(1), "1", "added to the shape of `run`: this one of its Spectrum, of a complex one the real part");
+  section.key("mode amplitude", mode_amplitude, deck::any(), "R_C", "largest displacement of the mode, which itself is 1 at its largest");
   section.key("volume", volume, deck::Choice{"resting", "own"},
               "that the particle has and keeps: that of the `resting` shape, to which the initial one is scaled, or the initial shape's `own`");
 }
@@ -110,6 +112,7 @@ void InitialShape::declare(deck::Section& section) {
 void InitialShape::check() const {
   if (map.has_value() + stretch.has_value() + file.has_value() + run.has_value() != 1)
     throw UserError("Particle/initial shape needs one of the keys stretch, map, file and run, and no other of them.");
+  if (mode && !run) throw UserError("Particle/initial shape/mode needs Particle/initial shape/run, the run with a Spectrum that it is taken from.");
   if (map && !(map->determinant() > 0))
     throw UserError("Particle/initial shape/map must have a positive determinant, or the surface is turned inside out; it is " +
                     deck::number_text(map->determinant()) + ".");

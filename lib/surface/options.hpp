@@ -47,6 +47,8 @@ struct InitialShape {
   std::optional<Vec3> stretch;      ///< the same, factors along the particle's own axes
   std::optional<std::string> file;  ///< Bezier-extraction text on the particle's own mesh
   std::optional<std::string> run;   ///< results of another run, or one of its snapshots
+  std::optional<int> mode;          ///< of the run's spectrum, from 1, that is added to its shape
+  double mode_amplitude = 0.01;     ///< its largest displacement, over R_C
   std::string volume = "resting";   ///< or own
 
   void declare(deck::Section& section);
