@@ -62,7 +62,8 @@ Net shape_of(const output::Checkpoint& run) {
 /// One of the modes that a run has found, as a displacement of its control points.
 Net mode_of_run(const output::Checkpoint& run, int number) {
   const auto found = run.arrays.find("mode " + std::to_string(number));
-  if (found == run.arrays.end()) throw UserError(key + formatted("mode must be one of the modes of the run's Spectrum, and there is no mode %d.", number));
+  if (found == run.arrays.end())
+    throw UserError(key + formatted("mode must be one of the modes of the run's Spectrum, and there is no mode %d.", number));
   return found->second;
 }
 

@@ -128,11 +128,6 @@ std::optional<Branch::Solved> Branch::stepped() {
   return {};
 }
 
-bool Branch::turned(const Solved& next) const {
-  const std::size_t n = last_.size();
-  return n > 1 && (next.place.q - last_[n - 1].place.q) * (last_[n - 1].place.q - last_[n - 2].place.q) < 0;
-}
-
 /// Goes on from the two latest points, found again on a mesh that fits the last one: while there are finer ones.
 void Branch::adapt() {
   constexpr int most = 6;
@@ -193,6 +188,7 @@ void Branch::begin() {
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;
     ahead_.front().first.place.q = start_ / unit_;
     solved->s = step_ = length(solved->place - last_.front().place);
+    heading_ = solved->place.q - last_.front().place.q;
   }
   keep(*solved);
 }
@@ -205,7 +201,8 @@ void Branch::advance() {
   if (!solved)
     throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));
   solved->s = last_.back().s + length(solved->place - last_.back().place);
-  const bool folded = turned(*solved);
+  const double before = std::exchange(heading_, solved->place.q - last_.back().place.q);
+  const bool folded = before * heading_ < 0;
   if (folded) {
     ++count_;
     auto found = fold({last_[last_.size() - 2], last_.back(), *solved});

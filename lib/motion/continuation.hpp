@@ -94,7 +94,6 @@ class Branch {
   void advance();
   void keep(const Solved& solved);
   void adapt();
-  bool turned(const Solved& next) const;
   std::optional<Fold> fold(std::array<Solved, 3> three);
   std::optional<Fold> fold_near(const Place& expected, const Place& along);
   bool next_fold();
@@ -115,6 +114,7 @@ class Branch {
   std::size_t values_ = 0;        // of it that were reached
   std::string failure_;
   double step_ = 0;
+  double heading_ = 0;  // how q changed on the last step; points found again on another mesh may have it otherwise
   int count_ = 0;
   bool ended_ = false;
 };

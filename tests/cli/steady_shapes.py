@@ -1,5 +1,7 @@
 #!/usr/bin/python3
 # Steady shapes, spectra and branches in place of a run in time: what they write, and what they say where there is nothing to find.
+import numpy
+
 from harness import check, close, deck, main, run, series, summary
 
 DECK = """
@@ -16,6 +18,12 @@ Tanktread:
   Surface: {elements per side: 3}
   Time: {final time: 20, steady tolerance: 1.0e-7, tolerance: 1.0e-5}
   Output: {interval: 20}
+"""
+LONG = """
+Tanktread:
+  Particle: {shape: spheroid, semi-axes: [0.7575722442, 0.7575722442, 1.7424161616]}
+  Surface: {elements per side: 6}
+  Solvers: {projection: least squares}
 """
 BRANCH = """
 Tanktread:
@@ -59,6 +67,53 @@ def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
     check(abs(rate[at]) < 1e-2, rate[at])
 
 
+def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
+    coarse = ["--set", "Surface/elements per side=4", "--quiet", "--no-expect"]
+    second = ["--set", "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[1.4, 2]"]
+    run(deck(DECK), deck(BRANCH, "branch.yaml"), *coarse, *second, "--output", "folds")
+    run(deck(DECK), deck(BRANCH, "branch.yaml"), *coarse, "--set", "Particle/viscosity ratio=2", "--set", "Membrane/capillary number=0.095",
+        "--output", "own")
+    parameter, ratio, fold, rate = (series("folds", name) for name in ("parameter", "second_parameter", "fold", "leading_rate"))
+    check(list(ratio[fold > 0]) == [1, 1.4, 2] and list(fold[-3:]) == [1, 1, 1], ratio, fold)
+    close(parameter[-1], series("own", "parameter")[series("own", "fold").argmax()], 1e-6)
+    check((abs(rate[-3:]) < 2e-2).all(), rate)  # on so coarse a mesh
+
+
+def a_branch_without_a_fold_says_so():
+    said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.09", "--set",
+               "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[2]", "--output", "no_fold", "--quiet",
+               code=3).stderr
+    check(len(said.splitlines()) == 1 and "no fold" in said, said)
+    check(len(series("no_fold", "parameter")) > 2, "the points of the branch")
+
+
+def a_run_in_time_from_a_mode_grows_at_its_rate():
+    """On the unstable branch, to both sides: the difference of the two has no even terms. At first its mesh slides."""
+    deck(LONG, "long.yaml")
+    run(deck(DECK), "long.yaml", "--set", "Membrane/capillary number=0.117", "--set", "Spectrum/number=1", "--output", "unstable", "--quiet")
+    rate = series("unstable", "leading_rate")[-1]
+    check(rate > 0.1, rate)
+    growing = ["--set", "Particle/initial shape/run=unstable", "--set", "Particle/initial shape/mode=1", "--set", "Membrane/capillary number=0.117",
+               "--set", "Time/tolerance=1e-6", "--quiet", "--overwrite"]
+    apart = {}
+    for end in 0.5, 1.0:
+        d = []
+        for amplitude in 0.003, -0.003:
+            run(deck(IN_TIME, "in_time.yaml"), "long.yaml", *growing, "--set", f"Particle/initial shape/mode amplitude={amplitude}", "--set",
+                f"Time/final time={end}", "--output", "grows")
+            d.append(series("grows", "taylor_surface")[-1])
+        apart[end] = abs(d[0] - d[1])
+    close(numpy.log(apart[1.0] / apart[0.5]) / 0.5, rate, 0.01 * rate)
+
+
+def a_mode_needs_the_run_that_has_it():
+    run(deck(DECK), "--output", "bare", "--quiet")
+    for settings, word in (["Particle/initial shape/mode=1", "Particle/initial shape/stretch=[1, 1, 1]"], "run"), \
+                          (["Particle/initial shape/mode=1", "Particle/initial shape/run=bare"], "no mode 1"):
+        said = run(deck(DECK), *(word for one in settings for word in ("--set", one)), "--output", "no", "--quiet", code=2).stderr
+        check(len(said.splitlines()) == 1 and word in said, said)
+
+
 def above_the_fold_nothing_is_found_and_what_was_reached_is_kept():
     said = run(deck(DECK), "--set", "Membrane/capillary number=0.3", "--set", "Steady/iterations=20", "--output", "none", "--quiet", code=3).stderr
     check(len(said.splitlines()) == 1 and "not found" in said and "what was reached" in said, said)
@@ -94,6 +149,9 @@ def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
 
 
 def a_parameter_must_be_a_number_of_the_deck():
+    said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.1", "--set",
+               "Continuation/second parameter=Particle/viscosity ratio", "--output", "no", "--quiet", code=2).stderr
+    check("Continuation/second values" in said, said)
     for path, word in ("Membrane/law", "number"), ("Membrane/colour", "key"), ("Membrane/capillary number", "differ"):
         said = run(deck(DECK), "--set", f"Continuation/parameter={path}", "--set", "Continuation/to=0.08", "--output", "no", "--quiet", code=2).stderr
         check(len(said.splitlines()) == 1 and "Continuation" in said and word in said, said)
