@@ -62,8 +62,8 @@ struct Moment {
 };
 
 /// Whose row a series is in, as bits: the run's, which of several particles is that of all; a capsule's or drop's; that of a rigid body among several
-/// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum, of all of it; of a branch; of a drop with surfactant; of
-/// folds that go on.
+/// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum, of all of it; of a branch; of a drop with surfactant;
+/// of folds that go on.
 enum Owner : unsigned {
   of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64, of_mode = 128,
   of_spectrum = 256, of_branch = 512, of_surfactant = 1024, of_folds = 2048

@@ -15,13 +15,14 @@ import textwrap
 import needs  # before what it looks for
 import edges_of_membranes
 import edges_of_meshes
+import edges_of_shapes
 import edges_of_steps
 import edges_of_tolerances
 import study as studies
 import style
 
 MAPS = {}
-for module in edges_of_steps, edges_of_membranes, edges_of_meshes, edges_of_tolerances:
+for module in edges_of_steps, edges_of_membranes, edges_of_meshes, edges_of_tolerances, edges_of_shapes:
     MAPS |= {function.__name__.replace("_", "-"): function for function in module.MAPS}
 
 
