@@ -254,8 +254,6 @@ void check_contradictions(const Scene& scene) {
   refuse(steady && scene.tube.channel, sought, "Channel", "in a channel what is carried along is nowhere at rest");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
   if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
-  if (scene.continuation.second_parameter.has_value() != scene.continuation.second_values.has_value())
-    throw UserError("Continuation/second parameter and Continuation/second values come together, or not at all.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
   refuse(steady && scene.domain.present, sought, "Domain", "the lattice moves along with the flow");
   refuse(steady && adapts && !scene.steady.present, sought, "Adaptation/enabled", "the mesh stays what it is");

@@ -39,7 +39,7 @@ def write_table(path, head, rows):
     """A CSV file; `rows` of numbers and words."""
     path.parent.mkdir(parents=True, exist_ok=True)
     lines = [",".join(head)] + [",".join(text_of(entry).replace(",", ";") for entry in row) for row in rows]
-    path.writetext_of("\n".join(lines) + "\n", encoding="utf-8")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     print(path)
 
 

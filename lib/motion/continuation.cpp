@@ -32,6 +32,8 @@ void ContinuationOptions::declare(deck::Section& section) {
               "path of another number, along which the first fold goes on, say Particle/viscosity ratio; the branch ends with that fold");
   section.key("second values", second_values, deck::any(), "that of the key",
               "of the second parameter, one fold each, in this order: evenly spaced, or by even factors, they are found with least work");
+  if (second_parameter.has_value() != second_values.has_value())
+    throw UserError(section.path("second parameter") + " and " + section.path("second values") + " come together, or not at all.");
 }
 
 Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,
