@@ -257,7 +257,8 @@ class Deforming : public ParticleSystem {
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    if (all_ || scene_.wall.present) widths = films(members_, p, state.x);
+    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), &tube->wall());
+    else if (all_ || scene_.wall.present) widths = films(members_, p, state.x);
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, capsule_->measure() == stokes::Measure::reference, widths);
     remark_on(member, change, state.time);
     if (!change.body) return;

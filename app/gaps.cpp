@@ -216,12 +216,13 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
   return all;
 }
 
-std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x) {
+std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const surface::TubeWall* wall) {
   const Body& body = *members[p].body;
   const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
   std::vector<surface::Patches> placed;
   for (std::size_t q = 0; q < members.size(); ++q)
     if (q != p) placed.emplace_back(surface::BezierMap(members[q].body->space), members[q].own(x));
+  if (wall) placed.emplace_back(surface::BezierMap(wall->space), wall->net);
   std::vector<const surface::Patches*> others;
   for (const surface::Patches& other : placed) others.push_back(&other);
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
@@ -230,7 +231,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;
   std::vector<double> widths = surface::film_widths(own, others, reach);
-  if (const auto wall = members[p].scene.wall.plane()) narrow(own, *wall, reach, widths);
+  if (const auto plane = members[p].scene.wall.plane()) narrow(own, *plane, reach, widths);
   return widths;
 }
 

@@ -222,8 +222,8 @@ void check_motion(const Scene& scene) {
                                                                 "Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
   if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section, or Channel.");
-  if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present)
-    throw UserError("Adaptation/film resolution is for several particles, or beside a Wall: there are no films between others.");
+  if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present)
+    throw UserError("Adaptation/film resolution is for several particles, or beside a wall: there are no films between others.");
   if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed && scene.runs_in_time())
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
 }
@@ -374,7 +374,7 @@ void Scene::declare(deck::Section& root) {
   domain.present =
       root.optional_section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
   wall.present = root.optional_section("Wall", wall, "a plane wall that the fluid sticks to; none without this list");
-  if (wall.present && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
+  if ((wall.present || tube.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");

@@ -44,6 +44,11 @@ void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_cont
 
 void Tube::set_reference(const Net& unstressed) { particle_->single.set_reference(unstressed); }
 
+Net Tube::in_wall_frame(Net x) const {
+  if (!fixed()) x.col(0).array() -= particle_->geometry.measures(x).centroid[0];
+  return x;
+}
+
 void Tube::place(const Net& x) {
   const auto clock = phases_.time("wall");
   particle_->place(x, *flow_, *wall_);

@@ -126,6 +126,9 @@ class Tube {
   /// Smallest distance of the particle's surface to the wall; negative where they cross.
   double gap() const;
 
+  /// The particle of this net where the wall is the one of `wall()`, which goes along with it in a straight tube.
+  Net in_wall_frame(Net x) const;
+
   /// Whether the wall stays where it is, and the way along it counts.
   bool fixed() const { return wall().channel != nullptr; }
 

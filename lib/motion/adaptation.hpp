@@ -28,7 +28,7 @@ struct AdaptationOptions {
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref
   std::optional<double> order;                             ///< kappa
-  std::optional<double> film_resolution;                   ///< longest element beside a film over sqrt(width x R_C); set among several particles
+  std::optional<double> film_resolution;                   ///< longest element beside a film over sqrt(width x R_C); set where there are films
   double minimum_length = 0.035;                           ///< L_min, a floor under every cut
   int interval = 1;                                        ///< accepted steps between checks
   int levels = 4;                                          ///< how often an element of the first mesh may be halved in a direction

@@ -1,5 +1,7 @@
 // The nearest points of two surfaces: against brute force, and where the answer is known.
 
+#include <algorithm>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -8,6 +10,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/shapes.hpp"
+#include "surface/tube_wall.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -96,6 +99,22 @@ TEST(ClosestPoints, OfSurfacesThatMeetHaveNoGap) {
   const Shape shape;
   const Net other = shape.sphere.rowwise() + Eigen::RowVector3d(1.5, 0.1, 0);
   EXPECT_LT(closest(shape, shape.sphere, other).gap, 1e-7);
+}
+
+/// A sphere on the axis of a tube: beside its equator, within reach, and nowhere else.
+TEST(FilmWidths, BesideTheWallOfATube) {
+  const Shape shape;
+  TubeOptions options;
+  options.radius = 1.1;
+  const TubeWall wall = tube_wall(outline(options), options, 7);
+  const Patches sphere(shape.map, shape.sphere), around(BezierMap(wall.space), wall.net);
+  const Patches* const others[] = {&around};
+  const std::vector<double> widths = film_widths(sphere, others, 0.25);
+  EXPECT_NEAR(*std::ranges::min_element(widths), 0.1, 3e-3);  // the sphere's fit, and what elements bend away from their tangent planes
+  for (int e = 0; e < sphere.size(); ++e)
+    if (place(sphere[e], 0.5, 0.5).tail<2>().norm() < 0.3) {
+      EXPECT_EQ(widths[static_cast<std::size_t>(e)], std::numeric_limits<double>::infinity());
+    }
 }
 
 }  // namespace
