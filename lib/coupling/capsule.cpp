@@ -208,18 +208,12 @@ const Net& Capsule::energy_gradient(const Net& x) {
   replicate_sums(gradient_);
   for (const Particle& particle : particles())
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
-  if (further_load_.size() > 0) gradient_ += further_load_;
   if (pressed_.size() > 0) gradient_ -= pressed_;
   gradient_at_ = x;
   return gradient_;
 }
 
 /// What was evaluated without it does not stand.
-void Capsule::set_further_load(Net load) {
-  further_load_ = std::move(load);
-  latest_ = {}, gradient_at_ = {};
-}
-
 void Capsule::press(Net work) {
   if (work.size() == 0 && pressed_.size() == 0) return;
   rigid_.push(work);

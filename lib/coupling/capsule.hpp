@@ -114,16 +114,13 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
-  /// Virtual work of forces on all particles beside those of the scene, a row a control point, from now on: they stay on their material points and
-  /// keep their directions. Of no rows: none.
+  /// Virtual work of forces on all particles that neither scene nor shape tells, a row a control point, from now on: contacts, the tension that a
+  /// surfactant takes away (3.18). They stay on their material points and keep their directions. Of no rows: none.
   void press(Net work);
 
   /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say. Of a rigid body the load of
   /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
   Net load(const Net& x);
-
-  /// What joins the gradient of the energy from now on, shape (N, 3): the load of a tension that the shape alone does not tell (3.18).
-  void set_further_load(Net load);
 
   /// Whether control points slide along the interface, so that their velocity is not the fluids'.
   bool slides() const { return interface_.has_value(); }
@@ -273,8 +270,7 @@ class Capsule : public Dynamics {
   };
   Latest latest_;  // evaluation
   Net gradient_at_, gradient_;  // x and dE/dx there
-  Net further_load_;  // none: empty
-  Net pressed_;                 // of what deforms; of no rows: nothing
+  Net pressed_;  // of what deforms; of no rows: nothing
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle
 };

@@ -28,7 +28,7 @@ Eigen::VectorXd SurfactantMotion::content(const Net& y) const {
 
 void SurfactantMotion::place(const Net& y) {
   surfactant_.place(shape(y), content(y));
-  drop_.set_further_load(surfactant_.load());
+  drop_.press(-surfactant_.load());
 }
 
 Net SurfactantMotion::velocity(const Net& y) {

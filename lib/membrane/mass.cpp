@@ -25,23 +25,25 @@ Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   return spline::assemble(space.n_points, local);
 }
 
+/// Where the values of a batch's functions start.
+std::size_t values_of(const Group& g, const Batch& batch) {
+  return batch.extraction / static_cast<std::size_t>(g.n_bernstein()) * static_cast<std::size_t>(g.n_gauss());
+}
+
 std::vector<Pack> values_at_gauss_points(const Group& g) {
-  std::size_t n = 0;
-  for (const Batch& batch : g.batches) n += static_cast<std::size_t>(batch.functions * g.n_gauss());
-  std::vector<Pack> values(n);
-  const int p = g.degree + 1, n_b = g.n_bernstein();
-  const int lanes = pack_lanes();
-  std::size_t first = 0;
+  const int p = g.degree + 1, n_b = g.n_bernstein(), lanes = pack_lanes();
+  std::vector<Pack> values(g.extraction.size() / static_cast<std::size_t>(n_b) * static_cast<std::size_t>(g.n_gauss()));
   for (const Batch& batch : g.batches) {
     const double* const extraction = numbers(&g.extraction[batch.extraction]);
+    Pack* const first = &values[values_of(g, batch)];
+    std::fill_n(first, batch.functions * g.n_gauss(), Pack{});
     for (int a = 0; a < batch.functions; ++a)
       for (int q = 0; q < g.n_gauss(); ++q) {
         const double *bs = &g.value[q % g.order * p], *bt = &g.value[q / g.order * p];
-        double* const sum = numbers(&values[first]) + lanes * (a * g.n_gauss() + q);
+        double* const sum = numbers(first) + lanes * (a * g.n_gauss() + q);
         for (int b = 0; b < n_b; ++b)
           for (int l = 0; l < lanes; ++l) sum[l] += extraction[lanes * (a * n_b + b) + l] * (bs[b % p] * bt[b / p]);
       }
-    first += static_cast<std::size_t>(batch.functions * g.n_gauss());
   }
   return values;
 }
@@ -85,12 +87,11 @@ const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
   std::fill_n(out, matrix_.nonZeros(), 0.);
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     const Group& g = groups_[k];
-    const Pack* values = values_[k].data();
     const int* slots = slots_[k].data();
     for (const Batch& batch : g.batches) {
       tangents(g, batch, x, a);
       area_weights(g.n_gauss(), a, g.weight.data(), area);
-      mass_entries(batch.functions, g.n_gauss(), values, area, entries);
+      mass_entries(batch.functions, g.n_gauss(), &values_[k][values_of(g, batch)], area, entries);
       int pair = 0;
       for (int i = 0; i < batch.functions; ++i)
         for (int j = 0; j <= i; ++j, ++pair)
@@ -98,7 +99,6 @@ const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
             out[slots[2 * pair * lanes + l]] += numbers(entries)[lanes * pair + l];
             if (i != j) out[slots[(2 * pair + 1) * lanes + l]] += numbers(entries)[lanes * pair + l];
           }
-      values += batch.functions * g.n_gauss();
       slots += 2 * pairs(batch) * lanes;
     }
   }

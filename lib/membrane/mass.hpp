@@ -23,7 +23,7 @@ class MassMatrix {
 
  private:
   std::vector<Group> groups_;
-  std::vector<std::vector<Pack>> values_;  // N_A at Gauss points, a group; [(batch m + A) n_gauss + q]
+  std::vector<std::vector<Pack>> values_;  // N_A at Gauss points, a group; of each extraction [A n_gauss + q]
   std::vector<std::vector<int>> slots_;    // of (A, B <= A) and of (B, A) among the entries, a group; [(batch pairs + pair) pack_lanes() + lane]
   Eigen::SparseMatrix<double> matrix_;
 };

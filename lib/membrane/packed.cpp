@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "base/kept_once.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 
@@ -27,7 +28,7 @@ Group group_with_rule(int degree, int order) {
   return g;
 }
 
-void append(Group& g, const spline::Space& space, std::span<const int> elements) {
+void append(Group& g, const spline::Space& space, std::span<const int> elements, Tables& extractions) {
   Batch batch;
   const int lanes = pack_lanes();
   batch.used = static_cast<int>(elements.size());
@@ -46,6 +47,7 @@ void append(Group& g, const spline::Space& space, std::span<const int> elements)
       for (int b = 0; b < g.n_bernstein(); ++b) extraction[lanes * (a * g.n_bernstein() + b) + l] = element.extraction(a, b);
     }
   }
+  batch.extraction = kept_once(g.extraction, batch.extraction, extractions);
   g.batches.push_back(batch);
 }
 
@@ -60,8 +62,9 @@ std::vector<Group> pack(const spline::Space& space, std::span<const int> element
     std::sort(list.begin(), list.end());
     Group& g = groups.emplace_back(group_with_rule(kind.second, order + std::max(0, kind.second - 3)));
     g.material = kind.first;
+    Tables extractions;
     for (std::size_t first = 0; first < list.size(); first += lanes)
-      append(g, space, std::span(list).subspan(first, std::min(lanes, list.size() - first)));
+      append(g, space, std::span(list).subspan(first, std::min(lanes, list.size() - first)), extractions);
   }
   return groups;
 }

@@ -21,7 +21,7 @@ struct Batch {
   int functions = 0;                  ///< m, the largest of its elements; missing functions have zero extraction
   std::array<int, most_lanes> elements{};  ///< ids in the space
   std::size_t points = 0;             ///< where its control-point ids start in Group::points, [A * pack_lanes() + lane]
-  std::size_t extraction = 0;         ///< where its extraction starts in Group::extraction, [A * (p + 1)^2 + b]
+  std::size_t extraction = 0;         ///< where its extraction starts in Group::extraction, [A * (p + 1)^2 + b]; batches that are alike share one
 };
 
 /// All elements of one degree and material of a list, in ascending order, with the Gauss rule that belongs to the degree.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/kept_once.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "stokes/panel_kernel.hpp"
@@ -31,16 +32,18 @@ NodeTable table(int degree, int order) {
 }  // namespace
 
 Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
+  Tables extractions;
   for (std::size_t e = 0; e < space.elements.size(); ++e) {
     const spline::Element& element = space.elements[e];
     auto found = std::find_if(tables_.begin(), tables_.end(),
                               [&](const NodeTable& t) { return t.degree == element.degree && t.order == orders[e]; });
     if (found == tables_.end()) found = tables_.insert(tables_.end(), table(element.degree, orders[e]));
     const int m = static_cast<int>(element.points.size());
-    panels_.push_back({&*found, m, points_.size(), extraction_.size(), bezier_size_, n_nodes_});
-    points_.insert(points_.end(), element.points.begin(), element.points.end());
+    const std::size_t first = extraction_.size();
     for (int a = 0; a < m; ++a)
       for (int b = 0; b < found->n_bernstein; ++b) extraction_.push_back(element.extraction(a, b));
+    panels_.push_back({&*found, m, points_.size(), kept_once(extraction_, first, extractions), bezier_size_, n_nodes_});
+    points_.insert(points_.end(), element.points.begin(), element.points.end());
     n_nodes_ += found->n_nodes;
     bezier_size_ += static_cast<std::size_t>(3) * found->n_bernstein;
   }

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "base/kept_once.hpp"
 #include "surface/three_sums.hpp"
 
 namespace tanktread::surface {
@@ -32,32 +33,35 @@ std::vector<Block> blocks_by_degree(const spline::Space& space) {
 }
 
 BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), blocks_(blocks_by_degree(space)) {
-  const Eigen::MatrixXd* last = nullptr;
+  Tables tables;
   for (const spline::Element& element : space.elements) {
     const Eigen::MatrixXd& c = element.extraction;
-    if (!last || last->rows() != c.rows() || last->cols() != c.cols() || *last != c) operators_.push_back({c, c.transpose()});
-    last = &c;
-    elements_.push_back({element.degree, static_cast<int>(points_.size()), static_cast<int>(operators_.size()) - 1});
+    const std::size_t first = by_bezier_.size();
+    by_bezier_.insert(by_bezier_.end(), c.data(), c.data() + c.size());
+    const std::size_t operation = kept_once(by_bezier_, first, tables);
+    if (operation == first) {
+      by_function_.resize(by_bezier_.size());
+      Eigen::Map<Eigen::MatrixXd>(&by_function_[first], c.cols(), c.rows()) = c.transpose();
+    }
+    elements_.push_back({element.degree, static_cast<int>(element.points.size()), static_cast<int>(points_.size()), operation});
     points_.insert(points_.end(), element.points.begin(), element.points.end());
   }
 }
 
 void BezierMap::points(int element, const Net& net, double* out) const {
-  const Eigen::MatrixXd& rows = operators_[elements_[element].operation].by_function;
-  const int* ids = points_.data() + elements_[element].first;
-  const int n_b = static_cast<int>(rows.rows()), m = static_cast<int>(rows.cols());
+  const auto& [degree, m, first, operation] = elements_[element];
+  const int* ids = points_.data() + first;
   Room control(3 * m);
   for (int a = 0; a < m; ++a)
     for (int c = 0; c < 3; ++c) control.numbers[c * m + a] = net.data()[3 * ids[a] + c];
-  three_sums(n_b, m, rows.data(), control.numbers, out);
+  three_sums(n_bezier(element), m, &by_function_[operation], control.numbers, out);
 }
 
 void BezierMap::add_transposed(int element, const double* in, Net& net) const {
-  const Eigen::MatrixXd& rows = operators_[elements_[element].operation].by_bezier;
-  const int* ids = points_.data() + elements_[element].first;
-  const int m = static_cast<int>(rows.rows()), n_b = static_cast<int>(rows.cols());
+  const auto& [degree, m, first, operation] = elements_[element];
+  const int* ids = points_.data() + first;
   Room sums(3 * m);
-  three_sums(m, n_b, rows.data(), in, sums.numbers);
+  three_sums(m, n_bezier(element), &by_bezier_[operation], in, sums.numbers);
   for (int a = 0; a < m; ++a)
     for (int c = 0; c < 3; ++c) net(ids[a], c) += sums.numbers[c * m + a];
 }

@@ -40,7 +40,7 @@ struct Block {
 std::vector<Block> blocks_by_degree(const spline::Space& space);
 
 /// The extraction of a space as a map between control nets and Bezier points, made once a mesh and good for any number of nets.
-/// An extraction matrix that is that of the element before, as in most of a uniform mesh, is kept once, so it stays in the cache.
+/// Equal extraction matrices, as in most of a uniform mesh and in equal particles, are kept once, so they stay in the cache.
 class BezierMap {
  public:
   explicit BezierMap(const spline::Space& space);
@@ -59,17 +59,15 @@ class BezierMap {
   void add_transposed(int element, const double* in, Net& net) const;
 
  private:
-  struct Operator {
-    Eigen::MatrixXd by_bezier, by_function;  ///< the extraction matrix, with the function index running fastest; its transpose
-  };
   struct Element {
-    int degree, first, operation;  ///< degree, start in `points_`, position in `operators_`
+    int degree, functions, first;  ///< degree, how many functions, the start of their numbers in `points_`
+    std::size_t operation;         ///< start in `by_bezier_` and `by_function_`
   };
   int n_points_;
   std::vector<Block> blocks_;
   std::vector<Element> elements_;
   std::vector<int> points_;
-  std::vector<Operator> operators_;
+  std::vector<double> by_bezier_, by_function_;  // extraction matrices, with the function index running fastest; their transposes
 };
 
 }  // namespace tanktread::surface
