@@ -68,9 +68,7 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
     for (int c = 0; c < 3; ++c) place[c] = (2 * uniform(random) - 1) * (half[c] - radius);
     if (how.ball && place.norm() > *how.ball - radius) continue;
     const PackedSphere here{origin + place, radius, how.least_gap, true};
-    const auto meets = [&](const PackedSphere& other) {
-      return (here.centre - other.centre).norm() < (radius + other.radius) + how.least_gap * std::max(radius, other.radius);
-    };
+    const auto meets = [&](const PackedSphere& other) { return (here.centre - other.centre).norm() < least_distance(here, other, how.least_gap); };
     if (std::ranges::any_of(taken, meets)) continue;
     taken.push_back(here);
     copies.push_back({place});

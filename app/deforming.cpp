@@ -64,7 +64,7 @@ class Deforming : public ParticleSystem {
     if (!scene_.contact.limiter) return true;
     const auto clock = phases_.time("contact");
     capsule_->at(state.time, state.time - step);
-    const double least = least_radius();
+    const double least = scene_.least_radius();
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
                     scene_.rate());
     const bool first = contacts_.impulse == 0, holds = limiter.hold(state, step, contacts_);
@@ -174,10 +174,6 @@ class Deforming : public ParticleSystem {
     whole.power_residual = all > 0 ? powers.left_over / all : 0;
   }
 
-  double least_radius() const {
-    return std::ranges::min_element(members_, {}, [](const Member& member) { return member.scene.radius(); })->scene.radius();
-  }
-
   /// The contacts' forces act from now on.
   void press() {
     capsule_->press(contacts_.all.empty() ? Net() : coupling::work(capsule_->particles(), contacts_, body().space.n_points));
@@ -274,12 +270,14 @@ class Deforming : public ParticleSystem {
 
   /// Contacts of particle p to the same places of another mesh.
   void carry_contacts(std::size_t p, const spline::Space& to) {
+    if (contacts_.all.empty()) return;
+    const spline::Locator locator(to);
     for (coupling::Contact& contact : contacts_.all)
       for (std::size_t k = 0; k < 2; ++k)
         if (contact.particle[k] == p) {
           auto& [element, s, t] = contact.site[k];
           s = std::clamp(s, 0., 1.), t = std::clamp(t, 0., 1.);
-          contact.site[k] = spline::Locator(to)(spline::place(members_[p].body->nested(), contact.site[k]));
+          contact.site[k] = locator(spline::place(members_[p].body->nested(), contact.site[k]));
         }
   }
 

@@ -13,8 +13,8 @@ namespace tanktread {
 namespace {
 
 constexpr double tolerance = 1e-6;  // of gaps at contacts, over the limit
-constexpr double slack = 1e-2;      // of gaps beside contacts, over the limit
 constexpr int most_rounds = 40;
+constexpr double slack = ContactOptions::slack;
 
 bool of_same_pair(const coupling::Contact& a, const coupling::Contact& b) { return a.particle == b.particle && a.beyond.isApprox(b.beyond, 1e-6); }
 
@@ -31,9 +31,7 @@ bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contac
   load_ = contacts.all.empty() ? Net() : coupling::work(capsule_.particles(), contacts, start.rows());
   for (const coupling::Contact& one : contacts.all) {
     const Approach now = approach(members_, start, one);
-    const double to = target(now);
-    held_.push_back(held(now.contact));
-    held_.back().target = to;
+    held_.push_back(held(now, target(now)));
   }
   Net x = start;
   bool holds = find(x);
@@ -52,8 +50,9 @@ bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contac
   return state.history.front().allFinite();
 }
 
-Limiter::Held Limiter::held(const coupling::Contact& contact) const {
-  return {contact, 0, limit_, contact.force / unit_, contact.force / unit_, {}, {}};
+Limiter::Held Limiter::held(const Approach& found, double target) const {
+  const double force = found.contact.force / unit_;
+  return {found.contact, found.gap, target, force, force, {}, {}};
 }
 
 /// Contacts at x: gaps of those that are known, and others below the limit beside them. Whether all are above half of it.
@@ -64,13 +63,9 @@ bool Limiter::find(const Net& x) {
     if (Held* const known = beside(found.contact, x)) {
       if (known->response.size() > 0 || found.gap >= known->gap) continue;
       found.contact.force = known->contact.force;
-      const double to = known->target;
-      *known = held(found.contact);
-      known->gap = found.gap, known->target = to;
+      *known = held(found, known->target);
     } else if (found.gap < (1 - slack / 10) * limit_) {
-      const double to = target(found);
-      held_.push_back(held(found.contact));
-      held_.back().gap = found.gap, held_.back().target = to;
+      held_.push_back(held(found, target(found)));
     }
   }
   return true;

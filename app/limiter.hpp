@@ -38,7 +38,7 @@ class Limiter {
   };
 
   bool find(const Net& x);
-  Held held(const coupling::Contact& contact) const;
+  Held held(const Approach& found, double target) const;
   Held* beside(const coupling::Contact& contact, const Net& x);
   double target(const Approach& found) const;
   double error() const;

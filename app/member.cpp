@@ -1,6 +1,8 @@
 #include "app/member.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "app/exact_body.hpp"
@@ -22,6 +24,35 @@ Eigen::MatrixXd numbers_of(const auto& values) {
   Eigen::MatrixXd numbers(values.size(), 1);
   for (std::size_t k = 0; k < values.size(); ++k) numbers(static_cast<Eigen::Index>(k)) = values[k];
   return numbers;
+}
+
+/// Whether they are the same in all that values and derivatives of a field are made of.
+bool same(const spline::Space& a, const spline::Space& b) {
+  return a.n_points == b.n_points && std::ranges::equal(a.elements, b.elements, [](const spline::Element& one, const spline::Element& other) {
+    return one.degree == other.degree && one.points == other.points && one.extraction == other.extraction;
+  });
+}
+
+/// Whether they differ by a translation, to the round-off of their places.
+bool translated(const Net& a, const Net& b) {
+  const Net change = b - a;
+  return (change.rowwise() - change.row(0)).cwiseAbs().maxCoeff() < 1e-14 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
+}
+
+/// For the measures of the body of member p: what an equal one before it has, or its own.
+void share_or_make(std::vector<Member>& members, std::size_t p) {
+  Member& member = members[p];
+  const Body& body = *member.body;
+  const membrane::Material own = material(member.scene, body);
+  const std::span<const Member> before(members.data(), p);
+  const auto in_space = std::ranges::find_if(before, [&](const Member& other) { return same(other.body->space, body.space); });
+  member.geometry = in_space == before.end() ? std::make_shared<const surface::Geometry>(body.space) : in_space->geometry;
+  const auto equal = std::ranges::find_if(before, [&](const Member& other) {
+    return other.geometry == member.geometry && other.membrane->materials().all.front() == own &&
+           translated(other.body->unstressed, body.unstressed);
+  });
+  member.membrane = equal == before.end() ? std::make_shared<const membrane::Membrane>(body.space, body.unstressed, membrane::Materials{{own}, {}})
+                                          : equal->membrane;
 }
 
 }  // namespace
@@ -58,8 +89,7 @@ void arrange(std::vector<Member>& members) {
     if (members.size() == 1) continue;  // the system's are its own
     Body& body = *member.body;
     body.symmetry = surface::Symmetry(body.space.n_points);  // of one particle alone it is none of the scene's
-    member.geometry = std::make_unique<surface::Geometry>(body.space);
-    member.membrane = std::make_unique<membrane::Membrane>(body.space, body.unstressed, membrane::Materials{{material(member.scene, body)}, {}});
+    share_or_make(members, p);
   }
 }
 

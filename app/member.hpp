@@ -23,8 +23,8 @@ struct Member {
   Scene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
-  std::unique_ptr<surface::Geometry> geometry;
-  std::unique_ptr<membrane::Membrane> membrane;
+  std::shared_ptr<const surface::Geometry> geometry;  ///< this and the next are one of all members that are equal
+  std::shared_ptr<const membrane::Membrane> membrane;
   spline::Place place;    ///< of the material point whose phase is told, in the nested space
   spline::Site followed;  ///< the same on the present mesh
   PhaseAngle phase_angle;

@@ -8,8 +8,8 @@ namespace tanktread {
 
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-double least_distance(const PackedSphere& a, const PackedSphere& b) {
-  return a.radius + b.radius + std::max(a.least_gap, b.least_gap) * std::max(a.radius, b.radius);
+double least_distance(const PackedSphere& a, const PackedSphere& b, double gap) {
+  return a.radius + b.radius + gap * std::max(a.radius, b.radius);
 }
 
 namespace {

@@ -1,12 +1,16 @@
 #include "app/results.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <iterator>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <utility>
+
+#include <sys/resource.h>
 
 #include "app/channel_picture.hpp"
 #include "app/duct_picture.hpp"
@@ -27,6 +31,16 @@ namespace tanktread {
 namespace {
 
 constexpr std::chrono::seconds second(1);
+
+/// The most bytes that processes have had: of the rank with most, of all. Collective.
+output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::vector<double> all(static_cast<std::size_t>(ranks.size()), 0);
+  all[static_cast<std::size_t>(ranks.rank())] = 1024. * static_cast<double>(usage.ru_maxrss);
+  ranks.add(all);
+  return {{"largest of a rank", std::lround(std::ranges::max(all))}, {"all ranks", std::lround(std::accumulate(all.begin(), all.end(), 0.))}};
+}
 
 /// Ranks act; if one fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else. Collective.
 template <class Act>
@@ -258,6 +272,7 @@ void Results::complete(output::Checkpoint& checkpoint, const motion::State& stat
 }
 
 int Results::close(const Account& account, const Phases& phases) {
+  memory_ = peak_memory(ranks_);
   std::string missed;
   write([&] { missed = finish(account, phases); });
   if (!account.whole) missed.clear();
@@ -292,6 +307,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   for (const auto& [name, value] : account.vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
   summary.counts = account.counts;
   summary.seconds = with_earlier(phases, account.earlier);
+  summary.memory = memory_;
   summary.plan = account.plan;
   summary.numbers = numbers(scene_, *body_);
   summary.modes = account.modes;

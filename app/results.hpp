@@ -111,6 +111,7 @@ class Results {
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // of the pictures
   std::vector<std::string> warnings_;
+  output::Entries<long> memory_;  // of the summary
   int last_saved_ = -1;
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now(), due_ = start_;  // the latter: when the record is to be written

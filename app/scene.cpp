@@ -236,6 +236,11 @@ bool turns(const Scene& scene) {
   return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
 }
 
+/// Throws UserError for two choices that cannot be made together.
+void refuse(bool both, const std::string& one, const std::string& other, const std::string& why) {
+  if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
+}
+
 /// Every pair of choices, of whatever lists, that cannot be made together.
 void check_contradictions(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
@@ -244,12 +249,9 @@ void check_contradictions(const Scene& scene) {
   const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
   const bool steady = !scene.runs_in_time();
-  const std::string sought = scene.steady.present ? "Steady" : "Spectrum";
+  const std::string sought = scene.sought();
   const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
-  const auto refuse = [](bool both, const std::string& one, const std::string& other, const char* why) {
-    if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
-  };
   refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
   refuse(steady && scene.tube.channel, sought, "Channel", "in a channel what is carried along is nowhere at rest");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
@@ -319,16 +321,46 @@ void check_contradictions(const Scene& scene) {
 /// The balance of power is that of all particles (6.11).
 void check_power(const Scene& scene) {
   if (!scene.output.power_balance || !scene.name.empty()) return;
-  const std::string word = "Output/power balance", contradict = " contradict each other: ";
-  const auto refuse = [&](bool there, const std::string& other, const char* why) {
-    if (there) throw UserError(word + " and " + other + contradict + why + ".");
-  };
-  refuse(scene.tube.present, scene.tube.list(), "the checks of its wall are (2.14)");
-  refuse(scene.particle.rigid(), "Particle/motion " + text(scene.particle.motion), "nothing deforms");
-  refuse(!stokes::AmbientFlow(scene.flow).affine(), "Flow/type `" + scene.flow.type + "`", "it is for flows of one gradient");
-  refuse(!scene.runs_in_time(), scene.spectrum.present ? "Spectrum" : "Steady", "it is of rows of a run in time");
-  refuse(scene.alone().front().load_is_strong(), "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
-  refuse(scene.solvers.rigid_bodies == "first kind", "Solvers/rigid bodies `first kind`", "nothing deforms");
+  const std::string word = "Output/power balance";
+  refuse(scene.tube.present, word, scene.tube.list(), "the checks of its wall are (2.14)");
+  refuse(scene.particle.rigid(), word, "Particle/motion " + text(scene.particle.motion), "nothing deforms");
+  refuse(!stokes::AmbientFlow(scene.flow).affine(), word, "Flow/type `" + scene.flow.type + "`", "it is for flows of one gradient");
+  refuse(!scene.runs_in_time(), word, scene.sought(), "it is of rows of a run in time");
+  refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
+  refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
+}
+
+/// What tractions of the first kind cannot do.
+void check_first_kind(const Scene& scene) {
+  const std::string word = "Solvers/rigid bodies `first kind`";
+  double n_points = 0;
+  for (const Scene& one : scene.alone()) {
+    if (!one.particle.rigid())
+      throw UserError(word + " is for rigid bodies alone, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
+    n_points += points(one);
+  }
+  const bool tube = scene.tube.present;
+  refuse(tube || scene.domain.present, word, tube ? scene.tube.list() : "Domain", "it is for unbounded space or beside a Wall");
+  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
+}
+
+/// What cannot be done with several particles yet, and each of them by itself.
+void check_several(const Scene& scene) {
+  const std::string limiter = "Contact/limiter";
+  const std::vector<Scene> alone = scene.alone();
+  const bool strong = alone.front().load_is_strong();
+  refuse(scene.contact.limiter && !scene.runs_in_time(), limiter, scene.sought(), "it holds gaps after steps in time");
+  refuse(scene.contact.limiter && strong, limiter, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
+  for (Scene one : alone) {
+    one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
+    const std::string list = "Particles/" + one.name;
+    if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
+    try {
+      one.check();
+    } catch (const UserError& error) {
+      throw UserError(list + ": " + error.what());
+    }
+  }
 }
 
 /// Lengths that the mesh must be able to have.
@@ -393,54 +425,17 @@ void Scene::declare(deck::Section& root) {
 
 std::vector<Scene> Scene::alone() const {
   if (particles.empty()) return {*this};
-  std::vector<Scene> scenes;
-  for (const ParticleKind& kind : particles) {
-    Scene& one = scenes.emplace_back(*this);
-    one.particles.clear();
-    static_cast<ParticleKind&>(one) = kind;
-  }
+  Scene common = *this;
+  std::vector<ParticleKind>().swap(common.particles);  // a list that is cleared keeps its room, in each of them
+  std::vector<Scene> scenes(particles.size(), common);
+  for (std::size_t p = 0; p < particles.size(); ++p) static_cast<ParticleKind&>(scenes[p]) = particles[p];
   return scenes;
-}
-
-/// What tractions of the first kind cannot do.
-void Scene::check_first_kind() const {
-  const std::string word = "Solvers/rigid bodies `first kind`";
-  double n_points = 0;
-  for (const Scene& one : alone()) {
-    if (!one.particle.rigid())
-      throw UserError(word + " is for rigid bodies alone, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
-    n_points += points(one);
-  }
-  if (tube.present || domain.present)
-    throw UserError(word + " and " + (tube.present ? tube.list() : "Domain") +
-                    " contradict each other: it is for unbounded space or beside a Wall.");
-  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
-}
-
-/// What cannot be done with several particles yet, and each of them by itself.
-void Scene::check_several() const {
-  if (contact.limiter && !runs_in_time())
-    throw UserError(std::string("Contact/limiter and ") + (spectrum.present ? "Spectrum" : "Steady") +
-                    " contradict each other: it holds gaps after steps in time.");
-  if (contact.limiter && alone().front().load_is_strong())
-    throw UserError("Contact/limiter and Membrane/load `strong` contradict each other: its forces act by the work that they do, `weak`.");
-  for (Scene one : alone()) {
-    one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
-    const std::string list = "Particles/" + one.name;
-    if (one.load_is_strong() != alone().front().load_is_strong())
-      throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
-    try {
-      one.check();
-    } catch (const UserError& error) {
-      throw UserError(list + ": " + error.what());
-    }
-  }
 }
 
 void Scene::check() const {
   quadrature.check();
-  if (solvers.rigid_bodies == "first kind") check_first_kind();
-  if (!particles.empty()) return check_several(), check_power(*this);
+  if (solvers.rigid_bodies == "first kind") check_first_kind(*this);
+  if (!particles.empty()) return check_several(*this), check_power(*this);
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
@@ -472,6 +467,11 @@ std::string Scene::interface_motion() const {
 }
 
 double Scene::radius() const { return particle.shape.equivalent_radius(); }
+
+double Scene::least_radius() const {
+  const auto radius_of = [](const ParticleKind& kind) { return kind.particle.shape.equivalent_radius(); };
+  return particles.empty() ? radius() : radius_of(std::ranges::min(particles, {}, radius_of));
+}
 
 double Scene::speed() const { return flow.speed(radius()); }
 

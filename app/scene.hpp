@@ -71,6 +71,9 @@ struct ContactOptions {
   double limit = 1e-3;  ///< smallest gap, over the R_C of the smallest particle, at which a run goes on
   bool limiter = false;  ///< whether gaps are held there by forces between the particles
 
+  static constexpr double slack = 1e-2;  ///< by how much of the limit the limiter lets gaps beside its contacts fall below it
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< the gap, over the same R_C, below which the run ends
+
   void declare(deck::Section& section);
 };
 
@@ -100,9 +103,8 @@ struct Scene : ParticleKind {
 
   /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
   void check() const;
-  void check_first_kind() const;
-  void check_several() const;
   bool runs_in_time() const { return !spectrum.present && !steady.present; }  ///< otherwise steady shapes are looked at
+  std::string sought() const { return steady.present ? "Steady" : "Spectrum"; }  ///< the list that asks for what is not a run in time
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// The scene of each particle, as if it were alone.
@@ -110,6 +112,7 @@ struct Scene : ParticleKind {
 
   bool reciprocal_forces() const;    ///< `Particle/forces`, or its default
   double radius() const;             ///< R_C: of the sphere of equal volume
+  double least_radius() const;       ///< the smallest R_C of all particles, over which gaps are measured
   double rate() const;               ///< speed over radius; of the membrane at rest, modulus/(viscosity x radius), where nothing else moves
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body

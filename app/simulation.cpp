@@ -193,7 +193,7 @@ class Run {
       if (motion::cross_kink(motion, state_)) before = state_;
       if (!state_.history.front().allFinite()) throw RunFailure("there is no velocity to go on with");
       began_ = state_.time;
-      advance_apart(motion, limit);
+      advance_apart(motion, limit, before);
     } catch (const RunFailure& failure) {
       const std::string what = failure.what();
       const std::string& why = motion.failure();
@@ -202,8 +202,7 @@ class Run {
   }
 
   /// A step after which particles can be held apart, if they are to be.
-  void advance_apart(motion::GuardedDynamics& motion, double limit) {
-    const motion::State before = state_;
+  void advance_apart(motion::GuardedDynamics& motion, double limit, const motion::State& before) {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
       report_.rejected += rejected;
@@ -313,22 +312,16 @@ class Run {
     if (!error.empty()) fail(error);
   }
 
-  /// R_C of the smallest particle, over which gaps are measured.
-  double least_radius() const {
-    const std::vector<Scene> all = scene_.alone();
-    return std::ranges::min(all, {}, &Scene::radius).radius();
-  }
-
   /// Of a particle with the wall, whose list in the deck this is.
   void end_at_wall(const std::string& list, double contact_gap) {
-    const double gap = entry("gap"), least = contact_gap * least_radius();
+    const double gap = entry("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
     fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
   /// Of two of several particles.
   void end_at_contact() {
-    const double gap = entry("smallest_gap"), least = (scene_.contact.limiter ? 0.98 : 1) * scene_.contact.limit * least_radius();
+    const double gap = entry("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
     const auto name = [&](const char* which) { return scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name; };
     fail("Particles/" + name("first_of_gap") + " and Particles/" + name("second_of_gap") +

@@ -220,9 +220,14 @@ class SteadyRun {
   }
 
   void tell(int k, const motion::BranchPoint& point) const {
+    std::printf("  %-11d %s%s\n", k, at({point.parameter, point.second}).c_str(), point.fold ? ", a fold" : "");
+  }
+
+  /// The parameters as one reads them.
+  std::string at(const Parameters& parameters) const {
     const std::optional<std::string>& second = scene_.continuation.second_parameter;
-    std::printf("  %-11d %s %.8g%s%s\n", k, scene_.continuation.parameter.c_str(), point.parameter,
-                second ? formatted(", %s %.8g", second->c_str(), point.second).c_str() : "", point.fold ? ", a fold" : "");
+    return formatted("%s %.8g", scene_.continuation.parameter.c_str(), parameters[0]) +
+           (second ? formatted(", %s %.8g", second->c_str(), parameters[1]) : "");
   }
 
   /// The latest few are kept, the one that is asked for in front.
@@ -241,7 +246,8 @@ class SteadyRun {
       made->begin(state_.x);
     }
     if (made->particle->body().space.n_points != state_.x.rows())
-      throw UserError("Continuation/parameter and second parameter must leave the mesh as it is.");
+      throw UserError("Continuation is of one mesh, but " + at(parameters) + formatted(" has %d control points in place of %d.",
+                      made->particle->body().space.n_points, static_cast<int>(state_.x.rows())));
     systems_.emplace_front(parameters, made);
     if (systems_.size() > 3) drop_oldest();
     return made;

@@ -1,5 +1,7 @@
 // A drop with surfactant in the time loop: the drop alone, and what its surfactant adds.
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "app/particle_system.hpp"
@@ -55,11 +57,8 @@ class SurfactantDrop : public ParticleSystem {
     std::vector<double> row = drop_->row(of_drop(state), report, wall_seconds);
     const Eigen::VectorXd content = motion_->content(state.x);
     surfactant_.place(motion_->shape(state.x), content);
-    const std::vector<Series> all = run_series(scene_);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      if (all[k].name == "energy") row[k] += surfactant_.energy();
-      if (all[k].name == "smallest_tension") row[k] = scene_.surfactant->tension(surfactant_.largest());
-    }
+    row[energy_] += surfactant_.energy();
+    row[smallest_tension_] = scene_.surfactant->tension(surfactant_.largest());
     Moment now;
     now.surfactant_mass = surfactant_.mass(content);
     now.smallest_concentration = surfactant_.smallest(), now.largest_concentration = surfactant_.largest();
@@ -86,6 +85,12 @@ class SurfactantDrop : public ParticleSystem {
   }
 
  private:
+  /// Of a row.
+  std::size_t column(std::string_view name) const {
+    const std::vector<Series> all = run_series(scene_);
+    return static_cast<std::size_t>(std::ranges::find(all, name, &Series::name) - all.begin());
+  }
+
   void take_drop() { motion_.emplace(static_cast<coupling::Capsule&>(drop_->dynamics()), surfactant_); }
 
   motion::State of_drop(const motion::State& state) const {
@@ -99,6 +104,7 @@ class SurfactantDrop : public ParticleSystem {
   std::unique_ptr<ParticleSystem> drop_;
   membrane::Surfactant surfactant_;
   std::optional<coupling::SurfactantMotion> motion_;
+  std::size_t energy_ = column("energy"), smallest_tension_ = column("smallest_tension");  // columns that are of the clean drop and the surfactant
   motion::State pictured_;  // which the latest picture's fields look at
 };
 

@@ -89,7 +89,8 @@ def of_run(directory, field):
     sections = [("Expectations", "table", [["", "name", "value", "expected", "error"]] + [
         ["✓" if one.get("passed") else "✗", one.get("name"), one.get("value"), one.get("expected"), one.get("error")] for one in summary.get("expect") or []])]
     sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
-                 for title, word in (("Plan", "plan"), ("Numbers of the scene", "numbers"), ("Seconds by phase", "seconds"), ("Counts", "counts"))]
+                 for title, word in (("Plan", "plan"), ("Numbers of the scene", "numbers"), ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"),
+                                     ("Counts", "counts"))]
     sections.insert(0, ("Warnings", "list", summary.get("warnings") or []))
     sections.append(("Deck", "text", run.deck_text))
     return {"title": run.name, "facts": facts, "shapes": shapes(run, field), "curves": curves(run) if len(run.time) > 1 else None, "sections": sections}

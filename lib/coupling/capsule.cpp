@@ -67,6 +67,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   ranks_.own(own_points_, symmetry);
   collocation_.factor(collocation_matrix(space));
   mass_.factor(mass_matrix_.update(unstressed));
+  if (measure() == stokes::Measure::reference) mass_matrix_.release();
   nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   make_layers();
   if (by_tractions()) tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.wall, ranks);

@@ -28,9 +28,8 @@ void Capsule::freeze(const Net& at) {
   const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer.assemble(targets, of...); };
   layer.place(x, stokes::Measure::reference);
   if (parameters_.solvers.frozen_operator == "nodal") {
-    const auto row_sums = [&](const Net& net) { return Eigen::VectorXd(mass_matrix_.update(net) * Eigen::VectorXd::Ones(net.rows())); };
     const Eigen::SparseMatrix<double> sites = collocation_matrix(space_);
-    const NodalOperator::Surface surface{sites * x, sites, row_sums(unstressed_), row_sums(x), parameters_.symmetry};
+    const NodalOperator::Surface surface{sites * x, sites, mass_matrix_.row_sums(unstressed_), mass_matrix_.row_sums(x), parameters_.symmetry};
     nodal_.assemble(own_points_, surface, 3, parameters_.quadrature.far_sum, assemble);
   } else {
     frozen_.assemble(own_points_, space_.n_points, assemble);

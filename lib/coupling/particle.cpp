@@ -14,10 +14,12 @@ void place(std::span<Particle> particles) {
 membrane::Materials materials(std::span<const Particle> particles) {
   membrane::Materials result;
   for (const Particle& particle : particles) {
-    result.all.push_back(particle.material);
-    if (particles.size() > 1)
-      result.of_element.insert(result.of_element.end(), particle.block.n_elements, static_cast<int>(result.all.size()) - 1);
+    const auto known = std::ranges::find(result.all, particle.material);
+    const int number = static_cast<int>(known - result.all.begin());
+    if (known == result.all.end()) result.all.push_back(particle.material);
+    result.of_element.insert(result.of_element.end(), static_cast<std::size_t>(particle.block.n_elements), number);
   }
+  if (result.all.size() == 1) result.of_element.clear();
   return result;
 }
 

@@ -41,7 +41,7 @@ struct Particle {
 /// Where particles lie that are stacked in their order.
 void place(std::span<Particle> particles);
 
-/// The materials of all their elements.
+/// The materials of all their elements, equal ones once.
 membrane::Materials materials(std::span<const Particle> particles);
 
 /// The factor of the particle's double layer, 1 - lambda; -1 of a rigid body, whose density is w of (2.23).

@@ -40,6 +40,7 @@ struct NeoHookean {
   }
   double modulus() const { return shear_modulus; }
   double area_modulus() const { return 3 * shear_modulus; }
+  friend bool operator==(const NeoHookean&, const NeoHookean&) = default;
 };
 
 /// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening, C resists a change of area. (3.3)  P-8
@@ -59,6 +60,7 @@ struct Skalak {
   }
   double modulus() const { return shear_modulus; }
   double area_modulus() const { return (1 + 2 * area_dilatation) * shear_modulus; }
+  friend bool operator==(const Skalak&, const Skalak&) = default;
 };
 
 /// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)): a sheet of Mooney's rubber that keeps its volume, for m = 1 the
@@ -80,6 +82,7 @@ struct MooneyRivlin {
   }
   double modulus() const { return shear_modulus; }
   double area_modulus() const { return 3 * shear_modulus; }
+  friend bool operator==(const MooneyRivlin&, const MooneyRivlin&) = default;
 };
 
 /// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area apart from dilatation. Evans & Skalak, *Mechanics and
@@ -102,6 +105,7 @@ struct EvansSkalak {
   }
   double modulus() const { return shear_modulus; }
   double area_modulus() const { return (1 + 2 * area_dilatation) * shear_modulus; }
+  friend bool operator==(const EvansSkalak&, const EvansSkalak&) = default;
 };
 
 /// What the laws of Skalak and of Evans & Skalak have beside shear: Psi = K/8 I2^2, or K/2 (J_s - 1)^2. Not a law of its own: it resists no shear.
@@ -124,6 +128,7 @@ struct AreaElasticity {
   }
   double modulus() const { return area; }
   double area_modulus() const { return area; }
+  friend bool operator==(const AreaElasticity&, const AreaElasticity&) = default;
 };
 
 /// Psi = G_s times a strain energy of the user's own.
@@ -142,6 +147,7 @@ struct UserLaw {
   }
   double modulus() const { return unit; }
   double area_modulus() const { return unit * strain_energy->area_modulus(); }
+  friend bool operator==(const UserLaw&, const UserLaw&) = default;
 };
 
 /// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
@@ -161,6 +167,7 @@ struct SurfaceTension {
   }
   double modulus() const { return tension; }
   double area_modulus() const { return 0; }
+  friend bool operator==(const SurfaceTension&, const SurfaceTension&) = default;
 };
 
 /// x_,s.x_,s, x_,s.x_,t and x_,t.x_,t of a surface.
@@ -212,6 +219,8 @@ struct Bending {
   double modulus = 0;               ///< E_b, force x length; 0: no bending
   bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point
   double spontaneous_curvature = 0;  ///< c0 otherwise, 1/length
+
+  friend bool operator==(const Bending&, const Bending&) = default;
 };
 
 /// A membrane that flows as it stretches (Kelvin & Voigt's element): what joins the elastic stress is, of the rate of strain d of the surface,
@@ -224,6 +233,7 @@ struct SurfaceViscosity {
   double dilatational = 0;  ///< kappa_s
 
   bool any() const { return shear > 0 || dilatational > 0; }
+  friend bool operator==(const SurfaceViscosity&, const SurfaceViscosity&) = default;
 };
 
 struct Material {
@@ -231,6 +241,8 @@ struct Material {
   Bending bending;
   SurfaceViscosity viscosity{};
   int area_order = 0;  ///< Gauss points a direction of the area's elasticity, where `split` knows it apart; 0: as for the rest
+
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// The materials of a surface, and which of them each element is of.

@@ -73,14 +73,38 @@ std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& mat
 
 }  // namespace
 
-MassMatrix::MassMatrix(const spline::Space& space, int order) : groups_(pack(space, everything(space), order)), matrix_(pattern(space)) {
-  for (const Group& g : groups_) {
-    values_.push_back(values_at_gauss_points(g));
-    slots_.push_back(slots_of(g, matrix_, space));
-  }
+MassMatrix::MassMatrix(const spline::Space& space, int order) : space_(&space), groups_(pack(space, everything(space), order)) {
+  for (const Group& g : groups_) values_.push_back(values_at_gauss_points(g));
 }
 
+Eigen::VectorXd MassMatrix::row_sums(const Net& x) const {
+  Pack a[6 * max_order * max_order], area[max_order * max_order];
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(x.rows());
+  const int lanes = pack_lanes();
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const Group& g = groups_[k];
+    for (const Batch& batch : g.batches) {
+      tangents(g, batch, x, a);
+      area_weights(g.n_gauss(), a, g.weight.data(), area);
+      const double *weight = numbers(area), *value = numbers(&values_[k][values_of(g, batch)]);
+      for (int l = 0; l < batch.used; ++l)
+        for (int i = 0; i < batch.functions; ++i) {
+          double sum = 0;
+          for (int q = 0; q < g.n_gauss(); ++q) sum += value[lanes * (i * g.n_gauss() + q) + l] * weight[lanes * q + l];
+          sums[g.points[batch.points + static_cast<std::size_t>(lanes * i + l)]] += sum;
+        }
+    }
+  }
+  return sums;
+}
+
+void MassMatrix::release() { slots_ = {}, matrix_ = {}; }
+
 const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
+  if (slots_.empty()) {
+    matrix_ = pattern(*space_);
+    for (const Group& g : groups_) slots_.push_back(slots_of(g, matrix_, *space_));
+  }
   Pack a[6 * max_order * max_order], area[max_order * max_order], entries[max_functions * (max_functions + 1) / 2];
   double* const out = matrix_.valuePtr();
   const int lanes = pack_lanes();

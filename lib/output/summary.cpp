@@ -42,7 +42,9 @@ std::string yaml(const Summary& summary) {
     text += "    passed: " + scalar(one.passed) + "\n";
     if (!one.not_binding.empty()) text += "    not binding: " + scalar(one.not_binding) + "\n";
   }
-  text += map("counts", summary.counts) + map("seconds", summary.seconds) + map("plan", summary.plan) + map("numbers", summary.numbers);
+  text += map("counts", summary.counts) + map("seconds", summary.seconds);
+  if (!summary.memory.empty()) text += map("memory", summary.memory);
+  text += map("plan", summary.plan) + map("numbers", summary.numbers);
   if (!summary.modes.empty()) text += map("modes", summary.modes);
   text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";
   for (const std::string& one : summary.warnings) text += "  - " + scalar(one) + "\n";

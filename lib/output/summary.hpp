@@ -20,6 +20,7 @@ struct Summary {
   std::vector<deck::Verdict> expect;
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
   Entries<double> seconds;    ///< by phase
+  Entries<long> memory;       ///< bytes: of the rank with most, of all ranks
   Entries<std::string> plan;  ///< what the run chose to compute, one line each
   Entries<double> numbers;    ///< derived and dimensionless ones of the scene
   Entries<std::string> modes;  ///< of a spectrum, what each mode is

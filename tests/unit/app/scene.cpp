@@ -1,10 +1,12 @@
 #include "app/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "app/member.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "coupling/ranks.hpp"
@@ -205,6 +207,24 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
                       "take %.0f GB assembled, more than 64.",
                       std::floor(std::sqrt(64e9 / of_wall)), of_wall * 40600. * 40600. / 1e9));
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
+}
+
+/// A list of a particle at a place along x1, with these lists.
+std::string particle(const std::string& name, double x1, const std::string& lists = "") {
+  return formatted("    %s: {center: [%g, 0, 0], Surface: {elements per side: 3}%s}\n", name.c_str(), x1, lists.c_str());
+}
+
+TEST(Members, ThatAreEqualShareTheirTables) {
+  const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("softer", 3, ", Membrane: {capillary number: 0.1}") +
+                          particle("equal", 6.1) + particle("flatter", 9, ", shape: ellipsoid, semi-axes: [1, 1, 0.9]") + "  Contact: {}\n");
+  std::vector<Member> members = tanktread::members(all);
+  arrange(members);
+  ASSERT_EQ(members.size(), 4u);
+  for (std::size_t p = 1; p < members.size(); ++p) EXPECT_EQ(members[p].geometry, members[0].geometry);
+  EXPECT_EQ(members[2].membrane, members[0].membrane);
+  EXPECT_NE(members[1].membrane, members[0].membrane);
+  EXPECT_NE(members[3].membrane, members[0].membrane);
+  for (const Member& member : members) EXPECT_EQ(member.scene.particles.capacity(), 0u);
 }
 
 TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {

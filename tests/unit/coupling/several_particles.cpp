@@ -114,6 +114,16 @@ TEST(SeveralParticles, EqualOnesMoveAlike) {
 }
 
 
+TEST(SeveralParticles, OfEqualMaterialsHaveOne) {
+  const Several three({{3, Vec3(0, 0, 0), 5, soft}, {3, Vec3(4, 0, 0), 1, hard}, {3, Vec3(8, 0, 0), 1, soft}});
+  const membrane::Materials all = materials(three.parameters.particles);
+  ASSERT_EQ(all.all.size(), 2u);
+  EXPECT_EQ(all.all[0].law, soft);
+  EXPECT_EQ(all.all[1].law, hard);
+  ASSERT_EQ(all.of_element.size(), three.space.elements.size());
+  for (std::size_t e = 0; e < all.of_element.size(); ++e) EXPECT_EQ(all.of_element[e], 3 * e / all.of_element.size() == 1 ? 1 : 0);
+  EXPECT_TRUE(materials(std::span(three.parameters.particles).first(1)).of_element.empty());
+}
 
 TEST(SeveralParticles, JacobianIsTheDerivative) {
   Several pair({{3, Vec3(0, 0, 0), 5, soft}, {3, Vec3(0.3, 0, 2.6), 1, hard}});

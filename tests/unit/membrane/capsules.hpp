@@ -1,6 +1,7 @@
 #pragma once
 // Spheres and smoothly deformed capsules, shared by the tests of this room.
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -58,6 +59,19 @@ template <class F>
 std::invoke_result_t<F, Net> difference(const F& f, const Net& x, const Net& u) {
   const double h = 1e-4;
   return (8 * (f(x + h * u) - f(x - h * u)) - (f(x + 2 * h * u) - f(x - 2 * h * u))) / (12 * h);
+}
+
+/// By how much the response of a law at I1, I2 is not the central differences of its energy and of itself: 1e-10 of truncation, 1e-11 of round-off.
+template <class L>
+double response_error(const L& law, double i1, double i2) {
+  const double h = 1e-5;
+  const auto at = [&](double a, double b) { return law.response(i1 + a * h, i2 + b * h); };
+  const auto r = at(0, 0);
+  return std::max({std::abs(r.psi1 - (law.energy(i1 + h, i2) - law.energy(i1 - h, i2)) / (2 * h)),
+                   std::abs(r.psi2 - (law.energy(i1, i2 + h) - law.energy(i1, i2 - h)) / (2 * h)),
+                   std::abs(r.psi11 - (at(1, 0).psi1 - at(-1, 0).psi1) / (2 * h)),
+                   std::abs(r.psi12 - (at(0, 1).psi1 - at(0, -1).psi1) / (2 * h)),
+                   std::abs(r.psi22 - (at(0, 1).psi2 - at(0, -1).psi2) / (2 * h))});
 }
 
 /// By how much, relative, the load along u is not the gradient of the energy.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "capsules.hpp"
+
 namespace tanktread::membrane {
 namespace {
 
@@ -19,22 +21,12 @@ TEST(Laws, AnUnstretchedMembraneStoresNothingAndPullsNowhere) {
 }
 
 TEST(Laws, DerivativesAreThoseOfTheEnergy) {
-  const double i1 = 0.7, i2 = 0.4, h = 1e-5;  // central differences: 1e-10 of truncation, 1e-11 of round-off
   for (const Law& law : {neo_hookean, skalak, mooney, evans, interface})
-    std::visit(
-        [&](const auto& l) {
-          const auto r = l.response(i1, i2);
-          EXPECT_NEAR(r.psi1, (l.energy(i1 + h, i2) - l.energy(i1 - h, i2)) / (2 * h), 1e-9);
-          EXPECT_NEAR(r.psi2, (l.energy(i1, i2 + h) - l.energy(i1, i2 - h)) / (2 * h), 1e-9);
-          EXPECT_NEAR(r.psi11, (l.response(i1 + h, i2).psi1 - l.response(i1 - h, i2).psi1) / (2 * h), 1e-9);
-          EXPECT_NEAR(r.psi12, (l.response(i1, i2 + h).psi1 - l.response(i1, i2 - h).psi1) / (2 * h), 1e-9);
-          EXPECT_NEAR(r.psi22, (l.response(i1, i2 + h).psi2 - l.response(i1, i2 - h).psi2) / (2 * h), 1e-9);
-        },
-        law);
+    EXPECT_LT(std::visit([](const auto& l) { return response_error(l, 0.7, 0.4); }, law), 1e-9);
 }
 
 TEST(Laws, TensionIsTheWorkOfStretchingAcrossTheOtherStretch) {
-  const double l1 = 1.4, l2 = 0.8, h = 1e-5;  // differences as above
+  const double l1 = 1.4, l2 = 0.8, h = 1e-5;  // differences as in response_error
   for (const Law& law : {neo_hookean, skalak, mooney, evans, interface}) {
     const auto t = principal_tensions(law, l1, l2);
     EXPECT_NEAR(t[0], (energy(law, l1 + h, l2) - energy(law, l1 - h, l2)) / (2 * h) / l2, 1e-9);

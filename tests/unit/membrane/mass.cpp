@@ -39,6 +39,17 @@ TEST(MassMatrix, IsSymmetricPositiveDefiniteAndRefillsInPlace) {
   EXPECT_EQ((mass.update(s.net) - first).norm(), 0);
 }
 
+TEST(MassMatrix, HasItsRowSumsWithoutTheMatrixAndIsTheSameAfterItsRelease) {
+  const Sphere& s = sphere(4);
+  const Net x = deformed(s.net);
+  MassMatrix mass(s.space);
+  const Eigen::VectorXd without = mass.row_sums(x);
+  const Eigen::SparseMatrix<double> first = mass.update(x);
+  EXPECT_LT((without - first * Eigen::VectorXd::Ones(x.rows())).norm(), 1e-14 * without.norm());  // round-off
+  mass.release();
+  EXPECT_EQ((mass.update(x) - first).norm(), 0);
+}
+
 /// L2 error of the load per area, S f = d, over the closed form 2 T/R n, for a sphere inflated by 1.2.
 double traction_error(int n, const Law& law) {
   const Sphere& s = sphere(n);

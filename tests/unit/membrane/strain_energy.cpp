@@ -50,15 +50,7 @@ TEST(StrainEnergy, OfABuiltInLawIsThatLaw) {
 }
 
 TEST(StrainEnergy, DerivativesAreThoseOfTheText) {
-  const double i1 = 0.7, i2 = 0.4, h = 1e-5;  // central differences: 1e-10 of truncation, 1e-11 of round-off
-  for (const UserLaw& l : {own(fung, {{"k", 0.7}}), own(odd)}) {
-    const auto r = l.response(i1, i2);
-    EXPECT_NEAR(r.psi1, (l.energy(i1 + h, i2) - l.energy(i1 - h, i2)) / (2 * h), 2e-9);
-    EXPECT_NEAR(r.psi2, (l.energy(i1, i2 + h) - l.energy(i1, i2 - h)) / (2 * h), 2e-9);
-    EXPECT_NEAR(r.psi11, (l.response(i1 + h, i2).psi1 - l.response(i1 - h, i2).psi1) / (2 * h), 2e-9);
-    EXPECT_NEAR(r.psi12, (l.response(i1, i2 + h).psi1 - l.response(i1, i2 - h).psi1) / (2 * h), 2e-9);
-    EXPECT_NEAR(r.psi22, (l.response(i1, i2 + h).psi2 - l.response(i1, i2 - h).psi2) / (2 * h), 2e-9);
-  }
+  for (const UserLaw& law : {own(fung, {{"k", 0.7}}), own(odd)}) EXPECT_LT(response_error(law, 0.7, 0.4), 2e-9);
 }
 
 TEST(StrainEnergy, ModuliAreThoseOfSmallStrains) {

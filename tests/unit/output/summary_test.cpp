@@ -43,19 +43,21 @@ TEST(Summary, IsReadByPythonAsItWasMeant) {
   summary.expect = {{"taylor_inertia", 0.39785, 0.3979, -5e-5, true}, {"no", 1, 2, -1, false}};
   summary.counts = {{"steps", 42}, {"velocity evaluations", 1234567890123}, {"on", 1}, {"1e3", 2}};
   summary.seconds = {{"far field: near: self", 1.25}};
+  summary.memory = {{"all ranks", 3'000'000'000}};
   summary.plan = {{"flow", "simple shear, γ̇ = 1: \"λ = 1\" # no double layer\n\tC:\\"}, {"yes", ""}};
   summary.warnings = {"the load: \"strong\" # it fails"};
   write_whole(scratch / "summary.yaml", yaml(summary));
   write_whole(scratch / "check.py", R"(
 import math, sys, yaml
 s = yaml.safe_load(open(sys.argv[1], encoding='utf-8'))
-assert list(s) == ['status', 'final', 'expect', 'counts', 'seconds', 'plan', 'numbers', 'warnings']
+assert list(s) == ['status', 'final', 'expect', 'counts', 'seconds', 'memory', 'plan', 'numbers', 'warnings']
 f = s['final']
 assert f['time'] == 7.5 and f['volume_error'] == 1e-15 and math.isnan(f['energy']) and f['drag'] == -math.inf
 assert s['expect'] == [dict(name='taylor_inertia', value=0.39785, expected=0.3979, error=-5e-5, passed=True),
                        dict(name='no', value=1.0, expected=2.0, error=-1.0, passed=False)]
 assert s['counts'] == {'steps': 42, 'velocity evaluations': 1234567890123, 'on': 1, '1e3': 2}
 assert s['seconds'] == {'far field: near: self': 1.25}
+assert s['memory'] == {'all ranks': 3000000000}
 assert s['plan'] == {'flow': 'simple shear, γ̇ = 1: "λ = 1" # no double layer\n\tC:\\', 'yes': ''}, s['plan']
 assert s['warnings'] == ['the load: "strong" # it fails']
 )");
