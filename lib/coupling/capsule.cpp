@@ -648,7 +648,11 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {
     const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
-    moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(geometry_.volume_gradient(x));
+    std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
+    std::iota(elements.begin(), elements.end(), particle.block.first_element);
+    Net flux;
+    geometry_.volume_gradient(x, elements, flux);
+    moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(flux);
   }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }

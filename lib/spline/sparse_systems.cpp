@@ -26,7 +26,7 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
     for (std::size_t i = 0; i < local[k].unknowns.size(); ++i) around[local[k].unknowns[i]].push_back({k, Eigen::Index(i)});
 
   Eigen::SparseMatrix<double> out(n, n);
-  out.reserve(Eigen::VectorXi::Constant(n, 50));
+  out.reserve(Eigen::Index(50) * n);
   std::vector<double> sum(n, 0.0);
   std::vector<int> rows, last(n, -1);  // last: the column that a row was met in
   for (int j = 0; j < n; ++j) {
@@ -42,9 +42,10 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
       }
     }
     std::sort(rows.begin(), rows.end());
-    for (int r : rows) out.insert(r, j) = sum[r];
+    out.startVec(j);
+    for (int r : rows) out.insertBack(r, j) = sum[r];
   }
-  out.makeCompressed();
+  out.finalize();
   return out;
 }
 
