@@ -34,6 +34,35 @@ constexpr Eigen::Index worth_inverting = 256;
 // Rows from which iteration is as fast as substitution, and set up in a small part of the time. Measured likewise.
 constexpr Eigen::Index worth_iterating = 5000;
 
+/// Where the blocks on its diagonal that a matrix falls into start, and after them where the last one ends.
+std::vector<Eigen::Index> block_starts(const RowMajor& a) {
+  const Eigen::Index n = a.rows();
+  const int *row = a.outerIndexPtr(), *column = a.innerIndexPtr();
+  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // least column of all rows from here on
+  for (Eigen::Index i = n; i-- > 0;) {
+    if (row[i] == row[i + 1]) return {0, n};
+    least[static_cast<std::size_t>(i)] = std::min<Eigen::Index>(least[static_cast<std::size_t>(i) + 1], column[row[i]]);
+  }
+  Eigen::Index most = 0;  // column of all rows so far
+  for (Eigen::Index i = 0; i < n; ++i) {
+    most = std::max<Eigen::Index>(most, column[row[i + 1] - 1]);
+    if (most <= i && least[static_cast<std::size_t>(i) + 1] > i) starts.push_back(i + 1);
+  }
+  return starts;
+}
+
+/// Whether two blocks of `size` rows are equal, to the round-off of places far from the origin.
+bool equal_blocks(const RowMajor& a, Eigen::Index one, Eigen::Index other, Eigen::Index size) {
+  const int* row = a.outerIndexPtr();
+  const int first = row[one], apart = row[other] - first, entries = row[one + size] - first;
+  if (row[other + size] - row[other] != entries) return false;
+  for (Eigen::Index i = 0; i < size; ++i)
+    if (row[other + i] - row[one + i] != apart) return false;
+  const Eigen::Map<const Eigen::ArrayXi> columns(a.innerIndexPtr() + first, entries), others(a.innerIndexPtr() + first + apart, entries);
+  const Eigen::Map<const Eigen::ArrayXd> values(a.valuePtr() + first, entries), of_other(a.valuePtr() + first + apart, entries);
+  return (others - columns == static_cast<int>(other - one)).all() && (of_other - values).abs().maxCoeff() <= 1e-13 * values.abs().maxCoeff();
+}
+
 std::string solvers_of_this_build() {
   std::string names;
   for (const char* name : {"KLU2", "Tacho", "Basker", "ShyLUBasker", "SuperLU", "SuperLU_MT", "SuperLU_DIST", "MUMPS", "UMFPACK", "Cholmod",
@@ -63,6 +92,62 @@ struct DirectSolver::Impl {
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
   Eigen::MatrixXd inverse;                            // of a small matrix, else empty
   std::optional<spline::IncompleteSolver> iterative;  // in place of the factors
+
+  /// Equal blocks: where each starts, and the solver of one of them.
+  struct Kind {
+    std::vector<Eigen::Index> starts;
+    Eigen::Index size;
+    DirectSolver solver;
+  };
+  std::vector<Kind> kinds;  // in place of all of the above, where blocks are equal
+
+  /// Whether at least half of the blocks are equal to others before them; then those that are not are factored.
+  bool factor_equal_blocks() {
+    kinds.clear();
+    const std::vector<Eigen::Index> starts = block_starts(a);
+    const std::size_t n_blocks = starts.size() - 1;
+    for (std::size_t k = 0; k < n_blocks && 2 * kinds.size() <= n_blocks; ++k) {
+      const Eigen::Index size = starts[k + 1] - starts[k];
+      const auto known = std::ranges::find_if(
+          kinds, [&](const Kind& kind) { return kind.size == size && equal_blocks(a, kind.starts.front(), starts[k], size); });
+      if (known == kinds.end())
+        kinds.push_back({{starts[k]}, size, DirectSolver(options)});
+      else
+        known->starts.push_back(starts[k]);
+    }
+    if (2 * kinds.size() > n_blocks) kinds.clear();
+    for (Kind& kind : kinds) kind.solver.factor(a.block(kind.starts.front(), kind.starts.front(), kind.size, kind.size));
+    if (!kinds.empty()) a = {};
+    return !kinds.empty();
+  }
+
+  /// A^-1 of columns.
+  Eigen::MatrixXd solved(Eigen::MatrixXd all) const {
+    if (iterative) {
+      for (auto column : all.colwise()) column = iterative->solve(column);
+    } else if (inverse.size() == 0) {
+      all = substituted(all);
+    } else if (all.cols() <= 3) {  // a product with a few columns at once would copy the inverse first
+      for (auto column : all.colwise()) column = Eigen::VectorXd(inverse * column);
+    } else {
+      all = inverse * all;
+    }
+    return all;
+  }
+
+  /// The same by kinds, in place.
+  void solve_blocks(Columns& x) const {
+    for (const Kind& kind : kinds) {
+      Eigen::MatrixXd all(kind.size, x.cols() * static_cast<Eigen::Index>(kind.starts.size()));
+      const auto each = [&](const auto& use) {
+        for (std::size_t k = 0; k < kind.starts.size(); ++k)
+          use(all.middleCols(x.cols() * static_cast<Eigen::Index>(k), x.cols()), x.middleRows(kind.starts[k], kind.size));
+      };
+      each([](auto columns, auto rows) { columns = rows; });
+      all = kind.solver.impl_->solved(std::move(all));
+      each([](auto columns, auto rows) { rows = columns; });
+    }
+  }
 
   bool iterates() const {
     return options.sparse_systems == "iterative" || (options.sparse_systems == "auto" && a.rows() >= worth_iterating);
@@ -134,6 +219,7 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   impl_->a = a;
   impl_->a.makeCompressed();
   impl_->inverse.resize(0, 0);
+  if (impl_->factor_equal_blocks()) return;
   if (impl_->iterates()) {
     if (impl_->iterative.emplace().factor(impl_->a) && impl_->residual(*this) < residual_of_iteration) return;
   }
@@ -156,14 +242,12 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
 }
 
 void DirectSolver::solve(const Columns& b, Columns& x) const {
-  Eigen::MatrixXd all = b;  // by columns
-  if (impl_->iterative)
-    for (auto column : all.colwise()) column = impl_->iterative->solve(column);
-  else if (impl_->inverse.size() > 0)  // a product with several columns at once would copy the inverse first
-    for (auto column : all.colwise()) column = Eigen::VectorXd(impl_->inverse * column);
-  else
-    all = impl_->substituted(all);
-  x = all;
+  if (impl_->kinds.empty()) {
+    x = impl_->solved(b);
+  } else {
+    x = b;
+    impl_->solve_blocks(x);
+  }
 }
 
 Net DirectSolver::solve(const Net& b) const {

@@ -23,9 +23,9 @@ class DirectSolver {
   DirectSolver(DirectSolver&&) noexcept;
   DirectSolver& operator=(DirectSolver&&) noexcept;
 
-  /// Factors A (square). A solve with a known solution follows, and a
-  /// relative residual above 1e-8 throws: RunFailure for a singular matrix, UserError where the chosen solver does not suit the matrix
-  /// (Tacho is for symmetric positive definite ones).
+  /// Factors A (square). Of blocks on its diagonal that are equal, as those of equal particles, one is factored. A solve with a known solution
+  /// follows, and a relative residual above 1e-8 throws: RunFailure for a singular matrix, UserError where the chosen solver does not suit the
+  /// matrix (Tacho is for symmetric positive definite ones).
   void factor(const Eigen::SparseMatrix<double>& a);
 
   /// x = A^-1 b, of one shape; they may be the same object.

@@ -98,7 +98,10 @@ Eigen::VectorXd MassMatrix::row_sums(const Net& x) const {
   return sums;
 }
 
-void MassMatrix::release() { slots_ = {}, matrix_ = {}; }
+void MassMatrix::release() {
+  slots_.clear();
+  Eigen::SparseMatrix<double>().swap(matrix_);
+}
 
 const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
   if (slots_.empty()) {

@@ -51,6 +51,39 @@ TEST(DirectSolver, IterationGivesWhatFactorsGive) {
   }
 }
 
+/// Blocks on a diagonal.
+Eigen::SparseMatrix<double> stacked(const std::vector<Eigen::SparseMatrix<double>>& blocks) {
+  std::vector<Eigen::Triplet<double>> entries;
+  int first = 0;
+  for (const Eigen::SparseMatrix<double>& block : blocks) {
+    for (int j = 0; j < block.outerSize(); ++j)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(block, j); entry; ++entry)
+        entries.emplace_back(first + static_cast<int>(entry.row()), first + j, entry.value());
+    first += static_cast<int>(block.rows());
+  }
+  Eigen::SparseMatrix<double> all(first, first);
+  all.setFromTriplets(entries.begin(), entries.end());
+  return all;
+}
+
+/// Of three kinds, of which two are alike in their pattern, and one is equal to the round-off of its entries; of a size that is inverted, and of one
+/// that is not.
+TEST(DirectSolver, OfEqualBlocksSolvesAsOfOneMatrix) {
+  for (const int n : {60, 300})
+    for (const double skew : {0., 0.3}) {
+      const Eigen::SparseMatrix<double> one = banded(n, 5, skew), other = banded(n, 6, skew), smaller = banded(n - 7, 5, skew);
+      const auto a = stacked({one, other, one, smaller, (1 + 1e-15) * one, other, smaller, one});
+      const Net b = right_hand_side(static_cast<int>(a.rows()));
+      DirectSolver solver;
+      solver.factor(a);
+      EXPECT_LT((a * solver.solve(b) - b).norm(), 1e-13 * b.norm()) << n;  // round-off
+      const auto changed = stacked({one, 1.01 * one, 1.02 * one, one});    // half of them are not equal to any
+      solver.factor(changed);
+      const Net c = b.topRows(changed.rows());
+      EXPECT_LT((changed * solver.solve(c) - c).norm(), 1e-13 * c.norm()) << n;
+    }
+}
+
 /// The circle's shift: its incomplete factors are those of no use, its complete ones are exact.
 TEST(DirectSolver, AMatrixThatIterationDoesNotSolveIsFactored) {
   const int n = 400;
