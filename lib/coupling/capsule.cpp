@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -31,6 +32,19 @@ std::optional<VelocityProjection> chosen_projection(const spline::Space& space, 
                                                     const Ranks& ranks) {
   if (of.solvers.projection == "collocation") return {};
   return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
+}
+
+/// By how much a control point gives way to a force, in waves between the longest of a surface and the shortest of a mesh, of wave number k: a sheet
+/// in a fluid does by 1/(4 mu k) of velocity over force per area, or less where it is viscous itself.
+Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
+  for (const Particle& one : particles) {
+    const auto own = areas.segment(one.block.first_point, one.block.n_points);
+    const double element = std::sqrt(own.sum() / one.block.n_elements), k = std::sqrt(std::numbers::pi / (2 * element * one.radius));
+    if (!one.rigid)
+      result.segment(one.block.first_point, one.block.n_points) = (4 * viscosity * k + one.material.viscosity.shear * k * k) * own;
+  }
+  return result.unaryExpr([](double m) { return m > 0 ? 1 / m : 0; });
 }
 
 bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
@@ -73,6 +87,11 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (by_tractions()) tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.wall, ranks);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {
+    const Eigen::VectorXd areas = mass_matrix_.update(unstressed) * Eigen::VectorXd::Ones(unstressed.rows());
+    area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
+    if (area_->empty()) area_.reset();
+  }
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {

@@ -23,6 +23,7 @@
 #include "coupling/rigid_tractions.hpp"
 #include "coupling/tube.hpp"
 #include "coupling/velocity_projection.hpp"
+#include "membrane/area_constraint.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
@@ -110,6 +111,7 @@ class Capsule : public Dynamics {
   Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
+  void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
@@ -238,6 +240,7 @@ class Capsule : public Dynamics {
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
+  std::optional<membrane::AreaConstraint> area_;  // where a membrane has points of its own for its area
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
   std::optional<VelocityProjection> projection_;  // where velocities are not collocated
   stokes::Layer layer_;                           // at the targets of velocities

@@ -56,6 +56,7 @@ void Capsule::linearise(const Net& x) {
   ++work_.tangents;
   tangent_.update(x, own_elements_);
   if (viscous_) linearised_viscous_->update(x, own_elements_);
+  if (area_) area_->place(x);
   if (interface_) {
     interface_->linearise(x, flux_vector(x));
   } else if (parameters_.volume.constraint != "none" && (defect_without_system() || std::ranges::any_of(particles(), keeps_area))) {
@@ -215,11 +216,20 @@ Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const 
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
   latest_shift_ = shift;
-  const LinearSystem system{{{"displacement", 3 * n}}, apply, {}};
+  const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = area_->apply(Eigen::Map<const Net>(in, n, 3)); };
+  if (area_) area_->factor(shift);
+  const LinearSystem system{{{"displacement", 3 * n}}, apply, area_ ? Apply(keep_area) : Apply()};
   const SolveReport report = step_solver_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
   work_.solver_iterations += report.iterations;
   return symmetric(Eigen::Map<const Net>(solution.data(), n, 3));
+}
+
+void Capsule::improve_start(Net& y, const Net& before, double shift) {
+  if (!area_) return;
+  const auto clock = phases_.time("tangent");
+  area_->bring(y, before, shift);
+  y = symmetric(std::move(y));
 }
 
 Net Capsule::missed(const Net& dv, const Net& delta) {

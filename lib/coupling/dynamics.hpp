@@ -59,6 +59,10 @@ class Dynamics {
   /// Moves x onto the volume to be kept, if the constraint is `exact`; otherwise does nothing. Not finite where that cannot be done.
   virtual void restore_volume(Net& x) = 0;
 
+  /// Makes y, where a stage of this shift is about to start, better by what is known of the shape `before` it: a membrane that nearly keeps its area
+  /// has the tensions that it had.
+  virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
+
   /// Fields that move points along surfaces and change no shape: rotations of the mesh of each drop that it slides on.
   virtual std::vector<Net> relabellings(const Net& /*x*/) { return {}; }
 

@@ -62,6 +62,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     const Net predicted = interpolated(times, nets, dt);
     Stage stage;
     stage.y = predicted;
+    dynamics.improve_start(stage.y, state.x, scheme.shift);
     stage.contraction = memory.expected_contraction(dt);
     dynamics.at(state.time + dt, state.time);
     solve(dynamics, options_, rhs, scheme.shift, secants, stage);

@@ -97,6 +97,14 @@ void GuardedDynamics::restore_volume(Net& x) {
   });
 }
 
+void GuardedDynamics::improve_start(Net& y, const Net& before, double shift) {
+  y = tried(y, [&] {
+    Net improved = y;
+    motion_.improve_start(improved, before, shift);
+    return improved;
+  });
+}
+
 double GuardedDynamics::norm(const Net& displacement) const { return coupling::of_first(motion_.norm(displacement)); }
 
 }  // namespace tanktread::motion

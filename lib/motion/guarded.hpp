@@ -32,6 +32,7 @@ class GuardedDynamics : public coupling::Dynamics {
   Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   void restore_volume(Net& x) override;
+  void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override { return motion_.relabellings(x); }
   Net symmetric(Net rate) const override { return motion_.symmetric(std::move(rate)); }
   double norm(const Net& displacement) const override;

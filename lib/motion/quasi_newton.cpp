@@ -10,9 +10,10 @@ namespace tanktread::motion {
 
 namespace {
 const double worth_assembling = 0.8;  // root mean square displacement over R_C since the last assembly
+const double doubtful = 0.3;          // contraction rate expected where an attempt erred too much
 }
 
-double Memory::expected_contraction(double dt) const { return std::min(0.9, contraction * (step > 0 ? dt / step : 1)); }
+double Memory::expected_contraction(double dt) const { return std::min(0.9, std::max(least, contraction * (step > 0 ? dt / step : 1))); }
 
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {
   double previous = 0;
@@ -55,6 +56,7 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
     return {};
   }
   const bool small = error <= 1 || options.fixed_step;
+  if (!small) memory.least = doubtful;
   if (small) dynamics.restore_volume(last.y);
   return {small && last.y.allFinite(), step_factor(error, small ? memory.error : 0, power)};
 }

@@ -12,8 +12,10 @@ struct Memory {
   double contraction = 0.3;  ///< contraction rate of the quasi-Newton iteration at the step `step`
   double error = 0;          ///< local error of the last accepted step over the tolerance; 0 before the first
   double step = 0;           ///< its size
+  double least = 0;          ///< contraction rate below which none is expected: of the step whose first attempt erred too much
 
-  /// The contraction rate to expect of a step dt: the part left out of (4.3) grows with the step.
+  /// The contraction rate to expect of a step dt: the part left out of (4.3) grows with the step. What the linear solves leave does not, so that a
+  /// step that errs too much is not tried again shorter and shorter with a single iteration, whose rate is never seen.
   double expected_contraction(double dt) const;
 };
 

@@ -33,6 +33,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     second.contraction = memory.expected_contraction(dt);
     const Net rhs2 = state.x + shift * k1;
     second.y = rhs2 + shift * predicted(2 * d * dt);
+    dynamics.improve_start(second.y, state.x, shift);
     dynamics.at(state.time + 2 * d * dt, state.time);
     solve(dynamics, options_, rhs2, shift, secants, second);
     const Net& k2 = second.slope;
@@ -43,6 +44,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       slopes.insert(slopes.begin(), &k2);
       const Net rhs3 = state.x + dt * w * (k1 + k2);
       third.y = rhs3 + shift * predicted(dt);
+      dynamics.improve_start(third.y, second.y, shift);
       dynamics.at(state.time + dt, state.time);
       solve(dynamics, options_, rhs3, shift, secants, third);
     }

@@ -1,0 +1,94 @@
+#include "membrane/area_constraint.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+
+namespace tanktread::membrane {
+
+namespace {
+
+/// x_,s and x_,t.
+std::array<Vec3, 2> tangents(const spline::Element& element, const spline::Basis& basis, const Net& x) {
+  std::array<Vec3, 2> a{Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t k = 0; k < element.points.size(); ++k) {
+    const auto function = static_cast<Eigen::Index>(k);
+    a[0] += basis.s[function] * x.row(element.points[k]).transpose();
+    a[1] += basis.t[function] * x.row(element.points[k]).transpose();
+  }
+  return a;
+}
+
+}  // namespace
+
+AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility) : space_(&membrane.space()) {
+  const Materials& materials = membrane.materials();
+  for (int e = 0; e < static_cast<int>(space_->elements.size()); ++e) {
+    const Material& material = materials.all[materials.of_element.empty() ? 0 : static_cast<std::size_t>(materials.of_element[e])];
+    const auto parts = material.area_order > 0 ? split(material.law) : std::nullopt;
+    if (!parts) continue;
+    const spline::Element& element = space_->elements[e];
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(material.area_order + std::max(0, element.degree - 3));
+    for (int q = 0; q < rule.size(); ++q) {
+      const spline::Basis basis = spline::basis(element, rule.s[q], rule.t[q]);
+      const auto [a, b] = tangents(element, basis, membrane.unstressed());
+      const double det = a.cross(b).squaredNorm();
+      points_.push_back({e, basis, parts->area, 1 / det, rule.weights[q] * std::sqrt(det)});
+    }
+  }
+  mobility_.resize(3 * mobility.size());
+  for (Eigen::Index i = 0; i < mobility_.size(); ++i) mobility_[i] = mobility[i / 3];
+}
+
+// dI2 = 2 (J_s^2 g^ab) (x,a . du,b), J_s^2 g^ab = cofactors of g_ab over |G|.
+AreaConstraint::Rows AreaConstraint::rows(const Net& x) const {
+  Rows result{{static_cast<Eigen::Index>(points_.size()), 3 * x.rows()}, Eigen::VectorXd(points_.size())};
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    const Point& at = points_[q];
+    const spline::Element& element = space_->elements[static_cast<std::size_t>(at.element)];
+    const auto [a, b] = tangents(element, at.basis, x);
+    const double i2 = a.cross(b).squaredNorm() * at.inverse_det - 1;
+    const Response<double> psi = at.law.response(0., i2);
+    const double scale = std::sqrt(at.area * psi.psi22);
+    const Vec3 by_s = 2 * scale * at.inverse_det * (b.squaredNorm() * a - a.dot(b) * b);
+    const Vec3 by_t = 2 * scale * at.inverse_det * (a.squaredNorm() * b - a.dot(b) * a);
+    for (std::size_t k = 0; k < element.points.size(); ++k) {
+      const auto function = static_cast<Eigen::Index>(k);
+      const Vec3 row = at.basis.s[function] * by_s + at.basis.t[function] * by_t;
+      for (int c = 0; c < 3; ++c) entries.emplace_back(static_cast<int>(q), 3 * element.points[k] + c, row[c]);
+    }
+    result.t[static_cast<Eigen::Index>(q)] = at.area * psi.psi2 / scale;
+  }
+  result.d.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+void AreaConstraint::factor(double time) {
+  if (time == time_) return;
+  time_ = time;
+  Eigen::SparseMatrix<double> system = time * (now_.d * mobility_.asDiagonal() * now_.d.transpose());
+  for (Eigen::Index q = 0; q < system.rows(); ++q) system.coeffRef(q, q) += 1;
+  if (system_.rows() != system.rows()) system_.analyzePattern(system);
+  system_.factorize(system);
+}
+
+/// time m D'(1 + time D m D')^-1 of a number a point.
+Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
+  const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
+  return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);
+}
+
+void AreaConstraint::bring(Net& x, const Net& like, double time) {
+  const Eigen::VectorXd wanted = rows(like).t;
+  place(x);
+  for (int k = 0; k < 2; ++k) {
+    factor(time);
+    x -= taken(now_.t - wanted);
+    place(x);
+  }
+}
+
+}  // namespace tanktread::membrane

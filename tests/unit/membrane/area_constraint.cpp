@@ -1,0 +1,55 @@
+// What a membrane that nearly keeps its area takes out of displacements (4.25).
+
+#include "membrane/area_constraint.hpp"
+
+#include <gtest/gtest.h>
+
+#include "capsules.hpp"
+
+namespace tanktread::membrane {
+namespace {
+
+const Law laws[] = {Skalak{1.3, 40}, EvansSkalak{1.3, 40}};
+
+Membrane with_points(const Sphere& s, const Law& law) { return Membrane(s.space, s.net, Materials{{{law, {}, {}, 1}}, {}}); }
+
+/// Of the area's part of the law alone.
+Net area_load(const Sphere& s, const Law& law, const Net& x) {
+  return with_points(s, law).load(x) - with_points(s, split(law)->shear).load(x);
+}
+
+Eigen::VectorXd mobility(Eigen::Index n) { return Eigen::VectorXd::LinSpaced(n, 0.5, 2); }
+
+/// Where nothing is stretched all of the tangent is D'D.
+TEST(AreaConstraint, InvertsTheStiffPartOfTheTangent) {
+  const Sphere& s = sphere(3);
+  for (const Law& law : laws) {
+    AreaConstraint constraint(with_points(s, law), mobility(s.net.rows()));
+    constraint.place(s.net);
+    constraint.factor(0.7);
+    const Net r = random_net(s.net.rows(), 5), p = constraint.apply(r);
+    const Net stiff = difference([&](const Net& y) { return area_load(s, law, y); }, s.net, p);
+    EXPECT_LT((p + 0.7 * mobility(s.net.rows()).asDiagonal() * stiff - r).norm(), 1e-7 * r.norm());  // what differences are good to
+  }
+}
+
+TEST(AreaConstraint, BringsTensionsToThoseOfAnotherShape) {
+  const Sphere& s = sphere(3);
+  const Net &like = s.net, start = like + 1e-3 * random_net(like.rows(), 6);
+  for (const Law& law : laws) {
+    AreaConstraint constraint(with_points(s, law), mobility(like.rows()));
+    Net x = start;
+    constraint.bring(x, like, 1e6);
+    EXPECT_LT(area_load(s, law, x).norm(), 1e-4 * area_load(s, law, start).norm());  // there are no tensions at rest
+    EXPECT_LT((x - start).norm(), 2 * (like - start).norm());
+  }
+}
+
+TEST(AreaConstraint, IsNotThereWhereAreaHasNoPointsOfItsOwn) {
+  const Sphere& s = sphere(3);
+  EXPECT_TRUE(AreaConstraint(Membrane(s.space, s.net, laws[0]), mobility(s.net.rows())).empty());
+  EXPECT_TRUE(AreaConstraint(with_points(s, NeoHookean{}), mobility(s.net.rows())).empty());
+}
+
+}  // namespace
+}  // namespace tanktread::membrane
