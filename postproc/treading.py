@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A red cell that treads in shear: its frequency over the shear rate and its inclination, means of the last whole turn, against the shear rate, beside
-those that were measured. The deck is run once a shear rate and viscosity of the membrane, to 50 over the rate. Which viscosity of the membrane the
-measured frequency asks for, where it is between those that are run, is told.
+those that were measured. The deck is run once a shear rate and viscosity of the membrane, to 50 over the rate.
 """
 
 import argparse
@@ -30,10 +29,8 @@ def main():
     figure, (plot, angles) = plt.subplots(1, 2, figsize=(8.2, 3.4))
     rates = numpy.array([row[0] for row in MEASURED])
     viscosities = sorted(arguments.viscosity or [0.1, 0.32, 1.0])
-    found = []
     for viscosity, color in zip(viscosities, style.RUNS):
         turns = numpy.array([at_rate(arguments, rate, viscosity) for rate in rates])
-        found.append(turns[:, 0])
         label = f"{viscosity:g} µN s/m"
         plot.plot(rates, turns[:, 0] / rates, "o-", markersize=3, color=color, label=label)
         angles.plot(rates, turns[:, 1], "o-", markersize=3, color=color, label=label)
@@ -42,7 +39,6 @@ def main():
             within = "within its bar" if abs(here - frequency) <= bar else "OUTSIDE its bar"
             print(f"{viscosity:g} uN s/m, {rate} 1/s: frequency {here:.3f} 1/s (measured {frequency} +- {bar}, {within}), inclination {mean:.2f} "
                   f"({low:.2f} to {high:.2f})")
-    asked_for(viscosities, numpy.array(found))
     plot.errorbar(rates, [row[1] / row[0] for row in MEASURED], [row[2] / row[0] for row in MEASURED], fmt=style.MARKS[1], color=style.INK, markersize=4,
                   linewidth=0.8, capsize=2, label="Tran-Son-Tay and others 1984")
     angles.axhspan(*INCLINATION, color=style.FAINT, alpha=0.4, label="measured")
@@ -65,14 +61,6 @@ def at_rate(arguments, rate, viscosity):
     times = numpy.linspace(begin, time[-1], 401)
     around = numpy.interp(times, time, inclination)
     return 2 * numpy.pi / (time[-1] - begin), around.mean(), around.min(), around.max()
-
-
-def asked_for(viscosities, found):
-    """Frequencies fall with the viscosity of the membrane: interpolated in its logarithm."""
-    for k, (rate, frequency, _) in enumerate(MEASURED):
-        if found[:, k].min() <= frequency <= found[:, k].max():
-            viscosity = numpy.exp(numpy.interp(-frequency, -found[:, k], numpy.log(viscosities)))
-            print(f"{rate} 1/s: {frequency} 1/s would be met with a viscosity of {viscosity:.3g} uN s/m")
 
 
 if __name__ == "__main__":
