@@ -88,7 +88,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {
-    const Eigen::VectorXd areas = mass_matrix_.update(unstressed) * Eigen::VectorXd::Ones(unstressed.rows());
+    const Eigen::VectorXd areas = mass_matrix_.row_sums(unstressed);
     area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
     if (area_->empty()) area_.reset();
   }
