@@ -239,18 +239,21 @@ class SteadyRun {
     }
     const auto clock = phases_.time("set-up");
     auto made = std::make_shared<System>(at_parameters(scene_, request_.deck_text, parameters), ranks_, phases_);
-    if (mesh_) {
-      Resumed resumed;
-      resumed.state.x = state_.x, resumed.totals.phase_angle = made->particle->phase_angle(), resumed.checkpoint = *mesh_;
-      made->particle->resume(resumed);
-      made->begin(state_.x);
-    }
+    if (mesh_) carry_to(*made, *mesh_);
     if (made->particle->body().space.n_points != state_.x.rows())
       throw UserError("Continuation is of one mesh, but " + at(parameters) + formatted(" has %d control points in place of %d.",
                       made->particle->body().space.n_points, static_cast<int>(state_.x.rows())));
     systems_.emplace_front(parameters, made);
     if (systems_.size() > 3) drop_oldest();
     return made;
+  }
+
+  /// Puts another system on the mesh that is kept there.
+  void carry_to(System& system, const output::Checkpoint& mesh) const {
+    Resumed resumed;
+    resumed.state.x = state_.x, resumed.totals.phase_angle = system.particle->phase_angle(), resumed.checkpoint = mesh;
+    system.particle->resume(resumed);
+    system.begin(state_.x);
   }
 
   void drop_oldest() {
@@ -275,15 +278,19 @@ class SteadyRun {
 
   void find_modes() {
     const auto clock = phases_.time("spectrum");
-    const coupling::Capsule& capsule = *system_->particle->capsule();
-    const Body& body = system_->particle->body();
-    const coupling::ShapeCoordinates shapes(body.space, capsule.particles(), body.symmetry, state_.x, capsule.projection());
     motion::SpectrumOptions options = scene_.spectrum;
+    const surface::Symmetry& shape = system_->particle->body().symmetry;
+    coupling::Ranks whole_ranks;  // of other rows
+    const std::shared_ptr<System> system = options.parity ? whole(whole_ranks) : system_;
+    const coupling::Capsule& capsule = *system->particle->capsule();
+    const Body& body = system->particle->body();
+    const coupling::ShapeCoordinates shapes(body.space, capsule.particles(), shape, state_.x, capsule.projection(),
+                                            options.parity.value_or(Vec3::Ones()));
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));
     if (!options.shift) options.shift = system_->scene.rate();
-    modes_ = motion::spectrum(*system_->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
+    modes_ = motion::spectrum(*system->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
                               scene_.solvers.of(scene_.solvers.spectrum));
     moment_.leading_rate = -std::numeric_limits<double>::infinity(), moment_.unstable_modes = 0;
     for (const motion::Mode& mode : modes_) {
@@ -291,7 +298,21 @@ class SteadyRun {
       moment_.leading_rate = std::max(moment_.leading_rate, mode.rate.real());
       moment_.unstable_modes += mode.rate.real() > 0;
     }
+    if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
     system_->motion->velocity(state_.x);
+  }
+
+  /// The present system with nothing left out: modes of another parity than the shape's have velocities of all points.
+  std::shared_ptr<System> whole(coupling::Ranks& ranks) {
+    if (system_->particle->body().symmetry.order() == 1)
+      throw UserError("Spectrum/parity is of modes of a symmetric scene, and this one has no symmetry.");
+    Scene scene = system_->scene;
+    scene.symmetry.use = "none";
+    auto made = std::make_shared<System>(std::move(scene), ranks, phases_);
+    output::Checkpoint mesh;
+    system_->particle->store(mesh);
+    carry_to(*made, mesh);
+    return made;
   }
 
   void count() {

@@ -7,6 +7,7 @@ from style import plt
 
 DROP = "inputs/drop_folds.yaml"
 CAPSULE = "inputs/capsule_branch.yaml"
+WRINKLED = "inputs/capsule_wrinkles.yaml"
 ELLIPSOID = {"Flow/type": "planar hyperbolic", "Particle/shape": "ellipsoid", "Particle/semi-axes": "[1.8785, 0.7653, 0.6957]",
              "Particle/initial shape/stretch": "[0.7167, 1.1541, 1.2091]"}  # 2.7 : 1.1 : 1, at first 1.6 : 1.05 : 1
 INFLATED = {"Continuation/second parameter": "Membrane/pre-inflation", "Continuation/second values": "[0.15, 0.2, 0.3, 0.4]", "Continuation/points": 12}
@@ -41,10 +42,79 @@ def bursting(study):
     return figure, ["scene", "viscosity_ratio_or_pre_inflation", "capillary_number", "taylor_parameter", "change_of_ca_relative", "change_of_d"], rows
 
 
+def wrinkling(study):
+    """How stiff against bending a capsule must be to stay smooth
+
+    Neo-Hookean capsule in uniaxial extension, not pre-inflated: its waist is compressed. Left: the bending number E_b/(G_s R²) at which the leading mode of the
+    smooth steady shape has the rate zero, for waves with an even and with an odd number of crests around the axis (Spectrum/parity), on two meshes;
+    below, they grow. Right: that mode along the waist; the table has the number of its crests.
+
+    Survives: a stiffer membrane, pre-inflation, a smaller Ca."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
+    numbers, rows = (0.1, 0.15, 0.2, 0.3), []
+    for parity, name, color in (("[1, 1, 1]", "even", style.RUNS[0]), ("[-1, 1, 1]", "odd", style.RUNS[1])):
+        for n, mark in ((8, "x"), (10, "o-")):
+            onsets = []
+            for ca in numbers:
+                bending, outcome = onset(study, {"Membrane/capillary number": ca, "Spectrum/parity": parity, "Surface/elements per side": n})
+                angle, wave = along_waist(outcome)
+                crests = number_of_crests(angle, wave)
+                onsets.append(bending)
+                rows.append((name, n, ca, bending, crests))
+                if ca == 0.2 and n == 10:
+                    right.plot(angle, wave / abs(wave).max(), color=color, label=f"{name}: {crests} crests, Ca = {ca:g}")
+            left.loglog(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
+    left.set_xlabel("Ca")
+    left.set_ylabel("E_b/(G_s R²) at onset")
+    right.set_xlabel("angle around the axis (degrees)")
+    right.set_ylabel("radial part of the mode")
+    for axis in left, right:
+        axis.legend()
+    return figure, ["crests_even_or_odd", "elements_per_side", "capillary_number", "bending_number", "crests"], rows
+
+
+def onset(study, settings):
+    """The bending number at which the leading rate passes through zero, by secants of its logarithm; and the last run."""
+    known = []
+    while len(known) < 9:
+        number = (0.0045, 0.005)[len(known)] if len(known) < 2 else secant(known)
+        outcome = study.run(WRINKLED, settings | {"Membrane/bending number": float(f"{number:.6g}")})
+        known.append((number, outcome.series["leading_rate"][-1]))
+        if abs(known[-1][1]) < 5e-3:
+            break
+    return known[-1][0], outcome
+
+
+def secant(known):
+    (a, f), (b, g) = known[-2:]
+    step = -g * numpy.log(b / a) / (g - f)
+    return b * numpy.exp(numpy.clip(step, -0.3, 0.3))
+
+
+def along_waist(outcome):
+    """Angle (degrees) and radial part of the first changing mode at the nodes of the plane across the axis."""
+    shot = outcome.run.snapshots()[-1]
+    kinds = outcome.run.summary["modes"]
+    rates = {k: outcome.series[f"rate_{k}"][-1] for k, kind in kinds.items() if kind == "shape"}
+    mode = shot.fields[f"mode {max(rates, key=rates.get)}"]
+    waist = numpy.flatnonzero(abs(shot.points[:, 2]) < 1e-9)
+    angle = numpy.degrees(numpy.arctan2(shot.points[waist, 1], shot.points[waist, 0]))
+    order = numpy.unique(numpy.round(angle, 6), return_index=True)[1]
+    across = shot.points[waist, :2] / numpy.linalg.norm(shot.points[waist, :2], axis=1)[:, None]
+    return angle[order], (mode[waist, :2] * across).sum(axis=1)[order]
+
+
+def number_of_crests(angle, wave):
+    """The degree of the largest Fourier coefficient."""
+    turns = numpy.radians(angle)
+    weight = (numpy.roll(turns, -1) - numpy.roll(turns, 1)) % (2 * numpy.pi)
+    return int(numpy.argmax([abs((weight * wave * numpy.exp(-1j * m * turns)).sum()) for m in range(30)]))
+
+
 def folds(outcome):
     """Rows: the second parameter, critical Ca and D there; as far as the run came."""
     series = outcome.series
     return numpy.array([series[name][series["fold"] > 0] for name in ("second_parameter", "parameter", "taylor_surface")])
 
 
-MAPS = [bursting]
+MAPS = [bursting, wrinkling]

@@ -8,17 +8,19 @@
 namespace tanktread::coupling {
 
 ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
-                                   const VelocityProjection* projection)
-    : symmetry_(symmetry), sites_(collocation_matrix(space)), collocation_({}, symmetry), projection_(projection) {
+                                   const VelocityProjection* projection, const Vec3& parity)
+    : parity_(symmetry, parity), sites_(collocation_matrix(space)), collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
+      projection_(projection) {
   collocation_.factor(sites_);
-  for (const int i : symmetry_.fundamental()) {
+  for (const int i : symmetry.fundamental()) {
     const auto holds = [i](const Particle& particle) { return particle.block.holds(i); };
     if (std::ranges::find_if(particles, holds)->slides()) {
+      if (parity_.scalar_signs()[i] == 0) continue;
       all_.push_back({i, projection_ ? Vec3(Vec3::Zero()) : site_normal(space, x, space.collocation[static_cast<std::size_t>(i)])});
       continue;
     }
     for (int c = 0; c < 3; ++c)
-      if (symmetry_.signs().rows() == 0 || symmetry_.signs()(i, c) != 0) all_.push_back({i, Vec3::Unit(c)});
+      if (parity_.signs()(i, c) != 0) all_.push_back({i, Vec3::Unit(c)});
   }
   if (projection_) {
     normals_ = projection_->normals(x);
@@ -38,7 +40,7 @@ void ShapeCoordinates::carry_whole(const spline::Block& block) {
     Net field = Net::Zero(sites_.rows(), 3);
     field.middleRows(block.first_point, block.n_points).col(c).setOnes();
     Net symmetric = field;
-    symmetry_.complete(symmetric);
+    parity_.complete(symmetric);
     if (symmetric != field) continue;
     Eigen::VectorXd y = coordinates(field);
     for (const Translation& other : translations_) {
@@ -66,13 +68,20 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
       outward[all_[k].site] = y[k];
     else
       at_sites.row(all_[k].site) += y[k] * all_[k].direction.transpose();
-  symmetry_.complete(at_sites);
+  parity_.complete(at_sites);
   Net d = collocation_.solve(at_sites);
   if (projection_) {
-    for (Eigen::Index a = 0; a < outward.size(); ++a) outward[a] = outward[symmetry_.source()[static_cast<std::size_t>(a)]];
+    parity_.complete(outward);
     d += projection_->control_values((projection_->values() * outward).asDiagonal() * normals_);
   }
   return d;
+}
+
+bool ShapeCoordinates::admits(const Net& field) const {
+  constexpr double nearly = 1e-3;
+  Net completed = field;
+  parity_.complete(completed);
+  return (completed - field).norm() <= nearly * field.norm();
 }
 
 Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {

@@ -11,6 +11,7 @@
 #include "coupling/velocity_projection.hpp"
 #include "membrane/symmetric_solver.hpp"
 #include "spline/space.hpp"
+#include "surface/parity.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
@@ -24,15 +25,17 @@ namespace tanktread::coupling {
 /// Where velocities are projected, y are the control values of a scalar field there, that of the best fit to n.d; what moves the mesh along would
 /// otherwise show in them by the fourth power of the element.
 ///
-/// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone.
+/// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone, or
+/// those of another parity (surface/parity.hpp), for whom nothing else may know of the symmetry.
 class ShapeCoordinates {
  public:
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
-                   const VelocityProjection* projection = nullptr);
+                   const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(all_.size()); }
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates
   Eigen::VectorXd coordinates(const Net& field) const;  ///< of a field of these control values
+  bool admits(const Net& field) const;                  ///< whether it is nearly one of those that symmetry leaves
 
  private:
   struct Coordinate {
@@ -49,7 +52,7 @@ class ShapeCoordinates {
 
   std::vector<Coordinate> all_;
   std::vector<Translation> translations_;  // of drops
-  surface::Symmetry symmetry_;
+  surface::Parity parity_;
   Eigen::SparseMatrix<double> sites_;  // R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;

@@ -56,6 +56,7 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
 /// Where the branch meets the plane through `predicted` with this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
   constexpr int most_rounds = 8, most_iterations = 40;
+  constexpr double far = 4;
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
@@ -90,6 +91,7 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     if (!report.converged && !(least < noise * steady_.tolerance)) return {};
     solved.iterations = std::max(solved.iterations, report.converged ? report.iterations : 0);
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
+    if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // of another branch, or of none
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
     solved.rest = moved * turned;  // what a G that is linear in p may be off by
     if (solved.rest < steady_.tolerance) return solved;

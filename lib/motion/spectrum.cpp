@@ -24,6 +24,10 @@ void SpectrumOptions::declare(deck::Section& section) {
               "`krylov`: modes come in the order of |shift - rate|; if not given, the rate of the flow, or of the membrane at rest");
   section.key("block", block, deck::between(1, 50), "1",
               "`krylov`: vectors that are multiplied together: how many modes of one rate are sure to be seen");
+  section.key("parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
+              "modes of another symmetry than the shape's: which mirror planes, across x1, x2, x3, turn them into themselves (1) and which into "
+              "their opposite (-1), half turns and the point symmetry by the product of their axes; if not given, all 1. Unknowns are those of the "
+              "fundamental points, as without this key, where Symmetry/use `none` has all of them at once; velocities are of the whole surface");
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
               "displacements whose velocities the Jacobian is made of, at the largest");
 }
@@ -61,12 +65,14 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Orthonormal coordinates of the fields that are seen: the rotations of a sphere, or of labels on the interface of a drop, are not.
+/// Orthonormal coordinates of the fields that symmetry admits and that are seen: the rotations of a sphere, or of labels on the interface of a drop,
+/// are not.
 Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
   Eigen::Index rank = 0;
   for (const Net& field : fields) {
+    if (!shapes.admits(field)) continue;
     Eigen::VectorXd y = shapes.coordinates(field);
     const double size = y.norm();
     y -= all.leftCols(rank) * (all.leftCols(rank).transpose() * y);
@@ -75,15 +81,11 @@ Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std:
   return all.leftCols(rank);
 }
 
-/// The same of the translations (first = 0) or rotations (3) of x that symmetry admits.
-Eigen::MatrixXd rigid_motions(const coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
-  constexpr double admitted = 1e-3;
+/// The same of the translations (first = 0) or rotations (3) of x.
+Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
   const Vec3 centre = x.colwise().mean().transpose();
   std::vector<Net> fields;
-  for (int k = first; k < first + 3; ++k) {
-    Net field = coupling::rigid_velocity(x, coupling::unit_motion(k), centre);
-    if ((dynamics.symmetric(field) - field).norm() <= admitted * field.norm()) fields.push_back(std::move(field));
-  }
+  for (int k = first; k < first + 3; ++k) fields.push_back(coupling::rigid_velocity(x, coupling::unit_motion(k), centre));
   return orthonormal(shapes, fields);
 }
 
@@ -93,8 +95,8 @@ class Recognition {
   Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux)
       : shapes_(shapes),
         flux_(flux),
-        translations_(rigid_motions(dynamics, shapes, x, 0)),
-        rotations_(rigid_motions(dynamics, shapes, x, 3)),
+        translations_(rigid_motions(shapes, x, 0)),
+        rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
   /// What a mode gains of the volume, over its size. All but those of rate 0 gain none, for the motion keeps it: rate x b.d = 0.

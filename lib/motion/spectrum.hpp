@@ -26,6 +26,7 @@ struct SpectrumOptions {
   std::string method = "dense";    ///< dense, krylov
   std::optional<double> shift;     ///< of krylov, 1/time
   int block = 3;                   ///< of krylov
+  std::optional<Vec3> parity;      ///< of the modes under mirror planes across x1, x2, x3; empty: that of the shape
   double difference = 1e-5;        ///< size of the displacements whose velocities the Jacobian is made of, over R_C
 
   void declare(deck::Section& section);

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
 # Steady shapes, spectra and branches in place of a run in time: what they write, and what they say where there is nothing to find.
+import itertools
+
 import numpy
 
 from harness import check, close, deck, main, run, series, summary
@@ -111,6 +113,29 @@ def a_mode_needs_the_run_that_has_it():
     for settings, word in (["Particle/initial shape/mode=1", "Particle/initial shape/stretch=[1, 1, 1]"], "run"), \
                           (["Particle/initial shape/mode=1", "Particle/initial shape/run=bare"], "no mode 1"):
         said = run(deck(DECK), *(word for one in settings for word in ("--set", one)), "--output", "no", "--quiet", code=2).stderr
+        check(len(said.splitlines()) == 1 and word in said, said)
+
+
+def modes_of_all_parities_are_those_of_the_whole():
+    """Of a drop, whose shapes are told by what is normal to it, and of a capsule."""
+    for law, projection in ("surface tension", "collocation"), ("surface tension", "least squares"), ("neo-Hookean", "collocation"):
+        scene = ["--set", f"Membrane/law={law}", "--set", f"Solvers/projection={projection}", "--set", "Steady/tolerance=1e-9", "--quiet"]
+        run(deck(DECK), *scene, "--set", "Symmetry/use=none", "--set", "Spectrum/number=16", "--output", "whole", "--overwrite")
+        parts, kinds = [], []
+        for parity in itertools.product((1, -1), repeat=3):
+            run(deck(DECK), *scene, "--set", f"Spectrum/parity={list(parity)}", "--set", "Spectrum/number=5", "--output", "part", "--overwrite")
+            parts += [series("part", f"rate_{k}")[-1] for k in range(1, 6)]
+            kinds += summary("part")["modes"].values()
+        whole = [series("whole", f"rate_{k}")[-1] for k in range(1, 17)]
+        apart = abs(numpy.sort(parts)[::-1][:16] - whole).max()
+        check(apart < 2e-5, law, projection, apart, whole, parts)
+        check(kinds.count("translation") == 3 and kinds.count("volume") == 1, kinds)
+
+
+def a_parity_needs_a_symmetry_and_signs():
+    for settings, word in ([], "no symmetry"), (["--set", "Spectrum/parity=[1, 0, 1]"], "1 or -1"):
+        said = run(deck(DECK), "--set", "Spectrum/parity=[1, -1, 1]", "--set", "Symmetry/use=none", *settings, "--output", "no", "--quiet",
+                   code=2).stderr
         check(len(said.splitlines()) == 1 and word in said, said)
 
 

@@ -2,12 +2,15 @@
 
 #include "surface/symmetry.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "spline/refinement.hpp"
 #include "surface/geometry.hpp"
+#include "surface/parity.hpp"
 #include "surface/shapes.hpp"
 #include "surfaces.hpp"
 
@@ -125,6 +128,33 @@ TEST(Symmetry, FundamentalElementsFoldedGiveTheSumsOfAll) {
     found.complete(sums);
     EXPECT_NEAR((sums - geometry.volume_gradient(net)).cwiseAbs().maxCoeff(), 0, 1e-12) << n;
   }
+}
+
+TEST(Symmetry, FieldsOfAllParitiesMakeUpAnyField) {
+  const CubeMesh cube(6);  // the mirror planes hold control points
+  const Symmetry found = of(cube.space, cube.sphere());
+  const Net field = Net::Random(cube.space.n_points, 3);
+  Net sum = Net::Zero(field.rows(), 3);
+  Eigen::VectorXd scalar_sum = Eigen::VectorXd::Zero(field.rows());
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 parity(k & 1 ? -1 : 1, k & 2 ? -1 : 1, k & 4 ? -1 : 1);
+    Net part = field / 8;
+    for (const Image& g : found.images()) {
+      const double turned = (g.signs.array() < 0).select(parity, Vec3::Ones()).prod() / 8;
+      for (Eigen::Index a = 0; a < field.rows(); ++a)
+        part.row(g.point[static_cast<std::size_t>(a)]) += turned * field.row(a).cwiseProduct(g.signs.transpose());
+    }
+    const Parity other(found, parity);
+    Net known = Net::Constant(field.rows(), 3, 7.0);
+    for (const int a : found.fundamental()) known.row(a) = part.row(a);
+    other.complete(known);
+    EXPECT_NEAR((known - part).cwiseAbs().maxCoeff(), 0, 1e-14) << parity.transpose();
+    sum += part;
+    for (Eigen::Index a = 0; a < field.rows(); ++a) scalar_sum[a] += std::abs(other.scalar_signs()[a]);
+  }
+  EXPECT_NEAR((sum - field).cwiseAbs().maxCoeff(), 0, 1e-14);
+  for (Eigen::Index a = 0; a < field.rows(); ++a)  // each of its images takes one of the eight numbers that tell a scalar there
+    EXPECT_EQ(scalar_sum[a], std::ranges::count(found.source(), found.source()[static_cast<std::size_t>(a)]));
 }
 
 TEST(Symmetry, CompletedFieldsStayAsTheyAre) {
