@@ -49,7 +49,7 @@ def wrinkling(study):
     smooth steady shape has the rate zero, for waves with an even and with an odd number of crests around the axis (Spectrum/parity), on two meshes;
     below, they grow. Right: that mode along the waist; the table has the number of its crests.
 
-    Survives: a stiffer membrane, pre-inflation, a smaller Ca."""
+    Survives: a stiffer membrane, pre-inflation."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
     numbers, rows = (0.1, 0.15, 0.2, 0.3), []
     for parity, name, color in (("[1, 1, 1]", "even", style.RUNS[0]), ("[-1, 1, 1]", "odd", style.RUNS[1])):
@@ -63,11 +63,12 @@ def wrinkling(study):
                 rows.append((name, n, ca, bending, crests))
                 if ca == 0.2 and n == 10:
                     right.plot(angle, wave / abs(wave).max(), color=color, label=f"{name}: {crests} crests, Ca = {ca:g}")
-            left.loglog(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
+            left.plot(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
     left.set_xlabel("Ca")
     left.set_ylabel("E_b/(G_s R²) at onset")
     right.set_xlabel("angle around the axis (degrees)")
     right.set_ylabel("radial part of the mode")
+    right.set_ylim(-1.1, 1.6)
     for axis in left, right:
         axis.legend()
     return figure, ["crests_even_or_odd", "elements_per_side", "capillary_number", "bending_number", "crests"], rows
