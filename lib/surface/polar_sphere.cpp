@@ -147,14 +147,19 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
   // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide
-  // leaves the sphere by its square at first, and the next step brings it back.
-  constexpr double damping = 1e-12;
+  // leaves the sphere by its square at first, and the next step brings it back; one that were too long would fold the surface onto itself.
+  constexpr double longest = 0.2;
+  double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {
     const Misfit at = sector.misfit(profile);
     if (at.value < least) least = at.value, best = profile;
-    Eigen::MatrixXd damped = at.matrix;
-    damped.diagonal().array() += damping * at.matrix.diagonal().maxCoeff();
-    const Eigen::VectorXd step = damped.ldlt().solve(at.gradient);
+    Eigen::VectorXd step;
+    for (;; damping *= 100) {
+      Eigen::MatrixXd damped = at.matrix;
+      damped.diagonal().array() += damping * at.matrix.diagonal().maxCoeff();
+      step = damped.ldlt().solve(at.gradient);
+      if (step.norm() < longest || damping > 1) break;
+    }
     profile -= step;
     if (step.norm() < 1e-6 * profile.norm()) break;
   }
