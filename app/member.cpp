@@ -115,6 +115,15 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
   return all;
 }
 
+/// Of the wall, where there is one.
+std::optional<coupling::Repulsion> repulsion(const surface::TubeOptions& tube, const Body& all) {
+  if (!tube.present || !tube.repulsion) return {};
+  const double mouth = tube.radius.value();
+  std::function<double(double)> radius = [mouth](double) { return mouth; };
+  if (const auto channel = all.wall->channel) radius = [mouth, channel](double s) { return mouth * channel->section(s).factor[0]; };
+  return coupling::Repulsion{std::move(radius), *tube.repulsion, *tube.repulsion_range};
+}
+
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube) {
   const Scene& scene = members.front().scene;
@@ -145,6 +154,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   parameters.symmetry = all.symmetry;
   parameters.cell = scene.domain.cell();
   parameters.wall = scene.wall.plane();
+  parameters.repulsion = repulsion(scene.tube, all);
   return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
 }
 

@@ -92,6 +92,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
     if (area_->empty()) area_.reset();
   }
+  if (parameters_.repulsion) repulsion_.emplace(space, unstressed, *parameters_.repulsion);
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
@@ -224,6 +225,7 @@ const Net& Capsule::energy_gradient(const Net& x) {
   if (same(x, gradient_at_)) return gradient_;
   gradient_.resize(x.rows(), 3);
   membrane_.load(x, own_elements_, gradient_);
+  if (repulsion_) repulsion_->add_load(x, own_elements_, gradient_);
   add_weight(x, gradient_);
   replicate_sums(gradient_);
   for (const Particle& particle : particles())

@@ -23,6 +23,7 @@
 #include "coupling/rigid_tractions.hpp"
 #include "coupling/tube.hpp"
 #include "coupling/velocity_projection.hpp"
+#include "coupling/wall_repulsion.hpp"
 #include "membrane/area_constraint.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
@@ -61,6 +62,7 @@ struct CapsuleParameters {
   SolverOptions solvers;
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< at time zero, of a lattice that the flow carries along; none: unbounded space, or a tube
+  std::optional<Repulsion> repulsion;        ///< of membranes by the wall of a round tube or channel
   std::optional<stokes::PlaneWall> wall;     ///< that everything is in front of; none: unbounded space, a lattice or a tube
   surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
 };
@@ -241,6 +243,7 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // where a membrane has points of its own for its area
+  std::optional<WallRepulsion> repulsion_;
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
   std::optional<VelocityProjection> projection_;  // where velocities are not collocated
   stokes::Layer layer_;                           // at the targets of velocities

@@ -216,6 +216,10 @@ void TubeOptions::declare(deck::Section& list) {
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest gap between particle and wall; a run that comes closer stops with a checkpoint. Integrals keep their accuracy down to "
            "0.02");
+  list.key("repulsion", repulsion, deck::positive(), "force/length^2",
+           "of membranes by the wall of a straight `circle`: p, the force per unstressed area being p exp(-g/d) at the gap g across (3.22); none if not "
+           "given. It keeps a film open where the fluid alone would drain from it for ever");
+  list.key("repulsion range", repulsion_range, deck::positive(), "length", "d: the film is held open by a few of it");
   list.key("flow", flow, deck::Choice{"exact", "boundary elements"},
            "the flow of a straight duct of this section: `exact`, in closed form or as a series where it has one; `boundary elements` (P-33, P-34, "
            "P-35) otherwise, and on demand");
@@ -273,6 +277,10 @@ void TubeOptions::check() const {
   belongs("semi-axes", semi_axes.has_value(), "ellipse");
   belongs("sides", sides.has_value(), "rectangle");
   belongs("outline", outline.has_value(), "file");
+  if (repulsion.has_value() != repulsion_range.has_value())
+    throw UserError(list() + "/repulsion and " + list() + "/repulsion range belong together, but one of them is not given.");
+  if (repulsion && (section != "circle" || (channel && (channel->bend_radius || channel->directions != "x2 x3"))))
+    throw UserError(list() + "/repulsion is of a straight channel with round sections.");
 }
 
 }  // namespace tanktread::surface

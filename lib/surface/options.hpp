@@ -135,6 +135,9 @@ struct TubeOptions {
 
   double contact_gap = 0.02;  ///< between particle and wall, over R_C: a run that comes closer stops
 
+  std::optional<double> repulsion;        ///< stress by which the wall repels a membrane that touches it; none: it does not
+  std::optional<double> repulsion_range;  ///< over which that falls by e
+
   std::string flow = "exact";  ///< of the duct: exact (closed form or series, where the section has one), boundary elements
   int flow_elements = 96;      ///< boundary elements of the duct flow
 

@@ -147,8 +147,9 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
   // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide
-  // leaves the sphere by its square at first, and the next step brings it back; one that were too long would fold the surface onto itself.
-  constexpr double longest = 0.2;
+  // leaves the sphere by its square at first, and the next step brings it back; but where rows are closer than the points of a
+  // row, it may fold the surface onto itself.
+  const double longest = mesh.meridional > mesh.azimuthal ? 0.2 : std::numeric_limits<double>::infinity();
   double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {
     const Misfit at = sector.misfit(profile);

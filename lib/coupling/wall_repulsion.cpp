@@ -1,0 +1,77 @@
+#include "coupling/wall_repulsion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+
+namespace tanktread::coupling {
+
+WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion)
+    : space_(space), repulsion_(std::move(repulsion)) {
+  for (const spline::Element& element : space.elements) {
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(4 + std::max(0, element.degree - 3));  // as the membrane's
+    auto& value = value_.emplace_back(rule.size(), static_cast<Eigen::Index>(element.points.size()));
+    Eigen::VectorXd& area = area_.emplace_back(rule.size());
+    for (int q = 0; q < rule.size(); ++q) {
+      const spline::Basis basis = spline::basis(element, rule.s[q], rule.t[q]);
+      Vec3 along_s = Vec3::Zero(), along_t = Vec3::Zero();
+      for (std::size_t a = 0; a < element.points.size(); ++a) {
+        const Vec3 point = unstressed.row(element.points[a]).transpose();
+        along_s += basis.s[static_cast<Eigen::Index>(a)] * point, along_t += basis.t[static_cast<Eigen::Index>(a)] * point;
+      }
+      value.row(q) = basis.value.transpose();
+      area[q] = rule.weights[q] * along_s.cross(along_t).norm();
+    }
+  }
+}
+
+/// Gauss points with what counts of their energy.
+std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<const int> elements) const {
+  constexpr double far = 40, step = 1e-4;  // in ranges; of the wall's slope, over its radius
+  std::vector<Place> found;
+  for (const int e : elements) {
+    const std::vector<int>& points = space_.elements[static_cast<std::size_t>(e)].points;
+    Net control(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t a = 0; a < points.size(); ++a) control.row(static_cast<Eigen::Index>(a)) = x.row(points[a]);
+    const Net at = value_[static_cast<std::size_t>(e)] * control;
+    for (int q = 0; q < at.rows(); ++q) {
+      const double radius = repulsion_.radius(at(q, 0)), from_axis = std::hypot(at(q, 1), at(q, 2)), gap = radius - from_axis;
+      if (gap > far * repulsion_.range) continue;
+      const double h = step * radius, slope = (repulsion_.radius(at(q, 0) + h) - repulsion_.radius(at(q, 0) - h)) / (2 * h);
+      const double energy = area_[static_cast<std::size_t>(e)][q] * repulsion_.stress * repulsion_.range * std::exp(-gap / repulsion_.range);
+      found.push_back({e, q, energy, {slope, -at(q, 1) / from_axis, -at(q, 2) / from_axis}});
+    }
+  }
+  return found;
+}
+
+double WallRepulsion::energy(const Net& x, std::span<const int> elements) const {
+  double sum = 0;
+  for (const Place& at : places(x, elements)) sum += at.energy;
+  return sum;
+}
+
+void WallRepulsion::add_load(const Net& x, std::span<const int> elements, Net& d) const {
+  for (const Place& at : places(x, elements)) {
+    const std::vector<int>& points = space_.elements[static_cast<std::size_t>(at.element)].points;
+    for (std::size_t a = 0; a < points.size(); ++a)
+      d.row(points[a]) -= row(at)[static_cast<Eigen::Index>(a)] * at.energy / repulsion_.range * at.gradient.transpose();
+  }
+}
+
+void WallRepulsion::update(const Net& x, std::span<const int> elements) { latest_ = places(x, elements); }
+
+void WallRepulsion::add_tangent(const Net& u, Net& hu) const {
+  for (const Place& at : latest_) {
+    const std::vector<int>& points = space_.elements[static_cast<std::size_t>(at.element)].points;
+    double along = 0;
+    for (std::size_t a = 0; a < points.size(); ++a) along += row(at)[static_cast<Eigen::Index>(a)] * u.row(points[a]).dot(at.gradient);
+    along *= at.energy / (repulsion_.range * repulsion_.range);
+    for (std::size_t a = 0; a < points.size(); ++a) hu.row(points[a]) += row(at)[static_cast<Eigen::Index>(a)] * along * at.gradient.transpose();
+  }
+}
+
+}  // namespace tanktread::coupling
