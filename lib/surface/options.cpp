@@ -217,8 +217,8 @@ void TubeOptions::declare(deck::Section& list) {
            "smallest gap between particle and wall; a run that comes closer stops with a checkpoint. Integrals keep their accuracy down to "
            "0.02");
   list.key("repulsion", repulsion, deck::positive(), "force/length^2",
-           "of membranes by the wall of a straight `circle`: p, the force per unstressed area being p exp(-g/d) at the gap g across (3.22); none if not "
-           "given. It keeps a film open where the fluid alone would drain from it for ever");
+           "of membranes by the wall of a straight `circle`: p, the force per unstressed area being p exp(-g/d) at the gap g across (3.22); none if "
+           "not given. It keeps a film open where the fluid alone would drain from it for ever");
   list.key("repulsion range", repulsion_range, deck::positive(), "length", "d: the film is held open by a few of it");
   list.key("flow", flow, deck::Choice{"exact", "boundary elements"},
            "the flow of a straight duct of this section: `exact`, in closed form or as a series where it has one; `boundary elements` (P-33, P-34, "
