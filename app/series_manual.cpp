@@ -47,6 +47,7 @@ constexpr Entry entries[] = {
     {"counts/unknowns", "1", "prescribed body", "unknowns of the traction"},
     {"counts/solver_iterations_in_all", "1", "prescribed body", "with those of the solves that correct the forces (2.11)"},
     {"seconds", "s", "all", "wall time of the first rank by phase, which add up to the run's"},
+    {"memory", "bytes", "all", "the most that a process has had: `largest of a rank`, and of all together, `all ranks`"},
     {"plan", "", "all", "what the run chose to compute, a line each"},
     {"numbers", "", "all", "derived and dimensionless numbers of the scene, below"},
     {"modes", "", "capsule, drop", "of each mode of the last spectrum: `shape`, or `translation`, `rotation`, `volume`, which change none"},
