@@ -6,24 +6,20 @@
 
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
 
 WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion)
     : space_(space), repulsion_(std::move(repulsion)) {
-  for (const spline::Element& element : space.elements) {
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const spline::Element& element = space.elements[static_cast<std::size_t>(e)];
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(4 + std::max(0, element.degree - 3));  // as the membrane's
     auto& value = value_.emplace_back(rule.size(), static_cast<Eigen::Index>(element.points.size()));
     Eigen::VectorXd& area = area_.emplace_back(rule.size());
     for (int q = 0; q < rule.size(); ++q) {
-      const spline::Basis basis = spline::basis(element, rule.s[q], rule.t[q]);
-      Vec3 along_s = Vec3::Zero(), along_t = Vec3::Zero();
-      for (std::size_t a = 0; a < element.points.size(); ++a) {
-        const Vec3 point = unstressed.row(element.points[a]).transpose();
-        along_s += basis.s[static_cast<Eigen::Index>(a)] * point, along_t += basis.t[static_cast<Eigen::Index>(a)] * point;
-      }
-      value.row(q) = basis.value.transpose();
-      area[q] = rule.weights[q] * along_s.cross(along_t).norm();
+      value.row(q) = spline::basis(element, rule.s[q], rule.t[q]).value.transpose();
+      area[q] = rule.weights[q] * surface::point(space, unstressed, {e, rule.s[q], rule.t[q]}).jacobian;
     }
   }
 }

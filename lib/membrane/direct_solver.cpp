@@ -106,6 +106,7 @@ struct DirectSolver::Impl {
     kinds.clear();
     const std::vector<Eigen::Index> starts = block_starts(a);
     const std::size_t n_blocks = starts.size() - 1;
+    if (n_blocks < 2) return false;
     for (std::size_t k = 0; k < n_blocks && 2 * kinds.size() <= n_blocks; ++k) {
       const Eigen::Index size = starts[k + 1] - starts[k];
       const auto known = std::ranges::find_if(
@@ -117,7 +118,7 @@ struct DirectSolver::Impl {
     }
     if (2 * kinds.size() > n_blocks) kinds.clear();
     for (Kind& kind : kinds) kind.solver.factor(a.block(kind.starts.front(), kind.starts.front(), kind.size, kind.size));
-    if (!kinds.empty()) a = {};
+    if (!kinds.empty()) RowMajor().swap(a);  // an assignment would keep its room
     return !kinds.empty();
   }
 

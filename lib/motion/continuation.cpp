@@ -56,7 +56,7 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
 /// Where the branch meets the plane through `predicted` with this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
   constexpr int most_rounds = 8, most_iterations = 40;
-  constexpr double far = 4;
+  constexpr double far = 4;  // from the predicted place, in steps
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
