@@ -269,6 +269,9 @@ void check_contradictions(const Scene& scene) {
   refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
          "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");
   refuse(tube && desingularised, "Quadrature/rule `desingularised`", confined, "the wall is not closed");
+  const std::string repulsion = confined + "/repulsion";
+  refuse(scene.tube.repulsion && rigid, repulsion, motion, "it acts on membranes");
+  refuse(scene.tube.repulsion && strong, repulsion, "Membrane/load `strong`", "it is part of the weak load");
   refuse(scene.domain.present && tube, "Domain", confined, "a tube does not repeat");
   refuse(scene.domain.present && alone, "Domain", "Particle", "what repeats is named in the list Particles");
   refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");

@@ -197,7 +197,8 @@ void TubeOptions::declare(deck::Section& list) {
            "file of the section `file`, looked for where the program is started and beside the deck: one point a row, x2,x3, "
            "counter-clockwise, the first not repeated; a third column holds the word `corner` where two smooth sides meet. A cubic spline "
            "goes through the points");
-  list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1", "of the wall, around");
+  list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
+           "of the wall, around; a few more where sides of one length would not have equally many");
   if (channel) {
     channel->declare(list);
   } else {

@@ -204,12 +204,14 @@ bool Outline::within(const Vec2& p, const Nearest& nearest) const {
 
 std::vector<int> Outline::shares(int elements, int least) const {
   std::vector<int> out(sides_.size(), least);
-  for (int spare = elements - least * n_sides(); spare > 0; --spare) {
+  constexpr double slack = 1e-12;
+  for (int rest = elements - least * n_sides(); rest > 0;) {
     int longest = 0;
     const auto size = [&](int k) { return side_length(k) / out[static_cast<std::size_t>(k)]; };
     for (int k = 1; k < n_sides(); ++k)
-      if (size(k) > size(longest) * (1 + 1e-12)) longest = k;
-    ++out[static_cast<std::size_t>(longest)];
+      if (size(k) > size(longest) * (1 + slack)) longest = k;
+    for (int k = 0; k < n_sides(); ++k)
+      if (std::abs(side_length(k) - side_length(longest)) <= slack * side_length(longest)) ++out[static_cast<std::size_t>(k)], --rest;
   }
   return out;
 }

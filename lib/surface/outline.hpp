@@ -91,7 +91,8 @@ class Outline {
   /// The nearest to p of the places that may be nearest to a point within r of x, whose own nearest place is `its`; the distance has no sign.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
-  /// The number of elements of each side when `elements` are shared out by length, at least `least` on each.
+  /// The number of elements of each side when `elements` are shared out by length, at least `least` on each, equally many on sides of one length:
+  /// they may be a few more.
   std::vector<int> shares(int elements, int least = 1) const;
 
   /// m + 1 knots of m elements on side k, evenly in its parameter.

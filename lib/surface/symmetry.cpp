@@ -105,20 +105,27 @@ class Search {
     return true;
   }
 
-  bool same_basis(const Turn& turn, int e, int other) const {
+  /// Says which points of the other element those of this one become: the places alone do not, where two sides meet in a corner.
+  bool same_basis(const Turn& turn, int e, int other) {
     const spline::Element &from = space_.elements[e], &to = space_.elements[other];
     if (from.points.size() != to.points.size()) return false;
-    std::vector<Eigen::Index> row;
-    for (const int a : from.points) {
-      const auto at = std::ranges::find(to.points, image_.point[a]);
-      if (at == to.points.end()) return false;
-      row.push_back(at - to.points.begin());
+    std::vector<int> images;
+    for (std::size_t a = 0; a < from.points.size(); ++a) {
+      const Vec3 there = reflected(points_.all()[from.points[a]], centre_, image_.signs);
+      const auto same = [&](std::size_t b) {
+        if ((points_.all()[to.points[b]] - there).norm() > exact * size_) return false;
+        for (int k = 0; k < map_.n_bezier(e); ++k) {
+          const int turned = turn.bernstein(k, map_.degree(e));
+          if (std::abs(from.extraction(static_cast<Eigen::Index>(a), k) - to.extraction(static_cast<Eigen::Index>(b), turned)) > exact) return false;
+        }
+        return true;
+      };
+      std::size_t b = 0;
+      while (b < to.points.size() && !same(b)) ++b;
+      if (b == to.points.size()) return false;
+      images.push_back(to.points[b]);
     }
-    for (int b = 0; b < map_.n_bezier(e); ++b) {
-      const int turned = turn.bernstein(b, map_.degree(e));
-      for (std::size_t a = 0; a < row.size(); ++a)
-        if (std::abs(from.extraction(static_cast<Eigen::Index>(a), b) - to.extraction(row[a], turned)) > exact) return false;
-    }
+    for (std::size_t a = 0; a < images.size(); ++a) image_.point[from.points[a]] = images[a];
     return true;
   }
 

@@ -140,8 +140,8 @@ std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::
   }
   wall.space = product(along, around);
   wall.n_along = along.n, wall.n_around = around.n;
-  wall.space.description =
-      formatted("%d x %d cubic elements, %d control points", azimuthal_elements, static_cast<int>(knots.size()) - 1, wall.space.n_points);
+  wall.space.description = formatted("%d x %d cubic elements, %d control points", static_cast<int>(around.pieces.size()),
+                                     static_cast<int>(knots.size()) - 1, wall.space.n_points);
   wall.net.resize(wall.space.n_points, 3);
   return {std::move(wall), std::move(ring)};
 }

@@ -38,6 +38,8 @@ def what_is_no_channel_is_refused():
     _refused(["Channel/points", "file"], "Channel/points=rows.csv")
     _refused(["Channel/repulsion range", "belong together"], "Channel/repulsion=10")
     _refused(["Channel/repulsion", "round"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
+    for setting in "Membrane/load=strong", "Particle/motion=free":
+        _refused(["Channel/repulsion", setting.split("=")[1], "contradict"], "Channel/repulsion=10", "Channel/repulsion range=0.01", setting)
     _refused(["does not fit", "0.7"], "Particle/radius=0.75", "Particle/center=[0, 0, 0]")
     _refused(["too close to an end", "1.7"], "Particle/center=[-1.6, 0, 0]")
     _refused(["Channel/contact gap", "0.9"], "Particle/center=[-1.0, 0.0, 0.4]", "Channel/contact gap=0.9")

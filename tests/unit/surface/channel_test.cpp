@@ -1,5 +1,6 @@
 // Channels: sections along a centre line, straight or bent, and the wall through them.
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -8,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "surface/geometry.hpp"
+#include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 
 namespace tanktread::surface {
@@ -61,6 +63,22 @@ TEST(Channel, KnowsWhereAPlaceIs) {
     EXPECT_FALSE(channel.inside(Vec3(-3, 0, 2.5)));
     EXPECT_FALSE(channel.inside(Vec3(channel.start() - 0.1, 0, 0)));
     EXPECT_TRUE(channel.inside(Vec3(-3, 0.3, 0.6)));
+  }
+}
+
+TEST(Channel, HasAWallWithItsMirrorPlanes) {
+  TubeOptions oblong = step();
+  oblong.sides = Eigen::Vector2d(4.8, 4), oblong.azimuthal_elements = 24;
+  for (const TubeOptions& options : {constriction(), step(), oblong}) {
+    const TubeWall wall = channel_wall(std::make_shared<const Channel>(options), options.azimuthal_elements);
+    const Net* nets[] = {&wall.net};
+    for (const Vec3& signs : {Vec3(1, -1, 1), Vec3(1, 1, -1)}) {
+      const auto found = image(wall.space, nets, signs);
+      ASSERT_TRUE(found) << options.section << ": two points are in each corner, one of either side";
+      std::vector<int> often(found->point.size());
+      for (const int a : found->point) ++often[static_cast<std::size_t>(a)];
+      EXPECT_EQ(std::ranges::count(often, 1), wall.space.n_points);
+    }
   }
 }
 

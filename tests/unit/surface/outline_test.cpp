@@ -157,6 +157,7 @@ TEST(Outline, IsApproachedByItsSplinesWithOrderFour) {
   EXPECT_NEAR(std::log2(off(ellipse(1, 0.5), 24) / off(ellipse(1, 0.5), 48)), 4, 0.2);
   EXPECT_LT(off(rectangle(2, 1), 13), 1e-15) << "straight sides are cubic";
   EXPECT_EQ(rectangle(2, 1).shares(12), (std::vector<int>{4, 2, 4, 2}));
+  EXPECT_EQ(rectangle(6, 5).shares(21), (std::vector<int>{6, 5, 6, 5})) << "opposite sides have equally many";
 }
 
 TEST(Outline, RefusesSidesThatCrossOrRunClockwise) {
