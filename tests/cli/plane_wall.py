@@ -54,6 +54,34 @@ def a_held_sphere_takes_the_force_that_is_known():
     close(held[3], 0.1, 1e-6, "its place")
 
 
+def a_side_of_a_wide_channel_is_a_plane_wall():
+    """A drop drawn along at a distance of 1 from one side of a square channel of side L. That side sends its force on as h/r^2 and receives what comes
+    back as h/L, so that what the others do falls like L^-3; the power between two sizes falls short of that by 1/L."""
+    drop = """
+Tanktread:
+  Flow: {type: quiescent, gravity: [1, 0, 0]}
+  Particle: {radius: 0.25, center: [0, 0, 1], density difference: 48}
+  Membrane: {law: surface tension, surface tension: 1}
+  Surface: {elements per side: 3}
+  Quadrature: {tolerance: 1.0e-5}
+  Time: {fixed step: 1.0e-6, final time: 1.0e-6}
+"""
+
+    def velocity(name, **lists):
+        run(deck(_with(drop, **lists)), "--output", name, "--quiet")
+        return series(name, "velocity_x1")[0]
+
+    alone = velocity("images", Wall="{}")
+    sides, lacking = numpy.array([3, 4, 6]), []
+    for side, elements in zip(sides, (24, 28, 32)):
+        place = f"{{radius: 0.25, center: [0, 0, {1 - side / 2}], density difference: 48}}"
+        tube = f"{{section: rectangle, sides: [{side}, {side}], azimuthal elements: {elements}}}"
+        lacking.append(alone - velocity(f"side {side}", Tube=tube, Particle=place))
+    powers = -numpy.diff(numpy.log(lacking)) / numpy.diff(numpy.log(sides))
+    extrapolated = numpy.polyfit(1 / numpy.sqrt(sides[1:] * sides[:-1]), powers, 1)[1]
+    check(abs(extrapolated - 3) < 0.1, f"the power goes to {extrapolated}: {powers} between {sides}")
+
+
 def a_free_sphere_moves_as_is_known():
     free = _last("alone", names=["velocity_x1", "angular_velocity_x2", "velocity_x3"], Flow="{type: simple shear}", Time="{scheme: bs3, fixed step: 0.001, final time: 0.001}", Output="{interval: 0.001}",
                  text=SPHERE.replace("prescribed", "free"))
