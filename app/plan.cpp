@@ -9,6 +9,7 @@
 #include "base/formatted.hpp"
 #include "base/instruction_set.hpp"
 #include "coupling/frozen_operator.hpp"
+#include "coupling/wall.hpp"
 #include "deck/units.hpp"
 #include "membrane/strain_energy.hpp"
 #include "stokes/layer_surface.hpp"
@@ -66,9 +67,11 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
                                        wall.space.description.c_str()));
   if (wall.images > 0)
     lines.emplace_back("train", formatted("period %.6g, %d copies at either side, those beyond left out", *scene.tube.periodic_length, wall.images));
-  lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; factored once: %.1f MB on each of %d rank%s, "
-                                       "and as much of rows on all together",
-                                       unknowns, wall_solver(scene).c_str(), 8e-6 * unknowns * unknowns, ranks, ranks > 1 ? "s" : ""));
+  const bool iterates = wall.channel && coupling::Wall::iterates(scene.solvers.wall, unknowns);
+  const double megabytes = 8e-6 * unknowns * unknowns;
+  const std::string how = iterates ? "found by GMRES and clusters in each velocity"
+                                   : formatted("factored once: %.1f MB on each of %d rank%s", megabytes, ranks, ranks > 1 ? "s" : "");
+  lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene).c_str()) + how);
 }
 
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {

@@ -186,8 +186,8 @@ void check_size(const Scene& scene) {
     check_bytes("Surface/elements per side",
                 formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
                 points(scene), bytes);
-  if (!scene.tube.present) return;
-  const double of_wall = doubles * (1 + coupling::Ranks().size());  // rows on all ranks together, and the factors on each
+  if (!scene.tube.present || (scene.tube.channel && scene.solvers.wall != "factored")) return;
+  const double of_wall = doubles * coupling::Ranks().size();  // the factors, on each rank
   check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
               formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / of_wall))),
               wall_points(scene), of_wall);
@@ -290,6 +290,9 @@ void check_contradictions(const Scene& scene) {
   refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
   refuse(scene.viscous_membrane() && tube && scene.solvers.tube != "schur", "Membrane viscosity", "Solvers/tube `" + scene.solvers.tube + "`",
          "the system of all blocks leaves the membrane's own load out; `schur` has it");
+  refuse(scene.solvers.wall != "auto" && tube && !scene.tube.channel, "Solvers/wall", confined, "the wall of a straight tube is factored");
+  refuse(scene.solvers.wall == "iterative" && scene.solvers.tube != "schur", "Solvers/wall `iterative`", "Solvers/tube `" + scene.solvers.tube + "`",
+         "that takes the factored wall");
   refuse(scene.flow.held != "flow rate" && scene.solvers.tube != "schur", "Flow/held `" + scene.flow.held + "`",
          "Solvers/tube `" + scene.solvers.tube + "`", "the system of all blocks holds the flow rate; `schur` may hold either");
   refuse(scene.solvers.projection != "collocation" && (tube || wall || rigid), "Solvers/projection `" + scene.solvers.projection + "`",

@@ -2,6 +2,7 @@
 // The flow of an empty channel.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/timing.hpp"
@@ -23,7 +24,9 @@ namespace tanktread::coupling {
 /// when a velocity is first asked for, by every rank; Tube uses the same factors. What DuctFlow says beside velocities is said of the inlet.
 class ChannelFlow : public stokes::DuctFlow {
  public:
-  ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature);
+  /// `wall_solver`: as of Wall.
+  ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
+              const std::string& wall_solver = "factored");
 
   /// Accurate up to the wall; of places that are not inside it means nothing. Those asked for last are kept. Collective.
   Net velocities(const Net& x) const override;
@@ -63,6 +66,7 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<const surface::TubeWall> surface_;
   surface::TubeOptions options_;
   quadrature::Options quadrature_;
+  std::string wall_solver_;
   std::vector<stokes::DuctEnd> ends_;
   mutable std::shared_ptr<stokes::Layer> layer_;  // of the wall, sharper than Wall's: pressures at the ends are large beside the velocity
   mutable std::shared_ptr<Wall> wall_;

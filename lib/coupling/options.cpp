@@ -56,6 +56,9 @@ void SolverOptions::declare(deck::Section& section) {
               "in a tube: `schur` solves for the particle's velocity alone, wall and pressure drop eliminated by the factored wall (nothing is "
               "left to solve at viscosity ratio 1); the others solve for all blocks (2.5)-(2.8) at once, preconditioned by the factored wall or "
               "(`block`) not at all");
+  section.key("wall", wall, deck::Choice{"auto", "factored", "iterative"},
+              "of a Channel: `factored` once, or `iterative`, found by GMRES and clusters in each velocity and left out of the Jacobian; "
+              "`auto`: the latter where the factors would take more than 4 GB");
   section.key("rigid bodies", rigid_bodies, deck::Choice{"second kind", "first kind"},
               "several: `second kind`, by a double layer (2.23), an iterative solver and clusters; or, where all particles are rigid, `first kind`, "
               "by their tractions (2.40), dense and factored at every place, whose forces and motions are far more accurate in films");

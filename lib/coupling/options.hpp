@@ -49,6 +49,7 @@ struct SolverOptions {
   std::string double_layer = "auto";              ///< assembled once a velocity, for all iterations; matrix-free: summed in each of them;
                                                   ///< auto: the latter where far sums are taken by clusters
   std::string tube = "schur";                     ///< what is solved for in a tube: v with the wall eliminated; all blocks (BlockForm)
+  std::string wall = "auto";                      ///< of a channel: factored, iterative, or auto: the latter where factors are large (Wall)
   std::string rigid_bodies = "second kind";       ///< equation of those among others (RigidParticles), or first kind, of them alone (RigidTractions)
   std::string projection = "collocation";         ///< of velocities onto the splines: collocation, least squares (VelocityProjection)
   std::string frozen_operator = "nodal";          ///< the single layer of the Jacobian: a sum over nodes, or assembled

@@ -62,7 +62,8 @@ double Tube::pressure_of(const Net& f, const Net& v) {
 /// dp with which the flow rate of the disturbance that v makes vanishes; `on_wall`: its velocity there.
 double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   weigh_flow();
-  return (dot(flow_of_wall_, on_wall) - dot(particle_->flow_of_strength(wall_->inlet()), particle_->strength(v))) / flow_of_pressure_;
+  const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(on_wall)) : dot(flow_of_wall_, on_wall);
+  return (taken_away - dot(particle_->flow_of_strength(wall_->inlet()), particle_->strength(v))) / flow_of_pressure_;
 }
 
 Net Tube::load_on_wall(const Net& f) {
@@ -144,6 +145,7 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
 
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
+  if (wall_->iterates()) return;
   const bool by_flow = fixed() && particle_->dual;
   if (by_flow) weigh_flow();
   particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
@@ -153,6 +155,7 @@ void Tube::freeze() {
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {
+  if (wall_->iterates()) return Net::Zero(particle_->sites.rows(), 3);
   const Particle::Frozen& frozen = particle_->frozen;
   const double pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
   Net on_wall = Net::Zero(wall_->sites().rows(), 3), part = on_wall;

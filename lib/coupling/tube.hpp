@@ -92,7 +92,7 @@ class Tube {
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
   /// Keeps the present shape's operators, as blocks of few bits, for `frozen_response`, which is the answer u at the particle's
-  /// collocation points.
+  /// collocation points; 0 where each answer of the wall takes an iteration, for it is a small and smooth part of a Jacobian.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 

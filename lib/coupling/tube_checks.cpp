@@ -49,7 +49,7 @@ void Tube::weigh_flow() {
   if (flow_weights_.size() > 0) return;
   flow_weights_ = wall_->flow_weights();
   force_weights_ = wall_->force_weights();
-  flow_of_wall_ = wall_->solve_transposed(flow_weights_);
+  if (!wall_->iterates()) flow_of_wall_ = wall_->solve_transposed(flow_weights_);
   own_flow_ = wall_->inlet().own_flow();
   flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
 }

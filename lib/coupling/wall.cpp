@@ -10,6 +10,7 @@ namespace tanktread::coupling {
 
 namespace {
 
+constexpr double residual = 1e-2;        // that an iteration leaves, over the tolerance of integrals
 constexpr double mean_of_wave = 0.516;  // harmonics k^-5, as of the single layer of what interpolation by cubic splines leaves
 
 /// The wall's own matrix is made once, so it can be sharper than what changes with the particle.
@@ -25,41 +26,16 @@ Net collocation_points(const spline::Space& space, const Net& net) {
   return at;
 }
 
-Eigen::Map<const Eigen::VectorXd> flat(const Net& net) { return {net.data(), net.size()}; }
-
-/// The whole matrix on every rank, from the rows of each: a few columns of blocks at a time, as a net with a row for each row of a block.
-Eigen::MatrixXd everybodys(const stokes::Rows<double>& rows, const std::vector<int>& own, int n, Phases* phases) {
-  constexpr int at_a_time = 16;
-  Ranks ranks;
-  if (phases) ranks.measure(*phases);
-  std::vector<int> places;
-  for (const int i : own)
-    for (int r = 0; r < 3 * at_a_time; ++r) places.push_back(3 * at_a_time * i + r);
-  ranks.own(places, 3 * at_a_time * n);
-  Eigen::MatrixXd all(3 * n, 3 * n);
-  Net part(3 * at_a_time * n, 3);
-  for (int first = 0; first < n; first += at_a_time) {
-    const int count = std::min(at_a_time, n - first);
-    for (std::size_t k = 0; k < own.size(); ++k)
-      for (int c = 0; c < 3; ++c)
-        for (int j = 0; j < count; ++j)
-          part.row(at_a_time * (3 * own[k] + c) + j) = rows.block<1, 3>(3 * static_cast<Eigen::Index>(k) + c, 3 * (first + j));
-    ranks.replicate(part);
-    for (int i = 0; i < 3 * n; ++i)
-      for (int j = 0; j < count; ++j) all.block<1, 3>(i, 3 * (first + j)) = part.row(at_a_time * i + j);
-  }
-  return all;
-}
-
 }  // namespace
 
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
-           const surface::Symmetry& symmetry)
+           const surface::Symmetry& symmetry, const std::string& solver)
     : surface_(wall),
       symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(wall.space.n_points)),
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
       inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
-      sites_(collocation_points(wall.space, wall.net)) {
+      sites_(collocation_points(wall.space, wall.net)),
+      tolerance_(residual * quadrature.tolerance) {
   const int n = wall.space.n_points, n_rows = static_cast<int>(symmetry_.fundamental().size());
   for (int i = n_rows * ranks_.rank() / ranks_.size(); i < n_rows * (ranks_.rank() + 1) / ranks_.size(); ++i)
     own_.push_back(symmetry_.fundamental()[static_cast<std::size_t>(i)]);
@@ -74,8 +50,16 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
     boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
     add_middles();
   }
-  assemble(sharper(quadrature));
-  factors_ = DenseFactors(symmetry_.order() > 1 ? folded() : everybodys(rows_, own_, n, phases));
+  stokes::Sites sites = wall.space.collocation;
+  for (int e = 0; e < targets_.rows() - n; ++e) sites.push_back({{e, 0.5, 0.5}});
+  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, sites, sharper(quadrature));
+  on_itself_->place(wall.net);
+  if (iterates(solver, 3.0 * n / symmetry_.order())) {
+    patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
+    krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
+  } else {
+    factors_ = DenseFactors(assembled());
+  }
   inlet_column_ = collocated(inlet_.integral(targets_));
   pumped_ = solve(inlet_column_);
 }
@@ -99,23 +83,33 @@ double Wall::share_of_middle(int point) const {
   return mean_of_wave / static_cast<double>(surface_.space.collocation[static_cast<std::size_t>(point)].size());
 }
 
-/// Rows of this rank, many at a time, for those that are neighbours take the same middles.
-void Wall::assemble(const quadrature::Options& quadrature) {
+/// The matrix between the components of fundamental points that are not zero by the symmetry (4.12), on every rank. Rows of this one are made many at
+/// a time, for those that are neighbours take the same middles.
+Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
-  const spline::Space& space = surface_.space;
-  stokes::Sites sites = space.collocation;
-  if (has_middles())
-    for (std::size_t e = 0; e < space.elements.size(); ++e) sites.push_back({{static_cast<int>(e), 0.5, 0.5}});
-  stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
-  layer.place(surface_.net);
-  rows_.resize(3 * static_cast<Eigen::Index>(own_.size()), 3 * space.n_points);
+  const Net& signs = symmetry_.signs();
+  Eigen::VectorXi of_component = Eigen::VectorXi::Constant(3 * signs.rows(), -1);
+  int n = 0;
+  for (const int a : symmetry_.fundamental())
+    for (int c = 0; c < 3; ++c)
+      if (signs(a, c) != 0) of_component[3 * a + c] = n++;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
   stokes::Rows<double> part;
   for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
     const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
-    collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { layer.assemble(targets, rows); }, part);
-    rows_.middleRows(3 * static_cast<Eigen::Index>(first), part.rows()) = part;
+    collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { on_itself_->assemble(targets, rows); }, part);
+    for (Eigen::Index p = 0; p < signs.rows(); ++p)
+      for (int d = 0; d < 3; ++d) {
+        if (signs(p, d) == 0) continue;
+        const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
+        for (std::size_t k = 0; k < some.size(); ++k)
+          for (int c = 0; c < 3; ++c)
+            if (const int row = of_component[3 * some[k] + c]; row >= 0)
+              all(row, column) += signs(p, d) * part(3 * static_cast<Eigen::Index>(k) + c, 3 * p + d);
+      }
   }
-  assembly_ = layer.evaluations();
+  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
+  return all;
 }
 
 template <class Real>
@@ -153,58 +147,46 @@ Net Wall::collocated(const Net& u) const {
   return all;
 }
 
-/// The matrix between the components of fundamental points that are not zero by the symmetry (4.12).
-Eigen::MatrixXd Wall::folded() const {
-  const Net& signs = symmetry_.signs();
-  const std::vector<int>& source = symmetry_.source();
-  Eigen::VectorXi of_component = Eigen::VectorXi::Constant(3 * signs.rows(), -1);
-  int n = 0;
-  for (const int a : symmetry_.fundamental())
-    for (int c = 0; c < 3; ++c)
-      if (signs(a, c) != 0) of_component[3 * a + c] = n++;
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t k = 0; k < own_.size(); ++k)
-    for (int c = 0; c < 3; ++c) {
-      const int row = of_component[3 * own_[k] + c];
-      if (row < 0) continue;
-      const auto entries = rows_.row(3 * static_cast<Eigen::Index>(k) + c);
-      for (Eigen::Index p = 0; p < signs.rows(); ++p)
-        for (int d = 0; d < 3; ++d)
-          if (signs(p, d) != 0) all(row, of_component[3 * source[static_cast<std::size_t>(p)] + d]) += signs(p, d) * entries[3 * p + d];
-    }
-  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
-  return all;
-}
-
 Net Wall::apply(const Net& f) const {
-  Net u(f.rows(), 3);
-  for (std::size_t k = 0; k < own_.size(); ++k)
-    for (int i = 0; i < 3; ++i) u(own_[k], i) = rows_.row(3 * static_cast<Eigen::Index>(k) + i).dot(flat(f));
-  ranks_.replicate(u);
-  return u;
+  Net u(targets_.rows(), 3);
+  on_itself_->apply(f, own_targets_, u);
+  return collocated(u);
 }
 
 Net Wall::solve(const Net& rhs) const {
-  if (symmetry_.order() > 1) {
-    Net f = fundamental_net(factors_.solve(fundamental(rhs)));
-    symmetry_.complete(f);
-    return f;
-  }
-  const Eigen::VectorXd f = factors_.solve(flat(rhs));
-  return Eigen::Map<const Net>(f.data(), rhs.rows(), 3);
+  if (iterates()) return iterated(rhs);
+  Net f = fundamental_net(factors_.solve(fundamental(rhs)));
+  symmetry_.complete(f);
+  return f;
+}
+
+Net Wall::iterated(const Net& rhs) const {
+  const Eigen::VectorXd b = fundamental(rhs);
+  const auto through = [&](const std::function<void(const Net&, Net&)>& map) {
+    return [this, map, n = b.size()](const double* in, double* out) {
+      Net given = fundamental_net(Eigen::Map<const Eigen::VectorXd>(in, n)), found = given;
+      symmetry_.complete(given);
+      map(given, found);
+      Eigen::Map<Eigen::VectorXd>(out, n) = fundamental(found);
+    };
+  };
+  const LinearSystem system{{{"wall traction", b.size()}},
+                            through([this](const Net& f, Net& u) { u = apply(f); }),
+                            through([this](const Net& u, Net& f) { patches_of_rows_->apply(u, f); })};
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+  require_convergence(krylov_->solve(system, b, x, tolerance_), "the wall", tolerance_);
+  Net f = fundamental_net(x);
+  symmetry_.complete(f);
+  return f;
 }
 
 Net Wall::solve_transposed(const Net& weights) const {
-  if (symmetry_.order() > 1) {
-    Net folded = weights;
-    for (Eigen::Index p = 0; p < weights.rows(); ++p) {
-      const int a = symmetry_.source()[static_cast<std::size_t>(p)];
-      if (a != p) folded.row(a) += symmetry_.signs().row(p).cwiseProduct(weights.row(p));
-    }
-    return fundamental_net(factors_.solve_transposed(fundamental(folded)));
+  Net folded = weights;
+  for (Eigen::Index p = 0; p < weights.rows(); ++p) {
+    const int a = symmetry_.source()[static_cast<std::size_t>(p)];
+    if (a != p) folded.row(a) += symmetry_.signs().row(p).cwiseProduct(weights.row(p));
   }
-  const Eigen::VectorXd a = factors_.solve_transposed(flat(weights));
-  return Eigen::Map<const Net>(a.data(), weights.rows(), 3);
+  return fundamental_net(factors_.solve_transposed(fundamental(folded)));
 }
 
 /// Components of fundamental points that are not zero by the symmetry, one after the other.
@@ -255,7 +237,7 @@ Net Wall::force_weights() const {
 }
 
 stokes::Evaluations Wall::evaluations() const {
-  return assembly_ + layer_.evaluations();
+  return on_itself_->evaluations() + layer_.evaluations();
 }
 
 }  // namespace tanktread::coupling

@@ -2,13 +2,17 @@
 // What depends on a tube's wall alone, made once a run.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/dense_factors.hpp"
 #include "base/types.hpp"
+#include "coupling/krylov.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/wall_patches.hpp"
 #include "quadrature/options.hpp"
 #include "stokes/cap.hpp"
 #include "stokes/layer.hpp"
@@ -19,17 +23,27 @@
 namespace tanktread::coupling {
 
 /// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
-/// The rows are shared out, the factors are on every rank: 72 bytes a pair of control points each.
+/// Making the rows is shared out, the factors are on every rank: 72 bytes a pair of control points.
 ///
 /// With a symmetry, which all that is asked for has, only rows of fundamental points are assembled, and the others' columns added to theirs (4.12).
+///
+/// Where the factors would be too large the system is solved by GMRES each time, with products by clusters, preconditioned by small patches and by
+/// what the solves before tell (2.24).
 ///
 /// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through. On the wall of a channel
 /// the leak would be a part of the flow rate: there what vanishes is the mean around each of them, (2.39).
 class Wall {
  public:
   /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
+  /// `solver`: factored, iterative, or auto, the latter where factors take more than `most_bytes`.
   Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
-       const surface::Symmetry& symmetry = surface::Symmetry());
+       const surface::Symmetry& symmetry = surface::Symmetry(), const std::string& solver = "factored");
+
+  static constexpr double most_bytes = 4e9;
+  static bool iterates(const std::string& solver, double unknowns) {
+    return solver == "iterative" || (solver == "auto" && 8 * unknowns * unknowns > most_bytes);
+  }
+  bool iterates() const { return patches_of_rows_.has_value(); }
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
@@ -55,7 +69,7 @@ class Wall {
   Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, its means as of `collocated`
   Net solve(const Net& rhs) const;  ///< A^-1 rhs
 
-  /// What has with every rhs the product that `weights` has with solve(rhs).
+  /// What has with every rhs the product that `weights` has with solve(rhs). Of what is factored.
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet, collocated
@@ -72,9 +86,9 @@ class Wall {
 
  private:
   Net weights(const std::function<Vec3(const Vec3&)>& field) const;
-  Eigen::MatrixXd folded() const;
   void add_middles();
-  void assemble(const quadrature::Options& quadrature);
+  Eigen::MatrixXd assembled();
+  Net iterated(const Net& rhs) const;
   bool has_middles() const { return surface_.channel != nullptr; }
   double share_of_middle(int point) const;
   Eigen::VectorXd fundamental(const Net& net) const;
@@ -89,9 +103,11 @@ class Wall {
   stokes::Layer layer_;
   stokes::Cap inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  stokes::Rows<double> rows_;
-  DenseFactors factors_;  // of A
-  stokes::Evaluations assembly_;
+  std::unique_ptr<stokes::Layer> on_itself_;  // at the targets
+  DenseFactors factors_;                      // of A, or what solves without them:
+  std::optional<WallPatches> patches_of_rows_;
+  std::unique_ptr<Krylov> krylov_;
+  double tolerance_;  // of its residuals
 };
 
 }  // namespace tanktread::coupling

@@ -70,6 +70,17 @@ def mirror_planes_and_ranks_change_nothing():
         check(numpy.abs(one - shared).max() < 1e-8 * scale, f"{name}: {one} on one rank, {shared} on two")
 
 
+def an_iterated_wall_does_what_the_factored_one_does():
+    for ratio, symmetry in (1, "auto"), (1, "none"), (5, "auto"):
+        fixed = ["Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.01", "Quadrature/tolerance=1e-5", f"Particle/viscosity ratio={ratio}"]
+        for solver in "factored", "iterative":
+            run(deck(DECK), *_words(fixed + [f"Solvers/wall={solver}", f"Symmetry/use={symmetry}"]), "--output", f"{ratio} {symmetry} {solver}", "--quiet")
+        for name in "velocity_x1", "length_x1", "disturbed_pressure_drop", "pressure_drop_by_flux", "channel_pressure_drop":
+            one, other = (series(f"{ratio} {symmetry} {solver}", name)[-1] for solver in ("factored", "iterative"))
+            check(abs(other / one - 1) < 2e-6, f"{name}: {one} factored, {other} iterated, viscosity ratio {ratio}, symmetry {symmetry}")
+    _refused(["Solvers/wall", "block"], "Solvers/wall=iterative", "Solvers/tube=block")
+
+
 def a_file_says_what_the_constriction_does():
     s = numpy.linspace(-1, 1, 41)
     rows = "".join(f"{a},{f!r}\n" for a, f in zip(s, 1 - 0.15 * (1 + numpy.cos(numpy.pi * s))))
