@@ -82,8 +82,8 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
     const Eigen::VectorXd lacking = reciprocal_correction(resistance, relative_velocity, s.density, centre);
     s.force -= lacking.head<3>();
     s.torque -= lacking.segment<3>(3);
-    const double rate = tube && body.flow.duct() ? tube->flow().flow_rate() * body.flow.amplitude() : 0;  // the duct's flow is the ambient one
-    if (rate != 0) drop_lacking = (lacking[6] - lacking.head<3>().dot(motion.velocity) - lacking.segment<3>(3).dot(motion.angular_velocity)) / rate;
+    const double work_of_motion = lacking.head<3>().dot(motion.velocity) + lacking.segment<3>(3).dot(motion.angular_velocity);
+    drop_lacking = resistance.lacking_pressure(body.flow, s.density, work_of_motion - lacking[6]);
   }
   if (tube) {
     s.pressure_drop = resistance.pressure_drop(s.density) + drop_lacking;

@@ -345,8 +345,6 @@ void check_first_kind(const Scene& scene) {
       throw UserError(word + " is for rigid bodies alone, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
     n_points += points(one);
   }
-  const bool tube = scene.tube.present;
-  refuse(tube || scene.domain.present, word, tube ? scene.tube.list() : "Domain", "it is for unbounded space or beside a Wall");
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 

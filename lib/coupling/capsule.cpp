@@ -84,7 +84,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (measure() == stokes::Measure::reference) mass_matrix_.release();
   nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   make_layers();
-  if (by_tractions()) tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.wall, ranks);
+  if (by_tractions()) tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.solvers, parameters.wall, tube_.get(), ranks);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {
@@ -98,7 +98,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
-    if (particles().size() > 1 || !rigid_.empty()) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
+    if (!tractions_ && (particles().size() > 1 || !rigid_.empty())) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
   }
   for (const Particle& particle : particles())
     volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
@@ -159,6 +159,7 @@ bool Capsule::deform_cell(double time) {
   cell_ = now;
   layer_.repeat(now);
   if (double_layer_) double_layer_->repeat(now);
+  if (tractions_) tractions_->repeat(now);
   return true;
 }
 
@@ -415,6 +416,8 @@ Net Capsule::evaluate_tractions(const Net& x) {
   }
   latest_.load = -tractions_->density();
   latest_.unknowns = v;
+  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
+  if (tube_) latest_.response = tube_->respond(latest_.load, {}, tractions_->lacking_pressure());
   return v;
 }
 

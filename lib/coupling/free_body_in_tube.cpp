@@ -34,8 +34,12 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   solution_.motion = {turn * own.velocity, turn * own.angular_velocity};
   solution_.density = f * turn.transpose();
   solution_.stresslet = -turn * body_.stresslet(f, centre_) * turn.transpose();
-  solution_.pressure_drop = body_.pressure_drop(f);
   return solution_;
+}
+
+double FreeBodyInTube::pressure_drop(const Net& place) const {
+  const Net f = solution(place).density * rotation_of(place);
+  return body_.pressure_drop(f) + body_.lacking_pressure(flow_, f);
 }
 
 /// Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.

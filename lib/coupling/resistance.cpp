@@ -49,6 +49,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
   if (tube_) {
     tube_->set_reference(surface);
     tube_->place(surface);
+    factor();
   }
   if (!wall_) return;
   images_.emplace(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
@@ -84,7 +85,7 @@ void Resistance::factor() {
   for (std::size_t k = 0; k < own_points_.size(); ++k) {
     const auto from = 3 * static_cast<Eigen::Index>(k), to = 3 * static_cast<Eigen::Index>(own_points_[k]);
     all.middleRows<3>(to) = rows_.middleRows<3>(from);
-    for (Eigen::Index column = 0; column < n; column += 3)
+    for (Eigen::Index column = 0; wall_ && column < n; column += 3)
       all.block<3, 3>(to, column) += turn_.transpose() * image_rows_.block<3, 3>(from, column) * turn_;
   }
   ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
@@ -96,6 +97,13 @@ void Resistance::factor() {
 Net Resistance::ambient(const stokes::AmbientFlow& flow) const { return collocation_.solve(Net(flow.velocities(sites_ * place_) * turn_)); }
 
 double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) / tube_->copies() : 0; }
+
+double Resistance::lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work) const {
+  if (!tube_ || !flow.duct()) return 0;
+  const auto [sites, at_sites, weights] = between_sites(space_, surface_);
+  const Net missed = weights * (flow.velocities(at_sites * place_) - flow.amplitude() * (at_sites * tube_->interpolated_ambient()));
+  return -(work + missed.cwiseProduct(f * turn_.transpose()).sum()) / (flow.amplitude() * tube_->flow().flow_rate());
+}
 
 /// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
 Net Resistance::apply(const Net& f) const {

@@ -30,8 +30,8 @@ namespace tanktread::coupling {
 /// Beside a plane wall what images add to A is assembled at each place (Layer::assemble_images), and the operator factored there: through the film
 /// GMRES alone would not get.
 ///
-/// In a tube A f - mu u(f) takes the place of A f, u the answer of the wall and the pressure drop (2.5); then the place counts. Fields stay in the
-/// axes that the body has in `surface`, wherever it has gone.
+/// In a tube A f - mu u(f) takes the place of A f, u the answer of the wall and the pressure drop (2.5); then the place counts, and GMRES goes
+/// around the factors of the body alone. Fields stay in the axes that the body has in `surface`, wherever it has gone.
 class Resistance {
  public:
   /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own, and serve for any place and orientation.
@@ -62,6 +62,10 @@ class Resistance {
 
   /// The pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
+
+  /// What it lacks where the flow is the duct's: what is left of v_inf where it is interpolated, and `work`, the residual work of the density that
+  /// has v_inf on the surface (2.41).
+  double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0) const;
 
   /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
   /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
@@ -105,7 +109,7 @@ class Resistance {
   std::optional<stokes::Layer> images_;  // in space
   stokes::Rows<double> image_rows_;      // the same
   bool in_front_ = true;
-  std::optional<DenseFactors> factors_;  // of R times the operator that is solved; of a body of few points
+  std::optional<DenseFactors> factors_;  // of R times the operator that is solved, in a tube of the body alone; of a body of few points
   Net place_;                     // in space
   Mat3 turn_ = Mat3::Identity();  // from surface_ to place_
   Krylov krylov_;

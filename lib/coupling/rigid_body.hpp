@@ -103,7 +103,7 @@ class FreeBodyInTube : public LoneRigidBody {
   RigidMotion motion(const Net& place) const override { return solution(place).motion; }
   Net force_density(const Net& place) const override { return solution(place).density; }
   Mat3 stresslet(const Net& place) const override { return solution(place).stresslet; }
-  double pressure_drop(const Net& place) const override { return solution(place).pressure_drop; }
+  double pressure_drop(const Net& place) const override;
   long solver_iterations() const { return iterations_; }
 
  private:
@@ -111,7 +111,6 @@ class FreeBodyInTube : public LoneRigidBody {
     RigidMotion motion;
     Net density;
     Mat3 stresslet;
-    double pressure_drop = 0;
   };
   const Solution& solution(const Net& place) const;
   void solve_in_tube(const Net& place, Net& f, RigidMotion& own) const;

@@ -34,9 +34,11 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
 }  // namespace
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
-                               const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks)
+                               const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall,
+                               Tube* tube, Ranks& ranks)
     : particles_(particles),
       viscosity_(viscosity),
+      tube_(tube),
       ranks_(ranks),
       own_points_(ranks.share(space.n_points)),
       between_(between_sites(space, rest)),
@@ -44,6 +46,8 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       sites_(collocation_matrix(space)),
       mass_(space, 8),  // eight points: the area is no polynomial
+      krylov_(solvers.of(solvers.velocity)),
+      tolerance_(solvers.tolerance),
       bodies_(particles.size()) {
   for (stokes::Layer* layer : {&layer_, &between_layer_})
     if (wall) layer->set_wall(*wall);
@@ -52,9 +56,24 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
       if (!particles[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
 }
 
-/// A at the sites, which are `at`, with s (R c) b^T/(b.c) of each body.
-Eigen::MatrixXd RigidTractions::system(const Net& x, const Net& at) {
-  const Eigen::Index n = 3 * x.rows();
+void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
+  for (stokes::Layer* layer : {&layer_, &between_layer_}) layer->repeat(cell);
+  repeats_ = true;
+}
+
+/// b and s (R c)/(b.c) of each body: any velocity with a flux makes the system regular; that away from the middle is one.
+void RigidTractions::make_regular(const Net& x, const Net& at) {
+  flux_ = outward_ = Net::Zero(x.rows(), 3);
+  for (const Particle& body : particles_) {
+    const Net own = body.block.rows(at), outward = own.rowwise() - own.colwise().mean();
+    body.block.rows(flux_) = surface::Geometry(*body.space).volume_gradient(body.block.rows(x));
+    body.block.rows(outward_) = 2 * body.radius / 3 / body.block.rows(flux_).cwiseProduct(outward).sum() * outward;
+  }
+}
+
+/// A of the bodies alone at the sites, made regular.
+Eigen::MatrixXd RigidTractions::system() {
+  const Eigen::Index n = flux_.size();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
   stokes::Rows<double> rows;
   layer_.assemble(own_points_, rows);
@@ -62,11 +81,46 @@ Eigen::MatrixXd RigidTractions::system(const Net& x, const Net& at) {
   ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
   for (const Particle& body : particles_) {
     const Eigen::Index first = 3 * body.block.first_point, length = 3 * body.block.n_points;
-    const Net flux = surface::Geometry(*body.space).volume_gradient(body.block.rows(x));
-    // Any velocity with a flux makes the system regular; that away from the middle is one.
-    const Net own = body.block.rows(at), outward = (own.rowwise() - own.colwise().mean()) / body.radius;
-    const double weight = 2 * body.radius / 3 / flux.cwiseProduct(outward).sum();
-    all.block(first, first, length, length) += weight * flat(outward) * flat(flux).transpose();
+    all.block(first, first, length, length) += flat(outward_).segment(first, length) * flat(flux_).segment(first, length).transpose();
+  }
+  return all;
+}
+
+/// The same of all images of a lattice, times f.
+Net RigidTractions::images_of(const Net& f) {
+  Net u = Net::Zero(f.rows(), 3);
+  layer_.apply(f, own_points_, u);
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  for (const Particle& body : particles_)
+    body.block.rows(u) += body.block.rows(flux_).cwiseProduct(body.block.rows(f)).sum() * body.block.rows(outward_);
+  return u;
+}
+
+/// Of velocities at the sites, one a column, for the viscosity 1.
+Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
+  reports_.clear();
+  Eigen::MatrixXd alone = system();
+  if (!repeats_ && !tube_) return DenseFactors(std::move(alone)).solve(velocities);
+  const DenseFactors factors(alone);
+  const Eigen::Index n = velocities.rows();
+  const auto apply = [&](const double* in, double* out) {
+    const Net f = Eigen::Map<const Net>(in, n / 3, 3);
+    Eigen::Map<Net> u(out, n / 3, 3);
+    if (repeats_)
+      u = images_of(f);
+    else
+      u = as_net(alone * flat(f)) - viscosity_ * tube_->respond(f).velocity;
+  };
+  const auto precondition = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = factors.solve(Eigen::Map<const Eigen::VectorXd>(in, n));
+  };
+  const LinearSystem system{{{"traction", n}}, apply, precondition};
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
+  for (Eigen::Index k = 0; k < all.cols(); ++k) {
+    if (velocities.col(k).isZero(0)) continue;
+    Eigen::VectorXd f = all.col(k);
+    reports_.push_back(krylov_.solve(system, velocities.col(k), f, tolerance_));
+    all.col(k) = f;
   }
   return all;
 }
@@ -85,13 +139,19 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
   return motion + freed(free_, resistance, given - held - resistance * motion);
 }
 
-/// int N_A (v - v_inf - (1/mu) A f) dG, v that of these control values.
-Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow) {
+/// int N_A (v - v_inf - (1/mu) A f) dG, v that of these control values, v_inf at the places between the sites.
+Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
   between_layer_.place(x);
   Net u = Net::Zero(between_.values.rows(), 3);
-  between_layer_.apply(f, ranks_.share(static_cast<int>(u.rows())), u);
+  const std::vector<int> own = ranks_.share(static_cast<int>(u.rows()));
+  between_layer_.apply(f, own, u);
+  if (tube_) {
+    Net answer(u.rows(), 3);
+    tube_->velocity_at(between_.values * x, tube_->respond(f), own, answer);
+    for (const int i : own) u.row(i) -= viscosity_ * answer.row(i);
+  }
   ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
-  return between_.weights * (between_.values * v - flow.velocities(between_.values * x) - u / viscosity_);
+  return between_.weights * (between_.values * v - flow - u / viscosity_);
 }
 
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow) {
@@ -105,7 +165,8 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
     set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
   }
   velocities.col(m) = flat(flow.velocities(at));
-  const Eigen::MatrixXd of_all = viscosity_ * DenseFactors(system(x, at)).solve(velocities), z = of_all.leftCols(m);
+  make_regular(x, at);
+  const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
   Eigen::MatrixXd work(n, m);  // of a density with each unit motion
@@ -113,12 +174,17 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
   Eigen::VectorXd f = z * motion - of_all.col(m);
-  const Eigen::VectorXd v = fields * motion, lacking = z.transpose() * flat(left_over(x, as_net(f), as_net(v), flow));
+  const Net between = flow.velocities(between_.values * x);
+  const Eigen::VectorXd v = fields * motion, lacks = of_all.transpose() * flat(left_over(x, as_net(f), as_net(v), between)), lacking = lacks.head(m);
   const Eigen::VectorXd change = freed(free_, resistance, -lacking);
   motion += change;
   f += z * change;
   const Eigen::VectorXd integrals = work.transpose() * f + lacking;
   density_ = as_net(f);
+  if (tube_ && flow.duct()) {
+    const Net missed = between_.weights * (between - flow.amplitude() * (between_.values * tube_->interpolated_ambient()));
+    lacking_pressure_ = -tube_->copies() * (lacks[m] + flat(missed).dot(f)) / (flow.amplitude() * tube_->flow().flow_rate());
+  }
   const Net weighted = mass * density_;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);

@@ -9,9 +9,12 @@
 
 #include "base/types.hpp"
 #include "coupling/collocation.hpp"
+#include "coupling/krylov.hpp"
+#include "coupling/options.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/ranks.hpp"
 #include "coupling/rigid_motion.hpp"
+#include "coupling/tube.hpp"
 #include "membrane/mass.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
@@ -29,11 +32,19 @@ namespace tanktread::coupling {
 /// factored: a film takes no iterations. f is a sum of the densities z_k of unit motions and of that of the flow. What collocation lacks of a force
 /// or torque is, by the reciprocal theorem (2.11), int z_k.(v - (1/mu) A f) dG over all bodies: with it they err by the product of two errors of
 /// densities, where those of (2.23) err by one. Dense: for some thousands of control points.
+///
+/// On a lattice A is that of all images, in a tube less mu times what wall and pressure drop answer: what they add is smooth, so a few iterations
+/// around the factors of the bodies alone solve for each density. The pressure drop
+/// of a duct's flow lacks as a force does, and what is left of v_inf where it is interpolated (2.41).
 class RigidTractions {
  public:
-  /// `space`: of all bodies, that lie in it in their order. `rest`: their net. What is given by reference outlives this.
+  /// `space`: of all bodies, that lie in it in their order. `rest`: their net. `tube`: around them, or none. What is given by reference outlives this.
   RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
-                 const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks);
+                 const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
+                 Ranks& ranks);
+
+  /// On a lattice, from now on.
+  void repeat(const stokes::PeriodicCell& cell);
 
   struct Body {
     RigidMotion motion;
@@ -41,29 +52,41 @@ class RigidTractions {
     Mat3 moment = Mat3::Zero();                        ///< int f r dG
   };
 
-  /// Of bodies with net x and these centres that are driven so; kept as `bodies` and `density` until the next call. Collective.
+  /// Of bodies with net x, where the tube has them placed, and these centres that are driven so; kept until the next call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
 
   const std::vector<Body>& bodies() const { return bodies_; }
   const Net& density() const { return density_; }  ///< control values of f
+  double lacking_pressure() const { return lacking_pressure_; }         ///< what (2.7) lacks, of all copies
+  const std::vector<SolveReport>& reports() const { return reports_; }  ///< of the systems, if there were any
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
  private:
-  Eigen::MatrixXd system(const Net& x, const Net& at);
+  Eigen::MatrixXd system();
+  Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
+  void make_regular(const Net& x, const Net& at);
+  Net images_of(const Net& f);
   Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
-  Net left_over(const Net& x, const Net& f, const Net& fields, const stokes::AmbientFlow& flow);
+  Net left_over(const Net& x, const Net& f, const Net& v, const Net& flow);
 
   std::span<const Particle> particles_;
   double viscosity_;
+  Tube* tube_;
   Ranks& ranks_;
   std::vector<int> own_points_;
   BetweenSites between_;
   stokes::Layer layer_, between_layer_;  // at the collocation sites, and between them
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;
+  bool repeats_ = false;
+  Krylov krylov_;
+  double tolerance_;
   std::vector<int> free_;  // numbers, six a body, of motions that are not given
+  Net flux_, outward_;     // b of each body, and a velocity with a flux over that flux
   std::vector<Body> bodies_;
   Net density_;
+  double lacking_pressure_ = 0;
+  std::vector<SolveReport> reports_;
 };
 
 }  // namespace tanktread::coupling

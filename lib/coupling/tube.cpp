@@ -34,6 +34,7 @@ Tube::~Tube() = default;
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
+const Net& Tube::interpolated_ambient() const { return particle_->interpolated_ambient; }
 int Tube::copies() const { return 1 + static_cast<int>(particle_->shifts.size()); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
@@ -105,10 +106,10 @@ Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
 
 double Tube::viscosity() const { return particle_->parameters.viscosity; }
 
-Tube::Response Tube::respond(const Net& f, const Net& v) {
+Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
   const auto clock = phases_.time("wall");
   Response response;
-  response.pressure_drop = pressure_of(f);
+  response.pressure_drop = pressure_of(f) + lacking;
   Net on_wall = Net::Zero(wall_->sites().rows(), 3);
   if (v.size() > 0 && particle_->dual) {
     on_wall += velocity_on_wall(v);

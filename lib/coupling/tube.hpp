@@ -84,8 +84,8 @@ class Tube {
     Net load, moves;  ///< f and v of a train's copies, else empty
   };
 
-  /// Either net may be empty: then it is zero. v counts for lambda != 1 only.
-  Response respond(const Net& f, const Net& v = {});
+  /// Either net may be empty: then it is zero. v counts for lambda != 1 only. `lacking`: what is known to lack of the pressure drop.
+  Response respond(const Net& f, const Net& v = {}, double lacking = 0);
 
   /// Rows `rows` of the answer u of a response at the points with rows `x`, true places, on the particle or anywhere in the fluid.
   /// Not collective.
@@ -104,6 +104,7 @@ class Tube {
   Net copies_on_particle(const Net& f, const Net& v = {});  ///< what the other copies of a train do
   const Net& inlet_on_particle() const;       ///< c
   const Net& ambient() const;                 ///< v_inf at the collocation points, of the amplitude 1
+  const Net& interpolated_ambient() const;    ///< its control values there, which the pressure drop is told by
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
   Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors

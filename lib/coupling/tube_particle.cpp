@@ -85,12 +85,13 @@ const Net& Tube::Particle::flow_of_strength(const stokes::Cap& end) {
 ///   f_inf.v = G x1 n.v + mu [v_1,2 (n_2 v_1 + n_1 v_2) + v_1,3 (n_3 v_1 + n_1 v_3)]
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
+  interpolated_ambient = from_sites.solve(ambient);
   Net at_sites = ambient;
   if (dual && straight) {
     const std::vector<Mat3> gradient = flow.gradients(sites);
     for (std::size_t i = 0; i < gradient.size(); ++i) at_sites.row(static_cast<Eigen::Index>(i)).tail<2>() = gradient[i].row(0).tail<2>();
   }
-  const Net field = from_sites.solve(at_sites);
+  const Net field = dual && straight ? from_sites.solve(at_sites) : interpolated_ambient;
   const std::size_t n = static_cast<std::size_t>(single.n_nodes());
   std::vector<double> flow_at[3], weighted[3];
   single.values(field, flow_at);

@@ -238,5 +238,13 @@ TEST(RigidTractions, AWallResists) {
   EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
 }
 
+/// Drag of a simple cubic array at the volume fraction 0.2: multipoles with Ewald sums.
+TEST(RigidTractions, AnArrayResists) {
+  ByTractions one({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 6, Mat3::Zero());
+  one.parameters.cell = stokes::PeriodicCell(2.7564674676 * Mat3::Identity(), 3);
+  Capsule system = one.system();
+  EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-6);
+}
+
 }  // namespace
 }  // namespace tanktread::coupling
