@@ -84,7 +84,9 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (measure() == stokes::Measure::reference) mass_matrix_.release();
   nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   make_layers();
-  if (by_tractions()) tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.solvers, parameters.wall, tube_.get(), ranks);
+  if (by_tractions())
+    tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.solvers, parameters.wall, tube_.get(),
+                       ranks);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {

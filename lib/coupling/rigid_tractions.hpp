@@ -38,7 +38,7 @@ namespace tanktread::coupling {
 /// of a duct's flow lacks as a force does, and what is left of v_inf where it is interpolated (2.41).
 class RigidTractions {
  public:
-  /// `space`: of all bodies, that lie in it in their order. `rest`: their net. `tube`: around them, or none. What is given by reference outlives this.
+  /// `space`: of all bodies, that lie in it in their order. `rest`: their net. `tube`: around them, or none. What is referred to outlives this.
   RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
                  const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
                  Ranks& ranks);

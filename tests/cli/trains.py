@@ -48,7 +48,7 @@ def what_images_leave_out_decays():
 SPHERES = """
 Tanktread:
   Flow: {type: duct}
-  Tube: {section: circle, periodic length: 2.5, images: 2}
+  Tube: {section: circle, azimuthal elements: 16, axial elements: 14, periodic length: 2.5, images: 1}
   Particles: {sphere: {radius: 0.5, motion: free, Surface: {elements per side: 4}}}
   Solvers: {rigid bodies: first kind}
   Quadrature: {tolerance: 1.0e-5}
@@ -58,7 +58,7 @@ Tanktread:
 
 def spheres_by_their_tractions_are_those_of_multipoles():
     run(deck(SPHERES), "--output", "spheres", "--quiet")
-    for name, exact, within in (("sphere/velocity_x1", 1.67980599962, 3e-5), ("disturbed_pressure_drop", 0.521548970797, 1e-4)):
+    for name, exact, within in (("sphere/velocity_x1", 1.67980599962, 3e-5), ("disturbed_pressure_drop", 0.521548970797, 2e-4)):
         found = series("spheres", name)[0]
         check(abs(found / exact - 1) < within, f"{name}: {found}, not {exact}")
     run(deck(SPHERES), "--output", "on_two_ranks", "--quiet", ranks=2)
