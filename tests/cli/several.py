@@ -223,7 +223,7 @@ Tanktread:
         run(f"{name}.yaml", "--output", name, "--quiet")
     for name in ("velocity_x1", "angular_velocity_x2", "stresslet_13"):
         close(series("second", f"ball/{name}")[0], series("first", name)[0], 3e-4, name)  # the first kind collocates: 1e-4 of a stresslet at six elements a side
-    close(series("second", "disturbed_pressure_drop")[0], series("first", "disturbed_pressure_drop")[0], 1e-4, "pressure drop")
+    close(series("second", "disturbed_pressure_drop")[0], series("first", "disturbed_pressure_drop")[0], 2e-4, "pressure drop")  # the second's error
 
 
 def meshes_get_fine_beside_films():
