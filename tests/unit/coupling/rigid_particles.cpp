@@ -240,10 +240,11 @@ TEST(RigidTractions, AWallResists) {
 
 /// Drag of a simple cubic array at the volume fraction 0.2: multipoles with Ewald sums.
 TEST(RigidTractions, AnArrayResists) {
-  ByTractions one({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 6, Mat3::Zero());
+  ByTractions one({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.cell = stokes::PeriodicCell(2.7564674676 * Mat3::Identity(), 3);
+  one.parameters.quadrature.tolerance = 1e-6, one.parameters.solvers.tolerance = 1e-8;
   Capsule system = one.system();
-  EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-6);
+  EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-5);  // 3e-4 by double layers
 }
 
 }  // namespace
