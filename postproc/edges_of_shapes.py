@@ -6,6 +6,7 @@ import style
 from style import plt
 
 DROP = "inputs/drop_folds.yaml"
+SHEARED = "inputs/drop_shear_folds.yaml"
 CAPSULE = "inputs/capsule_branch.yaml"
 WRINKLED = "inputs/capsule_wrinkles.yaml"
 ELLIPSOID = {"Flow/type": "planar hyperbolic", "Particle/shape": "ellipsoid", "Particle/semi-axes": "[1.8785, 0.7653, 0.6957]",
@@ -16,12 +17,13 @@ INFLATED = {"Continuation/second parameter": "Membrane/pre-inflation", "Continua
 def bursting(study):
     """Where drops and capsules burst: the folds of their steady branches
 
-    Left: critical Ca = μEa/σ of drops against their viscosity in uniaxial extension (-x₁/2, -x₂/2, x₃)E and planar hyperbolic flow (x₁, 0, -x₃)E. Right: critical
-    Ca = μEa/G_s of neo-Hookean capsules in uniaxial extension against the pre-inflation of the radius. Each is a fold that `Continuation` locates and goes on
-    with; the table has D there, and how far the mesh before is off.
+    Left: critical Ca = μEa/σ of drops against their viscosity in uniaxial extension (-x₁/2, -x₂/2, x₃)E and planar hyperbolic flow (x₁, 0, -x₃)E,
+    and in simple shear at the rate E. Right: critical Ca = μEa/G_s of neo-Hookean capsules in uniaxial extension against the pre-inflation of the radius.
+    Each is a fold that `Continuation` locates and goes on with; the table has D there, and how far the mesh before is off.
 
     Survives: smaller Ca. Skalak membranes harden, and have no fold."""
-    curves = [("drop, uniaxial", DROP, {}, (5, 6)), ("drop, planar", DROP, ELLIPSOID, (5, 6)), ("neo-Hookean capsule, uniaxial", CAPSULE, INFLATED, (10, 12))]
+    curves = [("drop, uniaxial", DROP, {}, (5, 6)), ("drop, planar", DROP, ELLIPSOID, (5, 6)), ("drop, shear", SHEARED, {}, (7, 8)),
+              ("neo-Hookean capsule, uniaxial", CAPSULE, INFLATED, (10, 12))]
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
     rows = []
     for (name, deck, settings, meshes), color in zip(curves, style.RUNS):

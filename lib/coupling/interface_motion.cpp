@@ -59,6 +59,21 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 }
 
 namespace {
+/// The part of a field along the interface, row by row.
+Net along_interface(const Net& normals, Net field) {
+  for (Eigen::Index i = 0; i < field.rows(); ++i) field.row(i) -= normals.row(i).dot(field.row(i)) * normals.row(i);
+  return field;
+}
+
+/// The change of n n.field where the normals change by n'.
+Net turned(const Net& normals, const Net& change, Net field) {
+  for (Eigen::Index i = 0; i < field.rows(); ++i) {
+    const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
+    field.row(i) = across * change.row(i) + tilted * normals.row(i);
+  }
+  return field;
+}
+
 /// U (6.4) from b = dV/dx, for 3 V = b.x; of a velocity that is the same everywhere exactly that one.
 Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
@@ -141,8 +156,8 @@ Net InterfaceMotion::sliding(const Net& x, const Net& f) const {
   return w;
 }
 
-/// Control values of W + n n.(v - W) + (1 - n n).w, W at x with b = dV/dx there, w from the density f (empty: none).
-Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const {
+/// Control values of W + n n.(v - W) + (1 - n n).w, W at x with b = dV/dx there, w from the density f (empty: none); rest: v - W - w at the places.
+Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v, w = sliding(x, f);
   const Net places = sites_ * x;
   std::vector<RigidMotion> shared;
@@ -156,6 +171,7 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
       for (const int i : drops_[d].*rows) {
         const Vec3 whole = shared[d].velocity + shared[d].angular_velocity.cross(Vec3(at.row(i).transpose()) - middle);
         const Eigen::RowVector3d with = whole.transpose() + along.row(i);
+        rest.row(i) += velocities.row(i) - with;
         velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);
       }
     }
@@ -165,13 +181,14 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
     ranks_.replicate(w);
     u = values * v;
     const Net n = projection_->normals(x);
-    Net along = values * collocation_.solve(w);
-    for (Eigen::Index i = 0; i < along.rows(); ++i) along.row(i) -= n.row(i).dot(along.row(i)) * n.row(i);
+    const Net free = values * collocation_.solve(w), along = along_interface(n, free);
+    rest = -free;
     const Net slid = projection_->control_values(along);
     cross(values * x, n, Net::Zero(n.rows(), 3), &Drop::places, u);
     const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
     return projection_->control_values(u - leak.asDiagonal() * n) + slid;
   }
+  rest = Net::Zero(u.rows(), 3);
   cross(places, normals, w, &Drop::points, u);
   ranks_.replicate(u);
   return collocation_.solve(u);
@@ -198,25 +215,46 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
 }
 
 Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {
-  if (!relaxed_) return combined(x, b, normals_at(x), v, {});
+  latest_.x = x;
+  const Net normals = normals_at(x);
+  if (!relaxed_) return combined(x, b, normals, v, {}, latest_.rest);
   Net d(x.rows(), 3);
   mesh_.load(x, own_elements_, d);
   ranks_.replicate(d);
-  return combined(x, b, normals_at(x), v, mass_.solve(d));
+  latest_.density = sites_ * mass_.solve(d);
+  return combined(x, b, normals, v, collocation_.solve(along_interface(normals, latest_.density)), latest_.rest);
 }
 
 void InterfaceMotion::linearise(const Net& x, const Net& b) {
   x_ = x, flux_ = b;
   normals_ = normals_at(x);
+  known_ = latest_.x.rows() == x.rows() && latest_.x == x ? latest_ : Latest();
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
 Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
-  if (!relaxed_) return combined(x_, flux_, normals_, dv, {});
-  Net h(delta.rows(), 3);
-  tangent_.apply(delta, h);
-  ranks_.replicate(h);
-  return combined(x_, flux_, normals_, dv, mass_.solve(h));
+  const double most = delta.cwiseAbs().maxCoeff();
+  const bool turns = known_.x.size() > 0 && most > 0;
+  const double aside = 1e-6 * x_.cwiseAbs().maxCoeff() / most;
+  Net there, change, density, rest;
+  if (turns) there = x_ + aside * delta, change = (normals_at(there) - normals_) / aside;
+  if (relaxed_) {
+    Net h(delta.rows(), 3);
+    tangent_.apply(delta, h);
+    ranks_.replicate(h);
+    density = along_interface(normals_, sites_ * mass_.solve(h));
+    if (turns) density -= turned(normals_, change, known_.density);
+    density = collocation_.solve(density);
+  }
+  const Net kept = combined(x_, flux_, normals_, dv, density, rest);
+  if (!turns) return kept;
+  if (projection_) {
+    const Net n = projection_->normals(x_);
+    return kept + projection_->control_values(turned(n, (projection_->normals(there) - n) / aside, known_.rest));
+  }
+  Net u = turned(normals_, change, known_.rest);
+  ranks_.replicate(u);
+  return kept + collocation_.solve(u);
 }
 
 }  // namespace tanktread::coupling

@@ -28,8 +28,9 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 /// W (4.14) is the rigid motion of the drop, which the mesh shares: a drop that is carried along or turned as a whole keeps its mesh as one at rest
 /// does, and the mesh of a steady shape, around which the fluid treads, stays where it is. E1 is the energy of a
 /// neo-Hookean membrane of modulus 1 whose unstressed shape is the initial one, and A0, M0 belong to that shape: the mesh slides along the
-/// interface as an elastic bag would be dragged through the fluid, so elements keep their shape and the system is no stiffer than that of a
-/// capsule with Ca = mu rate R_C / (mu speed). A0 never changes, knows one drop alone, and turns with the mesh, by Q. Elsewhere u = v.
+/// interface as an elastic bag would be dragged through the fluid by what pulls along it, so elements keep their shape, the mesh rests where E1 is
+/// least on that interface, and the system is no stiffer than that of a capsule with Ca = mu rate R_C / (mu speed). A0 never changes, knows one
+/// drop alone, and turns with the mesh, by Q. Elsewhere u = v.
 class InterfaceMotion {
  public:
   /// `initial`: the net that the meshes relax towards; `mass`: the factored M0 of it. `projection`: of u; none: it is collocated.
@@ -47,7 +48,8 @@ class InterfaceMotion {
   /// Keeps x, b = dV/dx, normals and the tangent of E1 at x for `derivative`. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// du for a change delta of x that changes the fluid's velocity by dv; b and the normals stay. Collective.
+  /// du for a change delta of x that changes the fluid's velocity by dv; b and W of v stay, and the normals too unless the latest velocity is
+  /// that at x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
  private:
@@ -60,7 +62,7 @@ class InterfaceMotion {
     stokes::Rows<double> layer;   // their rows of A0, in full: what the mesh does must not depend on units or axes
   };
   Net sliding(const Net& x, const Net& f) const;
-  Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f) const;
+  Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
   Net normals_at(const Net& x) const;  ///< at the sites of all drops; zeros elsewhere. Collective
 
   const spline::Space& space_;
@@ -73,6 +75,10 @@ class InterfaceMotion {
   const Ranks& ranks_;
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
+  struct Latest {
+    Net x, rest, density;  // v - W - w at the places of u; M0^{-1} dE1/dx at the collocation sites
+  };
+  Latest latest_, known_;      // of the latest velocity; the same if it was linearised there
   Net x_, flux_, normals_;  // as linearised
 };
 

@@ -153,6 +153,39 @@ TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
   }
 }
 
+// Flow and shape are symmetric about the axes, so that no rigid motion is shared, and without tension the fluid's own change is known.
+TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.flow.gradient = Vec3(1, 0.5, -1.5).asDiagonal();
+  drop.parameters.volume.constraint = "none";
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+  Net x = drop.sphere, delta = x;
+  x.col(0) *= 1.5, x.col(2) *= 0.8;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) delta.row(i) *= std::pow(drop.sphere(i, 0), 2);
+  for (const char* motion : {"normal", "relaxed"}) {
+    drop.parameters.particles.front().interface_motion = motion;
+    Capsule capsule = drop.capsule();
+    capsule.freeze(x);
+    constexpr double aside = 1e-4;
+    const Net change = (capsule.velocity(x + aside * delta) - capsule.velocity(x - aside * delta)) / (2 * aside);
+    const Net v = capsule.velocity(x), known = capsule.derivative(x, v, delta);
+    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << motion;  // of the differences
+  }
+}
+
+// A bag that is larger or smaller in equal parts is under a tension that is the same everywhere: it pulls nowhere along the interface.
+TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
+  Drop drop;
+  drop.flow.type = "quiescent";
+  drop.parameters.volume.constraint = "none";
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+  drop.sphere.col(0) *= 2;
+  const Net drawn = drop.velocity("relaxed", drop.sphere * Vec3(1.25, 1, 1).asDiagonal());
+  for (const double size : {0.8, 1.25})
+    EXPECT_LT(drop.velocity("relaxed", size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // the error of this coarse mesh
+}
+
 TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
   Drop drop;
   drop.flow.type = "quiescent";
