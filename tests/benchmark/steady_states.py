@@ -24,7 +24,6 @@ SCENES = {
     "hyperbolic_skalak_ca0.45": "taylor_surface",
     "hyperbolic_skalak_ca0.8": "taylor_surface",
     "shear_neo_hookean": "taylor_surface",
-    "capsule_settling": "velocity_x3",
     "capsule_in_tube": "velocity_x1",
 }
 UNTIL = {"final time": 100.0, "steady tolerance": 1e-6}
