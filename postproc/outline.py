@@ -5,7 +5,8 @@
 
 The particle is darker or brighter than what is around it, and is all in the picture; of several the largest one is taken. On rays from its middle the
 edge is where a sharp step has the same area below it as the picture has on average over all rays, which blur does not move, and each ray's own is found by
-least squares with that average profile. A point is the mean of the rays around it, so the errors of points are independent.
+least squares with that average profile. A point is the mean of the rays around it, so the errors of points are independent. Blur of variance s moves an
+edge by s/2 times its curvature to the inner side of the bend, from where points are moved back.
 """
 
 import argparse
@@ -85,7 +86,19 @@ def edge(picture, mask, points):
         typical = values.mean(0)
         slope = numpy.gradient(typical, off)
         found = found - (values - typical) @ slope / (slope @ slope)
-    return averaged(angle, found, points, each, row, column)
+    variance = -numpy.trapz(off**2 * slope, off)
+    found -= (variance / (2 * found)).mean()  # what the area of the rings, that of a disc, made of the bend
+    places, error = averaged(angle, found, points, each, row, column)
+    return unbent(places, variance), error
+
+
+def unbent(points, variance):
+    """Points of a blurred outline, the angle around which grows from each to the next, where they were without the blur of this variance."""
+    before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
+    chord, lengths = before + after, [numpy.linalg.norm(one, axis=1) for one in (before, after, before + after)]
+    curvature = 2 * (before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) / numpy.prod(lengths, axis=0)  # of the circle through three points
+    outwards = chord[:, ::-1] * [1, -1] / lengths[2][:, None]
+    return points + (variance / 2 * curvature)[:, None] * outwards
 
 
 def averaged(angle, radius, points, each, row, column):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Whether postproc/fit.py gives moduli back, and its errors are right: profiles of a capsule in a tube at five speeds, made with one modulus and law.
 
-    postproc/synthetic_profiles.py --exact              # no noise, from a start a factor of 10 off, by runs of the program: a quarter of an hour of one core
+    postproc/synthetic_profiles.py --exact              # no noise, from a start a factor of 10 off, by runs of the program: minutes
     postproc/synthetic_profiles.py --samples 100        # noise of 0.5 % and 2 % of the radius, both laws fitted to each sample: minutes
     postproc/synthetic_profiles.py --pictures 20        # from pictures, 256 pixels across, blurred and noisy
     postproc/synthetic_profiles.py --write DIR          # outlines with noise, from a finer mesh, as inputs/studies has them
