@@ -87,11 +87,12 @@ Whole whole(const Scene& scene, const Body& body, const surface::Geometry& geome
   std::vector<double> energy = surface::block_sums(membrane.element_energies(x, elements));
   std::vector<double> area = surface::block_sums(tensions.area), compressed = surface::block_sums(tensions.compressed);
   std::vector<double> smallest = slots(ranks, elements.empty() ? 0 : tensions.smallest);
+  std::vector<double> change = slots(ranks, tensions.area_change);
   std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, x, slope, own));
   std::vector<double> shape = surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements);
-  ranks.add_all({moments, energy, area, compressed, smallest, fastest, shape});
+  ranks.add_all({moments, energy, area, compressed, smallest, change, fastest, shape});
   return {surface::Geometry::measures(x, moments),
-          {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area)},
+          {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area), std::ranges::max(change)},
           sum(energy),
           std::ranges::max(fastest),
           surface::shape_velocity(shape, scene.tube.present) / unit_speed(scene, body)};

@@ -63,6 +63,8 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.tension.smallest; }},
     {"compressed_area", "", "1", "share of the area with a negative principal tension", of_deforming,
      [](const Moment& m, int) { return m.tension.compressed_area; }},
+    {"local_area_change", "", "1", "largest change of area of a place of the membrane, over its area unstressed", of_deforming,
+     [](const Moment& m, int) { return m.tension.area_change; }, Needs::membrane},
     {"flow_power", "", "force length/time", "power that the flow puts in beyond what the outer fluid alone would take (6.11)", of_run,
      [](const Moment& m, int) { return m.flow_power; }, Needs::power},
     {"force_power", "", "force length/time", "power of weights, of forces on membranes and bodies, and of contacts", of_run,
@@ -233,6 +235,7 @@ bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::wall) return scene.wall.present;
   if (needs == Needs::tube_or_wall) return scene.tube.present || scene.wall.present;
   if (needs == Needs::viscous_membrane) return scene.viscous_membrane();
+  if (needs == Needs::membrane) return scene.membrane.law != "surface tension";
   if (needs == Needs::strain) return strains(scene);
   if (needs == Needs::cell || needs == Needs::cell_strain)
     return scene.domain.present && scene.domain.directions() == 3 && (needs == Needs::cell || strains(scene));

@@ -72,7 +72,7 @@ enum Owner : unsigned {
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
 enum class Needs {
   nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force,
-  exact_torque, exact_pressure, limiter, power
+  exact_torque, exact_pressure, limiter, power, membrane
 };
 
 /// A column of `/series` and its value.

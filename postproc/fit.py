@@ -42,6 +42,7 @@ TELLS = 0.02    # and for those that errors come from, to both sides
 FAILED = 1e6    # a residual where a run failed
 FAR = numpy.log(1000)  # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
 FAINT = 1e-4    # what does not change chi by more, times e, is left where it is
+SERIES = 8      # points of a datum along which the signs of residuals tell something
 GAP = 0.1       # of an outline's length, from its last point to the first, at which it does not close
 
 
@@ -294,7 +295,7 @@ class Fit:
             columns = numpy.nan_to_num(columns)
             return numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), of_places])
 
-        found = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-7, gtol=1e-15, max_nfev=40)
+        found = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-5, gtol=1e-15, max_nfev=40)
         self.x, self.residual = found.x, found.fun
         self.square = float(found.fun @ found.fun)
         self.errors()
@@ -344,7 +345,7 @@ class Fit:
             signs = self.residual[start:start + datum.count] > 0
             start += datum.count + (datum.places > 2 and not datum.free_scale)
             plus, minus, n = signs.sum(), (~signs).sum(), datum.count
-            if n < 8 or not plus or not minus:
+            if n < SERIES or not plus or not minus:
                 continue
             runs += 1 + (signs[1:] != signs[:-1]).sum()
             mean += 1 + 2 * plus * minus / n
@@ -433,6 +434,7 @@ def _errors_with(fit, candidate):
     index = numpy.array(one.index)[one.told]
     both[numpy.ix_(index, index)] += one.information()
     errors = numpy.sqrt(numpy.diag(numpy.linalg.pinv(both)))
+    errors = numpy.where((errors > 0) & (errors < 1), errors, numpy.inf)  # as in Fit.errors: others stay undetermined
     return {unknown.name: unknown.error_of(unknown.value(x), error) for unknown, x, error in zip(fit.unknowns, fit.x, errors)}
 
 
@@ -464,9 +466,10 @@ def told(fits, rows):
             size = numpy.sqrt(numpy.diag(fit.covariance))
             correlation = fit.covariance / numpy.outer(size, size)
             lines += [f"  correlation of {a} and {b}: {correlation[i, j]:.3f}" for (i, a), (j, b) in itertools.combinations(enumerate(shown), 2)]
-        z = fit.runs_test()
-        lines.append(f"  signs of the residuals along the data: {'change as by chance' if z > -2 else 'stay the same too long: the model is not the data’s'} "
-                     f"({z:.1f} standard deviations)")
+        if any(datum.count >= SERIES for datum in fit.data):
+            z = fit.runs_test()
+            lines.append(f"  signs of the residuals along the data: {'change as by chance' if z > -2 else 'stay the same too long: the model is not the data’s'} "
+                         f"({z:.1f} standard deviations)")
     if len(fits) > 1:
         gap = [fit.aic - fits[0].aic for fit in fits]
         total = sum(numpy.exp(-one / 2) for one in gap)
@@ -477,13 +480,13 @@ def told(fits, rows):
         if errors is None:
             lines.append(f"a further experiment, {name}: its run fails")
             continue
-        said = [f"± {error:.2g} of {key}" for key, error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
+        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined" for key, error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
         lines.append(f"a further experiment, {name}: " + ", ".join(said))
     return "\n".join(lines)
 
 
 def draw(fits, path):
-    """Outlines and curves with the fit, residuals, and the ellipses of pairs of unknowns."""
+    """Outlines, curves and values with the fit, residuals, and the ellipses of pairs of unknowns."""
     import style
     from style import plt
 
@@ -501,10 +504,16 @@ def draw(fits, path):
         elif numpy.size(datum.times) > 1:
             data.plot(datum.times, prediction, color=color, linewidth=1)
             data.plot(datum.times, datum.values, ".", color=color, ms=4, label=datum.name)
+        else:
+            data.errorbar(datum.name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=4)
+            data.plot(datum.name, prediction[0], "_", color=color, ms=12)
         start += datum.places
         residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".", ms=2.5, color=color)
         row += datum.count + (datum.places > 2 and not getattr(datum, "free_scale", True))
-    data.legend(fontsize=7)
+    if data.get_legend_handles_labels()[0]:
+        data.legend(fontsize=7)
+    if not all(isinstance(datum, OutlineData) for datum in best.data):
+        data.tick_params(axis="x", rotation=60, labelsize=7)
     data.set_title(f"data and {best.law}")
     residual.set_title("residuals over their errors")
     names = [one for one, yes in zip(best.unknowns, best.told) if yes]

@@ -170,16 +170,16 @@ Net Membrane::load(const Net& x) const {
 TensionSummary Membrane::tension_summary(const Net& x) const {
   const ElementTensions all = element_tensions(x, all_);
   const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
-  return {all.smallest, sum(all.compressed) / sum(all.area)};
+  return {all.smallest, sum(all.compressed) / sum(all.area), all.area_change};
 }
 
 ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements) const {
   const std::vector<double> none(space_->elements.size(), 0.);
-  ElementTensions result{std::numeric_limits<double>::infinity(), none, none};
+  ElementTensions result{std::numeric_limits<double>::infinity(), 0, none, none};
   const int lanes = pack_lanes();
   const auto mine = part(elements);
   mine->each_batch([&](const Part::Points& at) {
-    if (!mine->sampled[at.group.material]) return;
+    const bool sampled = mine->sampled[at.group.material];
     Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss];
     const double unit = modulus(at.whole);
     tangents(at.group, at.batch, x, a);
@@ -187,6 +187,8 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
     for (int q = 0; q < at.n; ++q)
       for (int l = 0; l < at.batch.used; ++l) {
         const double here = numbers(tension)[lanes * q + l] / unit, area = numbers(share)[lanes * q + l];
+        result.area_change = std::max(result.area_change, std::abs(area / numbers(&at.reference[q].area)[l] - 1));
+        if (!sampled) continue;
         result.smallest = std::min(result.smallest, here);
         result.area[at.batch.elements[l]] += area;
         if (here < compressed_below) result.compressed[at.batch.elements[l]] += area;

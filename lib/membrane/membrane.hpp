@@ -14,16 +14,17 @@ namespace tanktread::membrane {
 
 struct Part;
 
-/// Smallest principal tension over the modulus, and the share of the current area where it is negative (`smallest_tension`,
-/// `compressed_area` of the series); at the Gauss points. A tension counts as negative below -1e-9 of the modulus.
+/// Smallest principal tension over the modulus, the share of the current area where it is negative, and the largest |J - 1|, J the current over the
+/// unstressed area of a place (`smallest_tension`, `compressed_area`, `local_area_change` of the series); at the Gauss points. A tension counts as
+/// negative below -1e-9 of the modulus.
 struct TensionSummary {
-  double smallest = 0, compressed_area = 0;
+  double smallest = 0, compressed_area = 0, area_change = 0;
 };
 
-/// What it is made of: the smallest tension on some elements, over the modulus, and of each element of the space the area and that with a negative
-/// tension, zero for elements that were not asked for.
+/// What it is made of: the smallest tension and the largest |J - 1| on some elements, and of each element of the space the area and that with a
+/// negative tension, zero for elements that were not asked for.
 struct ElementTensions {
-  double smallest = 0;
+  double smallest = 0, area_change = 0;
   std::vector<double> area, compressed;
 };
 

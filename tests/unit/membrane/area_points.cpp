@@ -32,6 +32,7 @@ TEST(AreaPoints, AsManyAsForTheRestAreTheWholeLaw) {
     EXPECT_NEAR(parts.energy(x) / whole.energy(x), 1, 1e-13);
     EXPECT_LT((parts.load(x) - whole.load(x)).norm(), 1e-12 * whole.load(x).norm());
     EXPECT_NEAR(parts.tension_summary(x).smallest, whole.tension_summary(x).smallest, 1e-12);
+    EXPECT_GE(with_points(s, law, 1).tension_summary(x).area_change, whole.tension_summary(x).area_change);  // those between its points count too
   }
 }
 

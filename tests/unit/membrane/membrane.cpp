@@ -153,6 +153,7 @@ TEST(Membrane, InflationStretchesAlikeEverywhere) {
       const TensionSummary summary = membrane.tension_summary(stretch * s.net);
       EXPECT_NEAR(summary.smallest / (tension / modulus(law)), 1, 1e-12);  // round-off
       EXPECT_EQ(summary.compressed_area, tension < 0 ? 1 : 0);
+      EXPECT_NEAR(summary.area_change, std::abs(stretch * stretch - 1), 1e-12);
     }
 }
 
