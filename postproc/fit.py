@@ -9,13 +9,18 @@ inputs/studies/experiment.yaml is an example.
     unknown: {Membrane/shear modulus: {start: 1}}        # from, to: bounds; known, error: a value known beforehand; spacing: linear for what may be negative
     laws: {skalak: {Membrane/law: Skalak}}               # each is fitted, and compared with the others
     experiments: {slow: {set: {…}, unknown: {…}, data: [datum, …]}}    # each is a run; what is unknown here is its own
-    datum: {outline: points.csv, error: 0.5, scale: 0.01}   # the edge as seen along x2, columns x1, x3 in the picture's unit, its error in that unit;
+           # values may have units where the deck has the list Units; start, from, to, known and what is found are numbers in the deck's units
+    datum: {outline: points.csv, error: 0.5, scale: 0.01}   # the edge as seen along x2, columns x1, x3 in the picture's unit, its error in that unit
+           # (or a third column, as outline.py writes it); the flow goes to the right;
            # plane: [x1, x3]; scale: the deck's length a unit; scale error: its relative error, or free; at: time of the snapshot (default: the last)
     datum: {series: velocity_x1, value: 1.2, error: 0.01}   # a series' last value, or at: time
     datum: {series: taylor_inertia, curve: relaxation.csv}  # columns time, value and, if it is not given by `error`, error
     next: {Flow/mean velocity: [1, 2, 4]}                # settings of a further experiment with data like the first one's: which would tell most
 
-The place of an outline in its picture is free. Derivatives are differences of runs, made side by side. Runs are kept and found again.
+The place of an outline in its picture is free. Derivatives are differences of runs, made side by side: one a step for each unknown key and experiment,
+none for places and scales. Runs are kept and found again where all their keys are the same, so that a `start` is best left as it was. Errors are
+those of the data carried on, of nothing else: what is known with an error belongs under `unknown`, Flow/viscosity: {known: 0.97, error: 0.01} say. Where
+chi square is too large for them, errors that the residuals tell are given too; a mesh that is too coarse for the data is the first suspect.
 """
 
 import argparse
@@ -41,6 +46,7 @@ STEP = 0.01     # of a logarithm, for derivatives on the way
 TELLS = 0.02    # and for those that errors come from, to both sides
 FAILED = 1e6    # a residual where a run failed
 FAR = numpy.log(1000)  # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
+MISSED = 1e-3   # probability of a larger chi square, below which the errors of the data do not hold
 FAINT = 1e-4    # what does not change chi by more, times e, is left where it is
 SERIES = 8      # points of a datum along which the signs of residuals tell something
 GAP = 0.1       # of an outline's length, from its last point to the first, at which it does not close
@@ -95,7 +101,10 @@ class OutlineData:
         plane = given.get("plane", ["x1", "x3"])
         expect(len(set(plane)) == 2 and set(plane) <= {"x1", "x2", "x3"}, f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
-        self.points = numbers_of(folder / given["outline"], 2)[:, numpy.argsort(plane)]
+        table = numbers_of(folder / given["outline"], 2)
+        self.points = table[:, :2][:, numpy.argsort(plane)]
+        if self.error is None and table.shape[1] > 2:
+            self.error = float(numpy.sqrt((table[:, 2] ** 2).mean()))
         steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length from the first (`open: true` takes it as it is)")
@@ -334,6 +343,11 @@ class Fit:
         return found
 
     @property
+    def missed(self):
+        """Whether the data's errors do not explain the residuals."""
+        return self.stated and self.probability < MISSED
+
+    @property
     def aic(self):
         parameters = len(self.x)
         return self.square + 2 * parameters if self.stated else self.count * numpy.log(self.square / self.count) + 2 * (parameters + 1)
@@ -456,9 +470,13 @@ def told(fits, rows):
         lines += [f"{fit.law}: {said}, AIC {fit.aic:.2f}, {fit.runs.count} runs"]
         if not fit.stated:
             lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing about the law"]
+        larger = numpy.sqrt(fit.square / fit.freedom) if fit.missed else 1
+        if fit.missed:
+            lines.append(f"  the residuals are {larger:.3g} times what the errors of the data say: a finer mesh, a free scale or another law first")
         for name, (value, error) in fit.values.items():
             if numpy.isfinite(error):
-                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g} ({error / abs(value):.2%})")
+                also = f"; by the residuals ± {larger * error:.2g}" if fit.missed else ""
+                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g} ({error / abs(value):.2%}{also})")
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from {value:.3g})")
         shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
@@ -474,7 +492,8 @@ def told(fits, rows):
         gap = [fit.aic - fits[0].aic for fit in fits]
         total = sum(numpy.exp(-one / 2) for one in gap)
         lines.append("laws, best first: " + ", ".join(f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit, one in zip(fits, gap)))
-        lines.append("the data " + (f"tell {fits[0].law} from the others" if gap[1] > 10 else "do not tell these laws apart (a difference in AIC below 10)"))
+        said = f"tell {fits[0].law} from the others" if gap[1] > 10 else "do not tell these laws apart (a difference in AIC below 10)"
+        lines.append(f"the data {said}{', but none of them describes the data' if fits[0].missed else ''}")
     for settings, errors, rises in rows:
         name = ", ".join(f"{key} {value}" for key, value in settings.items())
         if errors is None:

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""The edge of a particle in a picture (PNG), to a part of a pixel: points for postproc/fit.py, in pixels, x1 to the right and x3 up.
+"""The edge of a particle in a picture (PNG), to a part of a pixel: points for postproc/fit.py, in pixels, x1 to the right and x3 up from the upper left
+corner (so below 0; a fit does not mind), and the standard error of a point.
 
-    postproc/outline.py picture.png -o profile.csv --overlay check.png      # and the standard error of a point
+    postproc/outline.py picture.png -o profile.csv --overlay check.png
 
 The particle is darker or brighter than what is around it, and is all in the picture; of several the largest one is taken. On rays from its middle the
 edge is where a sharp step has the same area below it as the picture has on average over all rays, which blur does not move, and each ray's own is found by
@@ -125,8 +126,8 @@ def main():
     picture = grey(arguments.picture)
     points, error = edge(picture, body(picture, arguments.picture), arguments.points)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
-    up = points * [1, -1]
-    numpy.savetxt(arguments.output, up, delimiter=",", header="x1,x3", comments="", fmt="%.4f")
+    table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
+    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="", fmt="%.4f")
     print(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
         import style
