@@ -130,8 +130,9 @@ def an_edge_is_found_to_a_twentieth_of_a_pixel():
     script = SOURCE / "postproc/outline.py"
     said = subprocess.run([script, "picture.png", "-o", "edge.csv", "--overlay", "check.png"], capture_output=True, text=True)
     check(said.returncode == 0 and "60 points" in said.stdout, said)
-    found = numpy.loadtxt("edge.csv", delimiter=",", skiprows=1) * [1, -1]
-    check(abs(edge.distances(found)).max() < 0.2, "the points in the file")
+    datum = fit.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
+    check(abs(edge.distances(datum.points * [1, -1])).max() < 0.2, "the points in the file")
+    close(datum.error, error, 0.1 * error, "the error in the file")  # the file's picture has 256 levels
     said = subprocess.run([script, "cut.png"], capture_output=True, text=True)
     check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 
