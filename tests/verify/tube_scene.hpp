@@ -73,6 +73,7 @@ inline Duct circular_duct(int around = 24, int along = 25, double length = 2 * s
 
 /// The rigid sphere in the duct.
 struct RigidSphere {
+  Sphere sphere;
   coupling::Ranks ranks;
   Phases phases;
   coupling::SolverOptions solvers;
@@ -82,7 +83,7 @@ struct RigidSphere {
   std::unique_ptr<coupling::FreeBodyInTube> body;
   double radius;
 
-  RigidSphere(const Sphere& sphere, const Duct& duct, double tolerance = 1e-7) : flow(duct.ambient()), radius(sphere.radius) {
+  RigidSphere(Sphere given, const Duct& duct, double tolerance = 1e-7) : sphere(std::move(given)), flow(duct.ambient()), radius(sphere.radius) {
     coupling::TubeParameters parameters;
     parameters.quadrature.tolerance = tolerance;
     solvers.tolerance = 1e-9;

@@ -70,11 +70,11 @@ TEST(Scenes, HaveViscosityRatiosThatRoundingLeavesSolvable) {
   EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e9}\n  Solvers: {tolerance: 1e-5}\n"), "");
 }
 
-TEST(Scenes, CountTheFactorsOfTheWallBesideItsRows) {
+TEST(Scenes, CountTheFactorsOfTheWallOnEveryRank) {
   const std::string tube = "  Flow: {type: duct}\n  Tube: {azimuthal elements: 100, axial elements: ";
-  const bool one_rank = coupling::Ranks().size() == 1;  // each has the factors
-  EXPECT_EQ(refusal(tube + "200}\n").empty(), one_rank);                        // 59 GB of both
-  EXPECT_NE(refusal(tube + "240}\n").find("more than 64"), std::string::npos);  // 85 GB, half of it rows
+  const bool one_rank = coupling::Ranks().size() == 1;
+  EXPECT_EQ(refusal(tube + "240}\n").empty(), one_rank);                        // 43 GB a rank
+  EXPECT_NE(refusal(tube + "300}\n").find("more than 64"), std::string::npos);  // 66 GB
 }
 
 TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
@@ -201,7 +201,7 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   EXPECT_EQ(
       refusal("  Particle: {motion: free}\n  Surface: {elements per side: 80}\n"),
       "Surface/elements per side must be at most 70, but is 80: the layers of 38402 control points take 106 GB assembled, more than 64.");
-  const double of_wall = 72.0 * (1 + coupling::Ranks().size());  // rows once, factors on every rank
+  const double of_wall = 72.0 * coupling::Ranks().size();  // factors on every rank
   EXPECT_EQ(refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
             formatted("Tube/azimuthal elements and Tube/axial elements must give at most %.0f control points: the layers of 40600 control points "
                       "take %.0f GB assembled, more than 64.",
