@@ -190,10 +190,11 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
 /// What one of several particles is; alike ones share a line.
 std::string particle_line(const Scene& one, int n_points, bool tree) {
   if (!one.particle.rigid()) return membrane_line(one) + "; " + viscosity_line(one, n_points, tree) + "; mesh " + mesh_line(one);
-  const bool first_kind = one.solvers.rigid_bodies == "first kind";
+  const bool first_kind = one.solvers.rigid_bodies == "first kind", around = one.tube.present || one.domain.present;
+  const char* by_traction = around ? "its traction, by GMRES around factors of the bodies alone, in a system" : "its traction, in a factored system";
   return formatted("rigid, %s: no membrane, no mesh that moves; %s of %d unknowns a velocity %s",
                    one.particle.motion == Motion::free ? "free" : "moving as told",
-                   first_kind ? "its traction, in a factored system" : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)");
+                   first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)");
 }
 
 std::string far_sum_line(const Scene& scene, bool tree) {

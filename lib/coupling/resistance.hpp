@@ -35,7 +35,7 @@ namespace tanktread::coupling {
 class Resistance {
  public:
   /// `surface`: control net. The rows of A are assembled here, in double precision, each rank its own, and serve for any place and orientation.
-  /// `tube`: around the body, or nothing; it must outlive this. `wall`: that the body is in front of, or nothing.
+  /// `tube`: around the body, or nothing; it and `space` must outlive this. `wall`: that the body is in front of, or nothing.
   Resistance(const spline::Space& space, const Net& surface, double viscosity, const quadrature::Options& quadrature,
              const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube = nullptr,
              const std::optional<stokes::PlaneWall>& wall = {});
