@@ -57,7 +57,7 @@ def picture(run, c, n, across):
     figure, axes = plt.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]], figsize=(10.5, 9.5), height_ratios=[1.1, 1, 1])
     cut_open(axes["cut"], run, c, n, across - 1)
     along_the_way(axes, run, c)
-    wall(axes["wall"], c)
+    wall(axes["wall"], run, c)
     return figure
 
 
@@ -83,9 +83,9 @@ def cut_open(axis, run, c, n, across):
     axis.set_xlim(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0))
     if bent:
         axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
-    axis.set_xlabel("x₁")
-    axis.set_ylabel("x₃" if across == 1 else "x₂")
-    axis.set_title(f"{run.name}: cut open at x{across + 1} = centroid; times {'inside' if bent else 'below'}")
+    axis.set_xlabel("x₁" + run.in_units("length"))
+    axis.set_ylabel(("x₃" if across == 1 else "x₂") + run.in_units("length"))
+    axis.set_title(f"{run.name}: cut open at x{across + 1} = centroid; times {'inside' if bent else 'below'}{run.in_units('time')}")
 
 
 def along_the_way(axes, run, c):
@@ -94,25 +94,26 @@ def along_the_way(axes, run, c):
     for k, name in enumerate(("x₁", "x₂", "x₃"), 1):
         axes["extents"].plot(way, s[f"length_x{k}"], color=style.RUNS[k - 1], label=f"along {name}", linestyle="--" if k == 3 else "-")
     axes["extents"].legend()
-    axes["extents"].set_title("extents of the particle")
+    axes["extents"].set_title("extents of the particle" + run.in_units("length"))
     axes["velocity"].plot(way, speed, color=style.RUNS[0], label="of the centroid")
     axes["velocity"].plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--", label="on the centre line, empty channel")
     axes["velocity"].set_xlim(way.min(), way.max())
     axes["velocity"].legend()
-    axes["velocity"].set_title("velocity")
+    axes["velocity"].set_title("velocity" + run.in_units("length/time"))
     axes["pressure"].plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
     if "pressure_drop_by_flux" in s:
         axes["pressure"].plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
     axes["pressure"].legend()
-    axes["pressure"].set_title(f"pressure drop that the particle adds (empty channel: {c['pressure_drop']:.5g})")
+    added = f"pressure drop that the particle adds{run.in_units('force/length^2')}"
+    axes["pressure"].set_title(f"{added} (empty channel: {c['pressure_drop']:.5g})")
     for name in ("extents", "velocity", "pressure"):
-        axes[name].set_xlabel("way of the centroid along the centre line")
+        axes[name].set_xlabel("way of the centroid along the centre line" + run.in_units("length"))
 
 
-def wall(axis, c):
+def wall(axis, run, c):
     axis.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
-    axis.set_xlabel("way along the centre line")
-    axis.set_title("shear stress on the wall of the empty channel")
+    axis.set_xlabel("way along the centre line" + run.in_units("length"))
+    axis.set_title("shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
 
 
 if __name__ == "__main__":

@@ -27,6 +27,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -66,6 +67,12 @@ class Run:
     @property
     def name(self):
         return self.directory.resolve().name
+
+    def in_units(self, dimension):
+        """", µm/s" for length/time where the deck has the list Units, for the labels of figures; otherwise nothing."""
+        units = self.deck.get("Units") or {}
+        named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
+        return ", " + re.sub("length|time|force", lambda word: named[word[0]], dimension).replace("^2", "²") if named else ""
 
     @property
     def particles(self):
