@@ -148,8 +148,12 @@ void Ranks::add(std::span<Net* const> nets) const {
 void Ranks::add(std::span<double> numbers) const {
   if (size() == 1) return;
   const auto clock = impl_->time();
-  const std::vector<double> mine(numbers.begin(), numbers.end());
-  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), numbers.data());
+  constexpr std::size_t at_a_time = 1 << 24;  // MPI counts by int, and what is sent is a copy: a matrix may be larger than either allows
+  for (std::size_t first = 0; first < numbers.size(); first += at_a_time) {
+    const std::span<double> part = numbers.subspan(first, std::min(at_a_time, numbers.size() - first));
+    const std::vector<double> mine(part.begin(), part.end());
+    Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), part.data());
+  }
 }
 
 void Ranks::add_all(std::initializer_list<std::span<double>> several) const {
