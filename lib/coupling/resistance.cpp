@@ -166,6 +166,10 @@ Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>
   const Net rest = weights * (u(at_sites * surface_) - v / viscosity_);
   Eigen::VectorXd work(static_cast<Eigen::Index>(z.size()));
   for (std::size_t k = 0; k < z.size(); ++k) work[static_cast<Eigen::Index>(k)] = z[k].cwiseProduct(rest).sum();
+  if (!tube_ || !tube_->fixed()) return work;
+  const Tube::Leak leak = tube_->leak(-f * turn_.transpose());
+  for (std::size_t k = 0; k < z.size(); ++k)
+    work[static_cast<Eigen::Index>(k)] += tube_->work(leak, tube_->respond(-z[k] * turn_.transpose()));
   return work;
 }
 

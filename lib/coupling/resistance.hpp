@@ -70,6 +70,7 @@ class Resistance {
   /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
   /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
   /// translation (a rotation) of unit size it is what the force (the torque) of f lacks. The remaining error is the fitted surface's own.
+  /// In a channel what is left on the wall counts as well (2.42).
   /// `u`: the velocity itself at points of `surface`, a row each, not its interpolation.
   Eigen::VectorXd residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z);
 

@@ -118,6 +118,17 @@ class Tube {
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
+  /// What a load f leaves over where nothing should move or flow: int N_A u dG of the velocity on the wall between its collocation points, and the
+  /// flow rate through the inlet.
+  struct Leak {
+    Net velocity;
+    double flow = 0;
+  };
+  Leak leak(const Net& f);
+
+  /// What it takes from the work of another load that wall and pressure drop answer so (2.42).
+  double work(const Leak& leak, const Response& of) const;
+
   /// Flow rate where the particle adds this pressure drop: Q, or what is left of it.
   double flow_rate(double pressure_drop) const { return flow_->flow_rate() * (1 - slowed(pressure_drop)); }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "coupling/collocation.hpp"
 #include "coupling/tube_particle.hpp"
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
@@ -9,6 +10,8 @@
 namespace tanktread::coupling {
 
 namespace {
+
+constexpr double sharpness = 1e-2, sharpest = 1e-8;  // of integrals over the wall beside pressures that are large: over the tolerance, and at most
 
 /// Points of a section between its centroid and its outline, as far as they are inside; `place` takes them into space.
 template <class Place>
@@ -85,6 +88,29 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   checks.pressure_by_flux = (dp - flow / flow_of_pressure_) / copies();
   checks.pressure_by_force = (dp - force / force_of_pressure) / copies();
   return checks;
+}
+
+Tube::Leak Tube::leak(const Net& f) {
+  const surface::TubeWall& wall = wall_->surface();
+  const auto [places, values, weights] = between_sites(wall.space, wall.net);
+  const Net at = values * wall.net;
+  const Response response = respond(f);
+  quadrature::Options options = particle_->parameters.quadrature;
+  options.tolerance = std::clamp(sharpness * options.tolerance, 1e-12, sharpest);
+  stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
+  layer.place(wall.net);
+  const std::vector<int> own = wall_->ranks().share(static_cast<int>(at.rows()));
+  Net of_wall(at.rows(), 3), of_load = of_wall, u = Net::Zero(at.rows(), 3);
+  layer.apply(response.wall_traction, own, of_wall);
+  particle_->single.apply(f, at, own, of_load);
+  for (const int i : own)
+    u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
+  wall_->ranks().add({u.data(), static_cast<std::size_t>(u.size())});
+  return {weights * u, checks(f, {}, response).flux * flow_->flow_rate()};
+}
+
+double Tube::work(const Leak& leak, const Response& of) const {
+  return dot(of.wall_traction, leak.velocity) - of.pressure_drop * leak.flow;
 }
 
 double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {
