@@ -1,6 +1,7 @@
 #include "stokes/duct_end.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "quadrature/gauss.hpp"
@@ -168,7 +169,9 @@ Net DuctEnd::velocities(const Net& x) const {
 
 DuctEnd::Points DuctEnd::points() const {
   Nodes nodes;
-  for (const Cell& cell : cells_) add(cell, close_order, nodes);
+  for (const Cell& cell : cells_)  // denser towards the wall, where what collocation leaves decays over an element
+    for (const auto& [inner, outer] : {std::pair(0., 0.75), std::pair(0.75, 1.)})
+      add({cell.side, {cell.t[0], cell.t[1]}, {inner, outer}}, close_order, nodes);
   const auto n = static_cast<Eigen::Index>(nodes.area.size());
   Points points{Net(n, 3), Eigen::Map<const Eigen::VectorXd>(nodes.area.data(), n)};
   for (Eigen::Index k = 0; k < n; ++k) {
