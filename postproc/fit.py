@@ -7,7 +7,7 @@
 An experiment is a YAML file: `deck` (one, or several laid over each other), `set` (keys of all runs), `unknown`, `laws` and `experiments`;
 inputs/studies/experiment.yaml is an example.
     unknown: {Membrane/shear modulus: {start: 1}}        # from, to: bounds; known, error: a value known beforehand; spacing: linear for what may be negative
-    laws: {skalak: {Membrane/law: Skalak}}               # each is fitted, and compared with the others
+    laws: {skalak: {Membrane/law: Skalak, unknown: {…}}} # each is fitted, and compared with the others; what is unknown here is its own, or starts elsewhere
     experiments: {slow: {set: {…}, unknown: {…}, data: [datum, …]}}    # each is a run; what is unknown here is its own
            # values may have units where the deck has the list Units; start, from, to, known and what is found are numbers in the deck's units
     datum: {outline: points.csv, error: 0.5, scale: 0.01}   # the edge as seen along x2, columns x1, x3 in the picture's unit, its error in that unit
@@ -15,6 +15,7 @@ inputs/studies/experiment.yaml is an example.
            # plane: [x1, x3]; scale: the deck's length a unit; scale error: its relative error, or free; at: time of the snapshot (default: the last)
     datum: {series: velocity_x1, value: 1.2, error: 0.01}   # a series' last value, or at: time
     datum: {series: taylor_inertia, curve: relaxation.csv}  # columns time, value and, if it is not given by `error`, error
+           # over: length_x2 divides by another series; origin: free where the curve's time does not start with the run's
     next: {Flow/mean velocity: [1, 2, 4]}                # settings of a further experiment with data like the first one's: which would tell most
 
 The place of an outline in its picture is free. Derivatives are differences of runs, made side by side: one a step for each unknown key and experiment,
@@ -39,7 +40,7 @@ import yaml
 import literature
 import silhouette
 import tanktread
-from sweep import Mistake, answer, decks_of, expect, yaml_of
+from sweep import Mistake, answer, decks_of, expect, tell, yaml_of
 
 KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
 STEP = 0.01     # of a logarithm, for derivatives on the way
@@ -47,6 +48,7 @@ TELLS = 0.02    # and for those that errors come from, to both sides
 FAILED = 1e6    # a residual where a run failed
 FAR = numpy.log(1000)  # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
 MISSED = 1e-3   # probability of a larger chi square, below which the errors of the data do not hold
+SETTLED = 1e-2  # of chi square a degree of freedom, which a last step takes off: it is a tenth of the standard errors long
 FAINT = 1e-4    # what does not change chi by more, times e, is left where it is
 SERIES = 8      # points of a datum along which the signs of residuals tell something
 GAP = 0.1       # of an outline's length, from its last point to the first, at which it does not close
@@ -61,6 +63,10 @@ def numbers_of(path, least):
     values = values[1:] if values.ndim == 2 and not numpy.isfinite(values[0]).any() else values
     expect(values.ndim == 2 and values.shape[1] >= least and numpy.isfinite(values[:, :least]).all(), f"{path} must have {least} columns of numbers")
     return values
+
+
+class Settled(Exception):
+    """A fit has come to numbers, which go with this, that a further step would not change by what the data tell."""
 
 
 class Unknown:
@@ -132,14 +138,16 @@ class OutlineData:
 
 
 class SeriesData:
-    """Values of a series, at times."""
+    """Values of a series, or of its ratio to another one, at times. Unknown with it: when a curve begins, where its origin is free."""
 
-    places = 0
+    free_scale = True
 
     def __init__(self, given, name, folder):
-        known = {"series", "value", "curve", "error", "at"}
-        expect(set(given) <= known and ("value" in given) != ("curve" in given), f"{name}: a series has value or curve, and error, at")
-        self.name, self.series, self.error = name, given["series"], given.get("error")
+        known = {"series", "over", "value", "curve", "error", "at", "origin"}
+        expect(set(given) <= known and ("value" in given) != ("curve" in given), f"{name}: a series has value or curve, and error, at, over, origin")
+        self.name, self.series, self.error = name, [given["series"], *([given["over"]] if "over" in given else [])], given.get("error")
+        self.places = int("origin" in given)
+        expect(not self.places or given["origin"] == "free" and "curve" in given, f"{name}: `origin: free` is of a curve")
         if "curve" in given:
             table = numbers_of(folder / given["curve"], 2)
             self.times, self.values = table[:, 0], table[:, 1]
@@ -149,19 +157,32 @@ class SeriesData:
         self.count = len(self.values)
 
     def start(self, prediction):
-        return numpy.array([])
+        """The time of a run at which the curve begins: the last one at which the run is as near as it comes to the first value."""
+        if not self.places:
+            return numpy.array([])
+        times, values = prediction
+        passed = numpy.flatnonzero((values[1:] - self.values[0]) * (values[:-1] - self.values[0]) <= 0)
+        nearest = passed[-1] if len(passed) else numpy.argmin(abs(values - self.values[0]))
+        return times[[nearest]] - self.times[0]
 
     def prediction(self, run):
-        expect(self.series in run.series, f"{self.name}: there is no series {self.series}; there are: {', '.join(sorted(run.series))}")
-        values, times = run.series[self.series], run.series["time"]
+        for name in self.series:
+            expect(name in run.series, f"{self.name}: there is no series {name}; there are: {', '.join(sorted(run.series))}")
+        values, times = run.series[self.series[0]], run.series["time"]
+        last = 0 if self.times is None or self.places else numpy.max(self.times)
+        expect(last <= times[-1] * (1 + 1e-9), f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
+        return times, values / run.series[self.series[1]] if len(self.series) > 1 else values
+
+    def predicted(self, prediction, place):
+        """What the run has at the data's times."""
+        times, values = prediction
         if self.times is None:
             return values[-1:]
-        wanted = numpy.atleast_1d(self.times)
-        expect(wanted.max() <= times[-1] * (1 + 1e-9), f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
-        return literature.interpolated(times, values, wanted)
+        wanted = numpy.atleast_1d(self.times) + (place[0] if self.places else 0)
+        return literature.interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
-        return (self.values - prediction) / (1 if self.error is None else self.error)
+        return (self.values - self.predicted(prediction, place)) / (1 if self.error is None else self.error)
 
 
 class Experiment:
@@ -181,8 +202,8 @@ class Experiment:
 class Runs:
     """What runs of the program predict. `settings` of an experiment's run to predictions of its data, or None where it failed."""
 
-    def __init__(self, study, decks):
-        self.study, self.decks, self._found, self.messages = study, decks, {}, []
+    def __init__(self, study, decks, law):
+        self.law, self.study, self.decks, self._found, self.messages, self._run = law, study, decks, {}, [], None
 
     count = property(lambda self: len(self._found))
 
@@ -191,6 +212,8 @@ class Runs:
         texts = [experiment.name + str(sorted(settings.items())) for experiment, settings in jobs]
         new = {text: job for text, job in zip(texts, jobs) if text not in self._found}
         outcomes = self.study.all([(self.decks, settings) for _, settings in new.values()])
+        if new:
+            tell(f"{self.law}: {self.count + len(new)} runs made or found")
         for (text, (experiment, _)), outcome in zip(new.items(), outcomes):
             if outcome.refused:
                 raise Mistake(f"the deck is refused: {outcome.message}")
@@ -198,8 +221,13 @@ class Runs:
             self._found[text] = self._predicted(experiment, outcome) if outcome.done else None
         return [self._found[text] for text in texts]
 
+    def unit(self, key):
+        """Of a key, where the deck has units: ", pN/µm"."""
+        return self._run.in_units(self.study.dimension(key)) if self._run else ""
+
     def _predicted(self, experiment, outcome):
         try:
+            self._run = outcome.run
             return [datum.prediction(outcome.run) for datum in experiment.data]
         except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
             self.messages.append(str(error))
@@ -288,6 +316,12 @@ class Fit:
                 return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, predictions))])
         raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
 
+    def effort(self):
+        """How many runs it takes, in words."""
+        moved = sum(one.owner in (None, experiment.name) for one in self.unknowns for experiment in self.experiments)
+        n = len(self.experiments)
+        return f"{self.law}: {n} runs to start with, then some {moved + n} a step, for 3 to 10 steps as a rule"
+
     def solve(self, start=None):
         x = self.begin() if start is None else start
         places = len(x) - len(self.unknowns)
@@ -302,11 +336,19 @@ class Fit:
         def derivative(x):
             (columns,), of_places = self.jacobian(x, STEP)
             columns = numpy.nan_to_num(columns)
-            return numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), of_places])
+            full = numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), of_places])
+            residual = function(x)
+            step = numpy.linalg.lstsq(full, -residual, rcond=None)[0]
+            if numpy.square(full @ step).sum() < SETTLED * (residual @ residual) / max(1, len(residual) - len(x)):
+                raise Settled(numpy.clip(x + step, *bounds))
+            return full
 
-        found = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-5, gtol=1e-15, max_nfev=40)
-        self.x, self.residual = found.x, found.fun
-        self.square = float(found.fun @ found.fun)
+        try:
+            self.x = scipy.optimize.least_squares(function, x, derivative, bounds, x_scale="jac", xtol=1e-7, ftol=1e-5, gtol=1e-15, max_nfev=40).x
+        except Settled as settled:
+            self.x = settled.args[0]
+        self.residual = function(self.x)
+        self.square = float(self.residual @ self.residual)
         self.errors()
         return self
 
@@ -340,6 +382,16 @@ class Fit:
         for one, x, error, known in zip(self.unknowns, self.x, self.number_errors, self.determined):
             value = one.value(x)
             found[one.name] = value, one.error_of(value, error) if known else numpy.inf
+        return found
+
+    @property
+    def squares(self):
+        """{datum's name: (chi square, points)}"""
+        found, start = {}, 0
+        for datum in self.data:
+            length = datum.count + (datum.places > 2 and not datum.free_scale)
+            found[datum.name] = float((self.residual[start:start + length] ** 2).sum()), length
+            start += length
         return found
 
     @property
@@ -379,12 +431,16 @@ def load(path, study):
     decks = decks_of(text, path)
     study.limit = text.get("limit")
     expect(text.get("experiments"), f"{path} has no experiments")
-    expect(text.get("unknown") or any(one.get("unknown") for one in text["experiments"].values()), f"{path}: nothing is unknown")
+    lists = [text, *text["experiments"].values(), *(text.get("laws") or {}).values()]
+    expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
     unknowns = [Unknown(key, given) for key, given in (text.get("unknown") or {}).items()]
     experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
-    laws = text.get("laws") or {"the deck's law": {}}
-    fixed = text.get("set") or {}
-    return [Fit(law, fixed | settings, unknowns, experiments, Runs(study, decks)) for law, settings in laws.items()], text
+    fixed, fits = text.get("set") or {}, []
+    for law, settings in (text.get("laws") or {"the deck's law": {}}).items():
+        settings = fixed | (settings or {})
+        own = {key: Unknown(key, given) for key, given in (settings.pop("unknown", None) or {}).items()}
+        fits.append(Fit(law, settings, list(({one.key: one for one in unknowns} | own).values()), experiments, Runs(study, decks, law)))
+    return fits, text
 
 
 def further(fits, settings):
@@ -405,7 +461,8 @@ def further(fits, settings):
                 one.points, one.scale = prediction.even(datum.count), 1.0
                 one.error = (datum.error or _scatter(best)) * datum.scale
             else:
-                one.values, one.error = numpy.asarray(prediction), datum.error if datum.error is not None else _scatter(best)
+                one.values = datum.predicted(prediction, datum.start(prediction))
+                one.error = datum.error if datum.error is not None else _scatter(best)
             candidate.data.append(one)
         rows.append(({key: value}, _errors_with(best, candidate), {other.law: _rise(other, candidate) for other in fits[1:]}))
     return rows
@@ -470,15 +527,18 @@ def told(fits, rows):
         lines += [f"{fit.law}: {said}, AIC {fit.aic:.2f}, {fit.runs.count} runs"]
         if not fit.stated:
             lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing about the law"]
+        if fit.stated and len(fit.data) > 1:
+            lines.append("  of it: " + ", ".join(f"{name} {square:.3g} of {count}" for name, (square, count) in fit.squares.items()))
         larger = numpy.sqrt(fit.square / fit.freedom) if fit.missed else 1
         if fit.missed:
             lines.append(f"  the residuals are {larger:.3g} times what the errors of the data say: a finer mesh, a free scale or another law first")
-        for name, (value, error) in fit.values.items():
+        for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
+            unit = fit.runs.unit(unknown.key).replace(",", "", 1)
             if numpy.isfinite(error):
                 also = f"; by the residuals ± {larger * error:.2g}" if fit.missed else ""
-                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g} ({error / abs(value):.2%}{also})")
+                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
             else:
-                lines.append(f"  {name}: not determined by these data (they are as well met by values far from {value:.3g})")
+                lines.append(f"  {name}: not determined by these data (they are as well met by values far from {value:.3g}{unit})")
         shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
         if len(shown) > 1:
             size = numpy.sqrt(numpy.diag(fit.covariance))
@@ -521,17 +581,24 @@ def draw(fits, path):
             data.plot(*datum.placed(places[start:start + datum.places]).T, ".", color=color, ms=2.5, label=datum.name)
             data.set_aspect("equal")
         elif numpy.size(datum.times) > 1:
-            data.plot(datum.times, prediction, color=color, linewidth=1)
-            data.plot(datum.times, datum.values, ".", color=color, ms=4, label=datum.name)
+            line = numpy.linspace(datum.times.min(), datum.times.max(), 200)
+            along = copy.copy(datum)
+            along.times = line
+            data.plot(line, along.predicted(prediction, places[start:start + datum.places]), color=color, linewidth=1)
+            data.errorbar(datum.times, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
         else:
             data.errorbar(datum.name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=4)
-            data.plot(datum.name, prediction[0], "_", color=color, ms=12)
+            data.plot(datum.name, datum.predicted(prediction, [])[0], "_", color=color, ms=12)
         start += datum.places
         residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".", ms=2.5, color=color)
         row += datum.count + (datum.places > 2 and not getattr(datum, "free_scale", True))
     if data.get_legend_handles_labels()[0]:
         data.legend(fontsize=7)
-    if not all(isinstance(datum, OutlineData) for datum in best.data):
+    curves = [datum for datum in best.data if not isinstance(datum, OutlineData) and numpy.size(datum.times) > 1]
+    if curves:
+        data.set_xlabel("time" + best.runs.unit("Time/final time"))
+        data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in curves)))
+    elif not all(isinstance(datum, OutlineData) for datum in best.data):
         data.tick_params(axis="x", rotation=60, labelsize=7)
     data.set_title(f"data and {best.law}")
     residual.set_title("residuals over their errors")
@@ -545,8 +612,8 @@ def draw(fits, path):
             x, y = ([names[k].value(best.x[at] + one) for one in circle[m]] for m, (k, at) in enumerate(zip((i, j), index)))
             axis.plot(x, y, line, color=style.RUNS[0], label=f"{share:.1%}")
         axis.plot(*(names[k].value(best.x[best.unknowns.index(names[k])]) for k in (i, j)), "+", color=style.INK)
-        axis.set_xlabel(names[i].name)
-        axis.set_ylabel(names[j].name)
+        axis.set_xlabel(names[i].name + best.runs.unit(names[i].key))
+        axis.set_ylabel(names[j].name + best.runs.unit(names[j].key))
         axis.legend()
     style.save(figure, path)
 
@@ -562,8 +629,13 @@ def main():
     fits, text = load(arguments.experiment, tanktread.Study(directory=directory / "runs", jobs=arguments.jobs))
     laws = arguments.law or [fit.law for fit in fits]
     expect(set(laws) <= {fit.law for fit in fits}, f"there is no such law; there are: {', '.join(fit.law for fit in fits)}")
-    fits = sorted((fit.solve() for fit in fits if fit.law in laws), key=lambda fit: fit.aic)
+    fits = [fit for fit in fits if fit.law in laws]
+    for fit in fits:
+        tell(fit.effort())
+        fit.solve()
+    fits.sort(key=lambda fit: fit.aic)
     said = told(fits, further(fits, text.get("next") or {}))
+    tell("")
     print(said)
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
     record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,

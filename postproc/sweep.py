@@ -43,6 +43,14 @@ def expect(holds, message):
         raise Mistake(message)
 
 
+def tell(progress):
+    """On standard error: in place on a terminal, which "" gives free again, as lines elsewhere."""
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{progress}", end="", file=sys.stderr, flush=True)
+    elif progress:
+        print(progress, file=sys.stderr, flush=True)
+
+
 def yaml_of(path, known):
     """A file of these lists, all of them known."""
     try:
@@ -140,7 +148,7 @@ def recorded(outcome, columns):
     for name, (series, take, at) in columns.items():
         values = outcome.series.get(series) if outcome.done else None
         if outcome.done and values is None:
-            raise Mistake(f"{outcome.directory} holds no series {series}; there are: {', '.join(sorted(outcome.series))}")
+            raise Mistake(f"a run of this study has no series {series} (column {name}); there are: {', '.join(sorted(outcome.series))}")
         if values is None or not len(values):
             row[name] = numpy.array([]) if take == "all" else numpy.nan
         elif take == "all":
@@ -170,13 +178,16 @@ class Sweep:
 
         def told(outcome):
             ends[status_of(outcome)] += 1
+            if ends["done"] == 1:  # a column that no run has is told after the first one, not after the last
+                recorded(outcome, self.columns)
             made = sum(ends.values())
             left = (time.monotonic() - start) / made * (len(self.rows) - made)
             said = ", ".join(f"{number} {status}" for status, number in ends.items())
-            print(f"\r{made} of {len(self.rows)} runs: {said}; {left:.0f} s left ", end="", file=sys.stderr, flush=True)
+            if sys.stderr.isatty() or made * 10 // len(self.rows) > (made - 1) * 10 // len(self.rows):
+                tell(f"{made} of {len(self.rows)} runs: {said}; {left:.0f} s left")
 
         self.outcomes = self.study.all([(self.decks, row, self.ranks) for row in self.rows], told)
-        print(file=sys.stderr)
+        tell("")
 
     def write(self, directory):
         """table.csv, without whole series, and table.h5 with them (/<column>, rows padded with NaN); the deck beside them."""
@@ -253,6 +264,7 @@ def answer(main):
     try:
         sys.exit(main())
     except Mistake as mistake:
+        tell("")
         print(f"{pathlib.Path(sys.argv[0]).name}: {mistake}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:

@@ -95,7 +95,7 @@ def fitted(law, data, runs, start, settings=None):
 def exact(study):
     for law in LAWS:
         curves = [profile(study, LAWS[law] | FINE | {"Flow/mean velocity": speed, "Membrane/shear modulus": MODULUS}).even(POINTS) for speed in SPEEDS]
-        runs = fit.Runs(study, [DECK])
+        runs = fit.Runs(study, [DECK], law)
         one = fitted(law, experiments(curves, [0.005 * RADIUS] * len(SPEEDS)), runs, 10 * MODULUS, FINE)
         print(f"{law}, no noise, start {10 * MODULUS:g}: G_s / true - 1 = {one.unknowns[0].value(one.x[0]) / MODULUS - 1:.1e}, {runs.count} runs", flush=True)
 

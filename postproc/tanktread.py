@@ -72,7 +72,8 @@ class Run:
         """", µm/s" for length/time where the deck has the list Units, for the labels of figures; otherwise nothing."""
         units = self.deck.get("Units") or {}
         named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
-        return ", " + re.sub("length|time|force", lambda word: named[word[0]], dimension).replace("^2", "²") if named else ""
+        dimension = dimension.replace("viscosity x length", "force x time/length").replace("stress", "force/length^2").replace(" x ", " ")
+        return ", " + re.sub("length|time|force", lambda word: named[word[0]], dimension).replace("^2", "²") if named and dimension else ""
 
     @property
     def particles(self):
@@ -447,12 +448,22 @@ class Study:
 
     def knows(self, key, word=None):
         """Whether this program's manual has a key, and in its row a word (a choice)."""
+        row = self._row(key)
+        return row is not None and (word is None or f"`{word}`" in row)
+
+    def dimension(self, key):
+        """Of a key's values, in words: force/length; "" of a number and of what the manual does not know."""
+        row = self._row(key)
+        unit = row.split("|")[4].strip() if row else ""
+        return "" if unit == "1" else unit
+
+    def _row(self, key):
+        """Of a key in this program's manual, or None."""
         if self._manual is None:
             self._manual = subprocess.run([str(self.program), "--reference"], capture_output=True, text=True, check=True).stdout
         section, name = key.rsplit("/", 1)
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
-        rows = [row for row in body.splitlines() if row.startswith(f"| `{name}`")]
-        return bool(rows) and (word is None or f"`{word}`" in rows[0])
+        return next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), None)
 
     def schemes(self, wanted):
         """Those of the schemes that this program has."""

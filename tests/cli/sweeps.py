@@ -123,7 +123,8 @@ def mistakes_are_one_sentence():
         check(words in said and said.count("\n") == 1, said)
     check("absent.yaml" in _sweep("absent.yaml", code=2), "a file that is not there")
     deck(STUDY.replace("D: taylor_inertia", "D: tailor"), "study.yaml")
-    check("no series tailor" in _sweep("study.yaml", code=2), "an unknown series")
+    check("no series tailor" in _sweep("study.yaml", "--jobs", "1", code=2), "an unknown series")
+    check(len(list(pathlib.Path("results/study/runs").iterdir())) < 4, "a column that no run has is told after all runs")
 
 
 main()
