@@ -284,11 +284,12 @@ class SteadyRun {
     const std::shared_ptr<System> system = options.parity ? whole(whole_ranks) : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();
-    const coupling::ShapeCoordinates shapes(body.space, capsule.particles(), shape, state_.x, capsule.projection(),
+    coupling::ShapeCoordinates shapes(body.space, capsule.particles(), shape, state_.x, capsule.projection(),
                                             options.parity.value_or(Vec3::Ones()));
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));
+    shapes.follow(*system->motion, state_.x);
     if (!options.shift) options.shift = system_->scene.rate();
     modes_ = motion::spectrum(*system->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
                               scene_.solvers.of(scene_.solvers.spectrum));

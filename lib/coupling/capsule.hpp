@@ -112,6 +112,7 @@ class Capsule : public Dynamics {
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
   Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
+  Net mesh_motion(const Net& delta) override;
   void restore_volume(Net& x) override;
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;

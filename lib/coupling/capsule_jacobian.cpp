@@ -240,6 +240,12 @@ Net Capsule::missed(const Net& dv, const Net& delta) {
   return frozen_viscous(dv) - energy_part(delta);
 }
 
+Net Capsule::mesh_motion(const Net& delta) {
+  if (!interface_ || !interface_->relaxes()) return {};
+  const auto clock = phases_.time("tangent");
+  return interface_->derivative(Net::Zero(delta.rows(), 3), delta);
+}
+
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
   if (frozen_.empty() && nodal_.empty()) return difference(x, v, delta);
   const auto clock = phases_.time("stiffness");

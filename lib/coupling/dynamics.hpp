@@ -56,6 +56,9 @@ class Dynamics {
   /// difference of velocities, which costs an evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
+  /// What a displacement changes of the rate at which meshes move along interfaces by themselves, where last linearised; of no rows where none does.
+  virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
+
   /// Moves x onto the volume to be kept, if the constraint is `exact`; otherwise does nothing. Not finite where that cannot be done.
   virtual void restore_volume(Net& x) = 0;
 

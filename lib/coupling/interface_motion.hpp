@@ -52,6 +52,9 @@ class InterfaceMotion {
   /// that at x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
+  /// Whether any mesh slides by itself.
+  bool relaxes() const { return relaxed_; }
+
  private:
   struct Drop {
     spline::Block block;

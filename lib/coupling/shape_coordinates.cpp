@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "coupling/agreement.hpp"
 #include "coupling/collocation.hpp"
 #include "coupling/interface_motion.hpp"
 
@@ -15,8 +19,9 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
   for (const int i : symmetry.fundamental()) {
     const auto holds = [i](const Particle& particle) { return particle.block.holds(i); };
     if (std::ranges::find_if(particles, holds)->slides()) {
-      if (parity_.scalar_signs()[i] == 0) continue;
-      all_.push_back({i, projection_ ? Vec3(Vec3::Zero()) : site_normal(space, x, space.collocation[static_cast<std::size_t>(i)])});
+      const Vec3 normal = site_normal(space, x, space.collocation[static_cast<std::size_t>(i)]);
+      add_along(i, normal);
+      if (parity_.scalar_signs()[i] != 0) all_.push_back({i, projection_ ? Vec3(Vec3::Zero()) : normal});
       continue;
     }
     for (int c = 0; c < 3; ++c)
@@ -32,6 +37,35 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
   }
   for (const Particle& particle : particles)
     if (particle.slides()) carry_whole(particle.block);
+}
+
+/// The directions across a normal that the parity leaves to a site.
+void ShapeCoordinates::add_along(int site, const Vec3& normal) {
+  const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
+  const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> directions(left.asDiagonal() * tangential * left.asDiagonal());
+  for (int k = 0; k < 3; ++k)
+    if (directions.eigenvalues()[k] > 0.5) along_.push_back({site, directions.eigenvectors().col(k)});
+}
+
+void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
+  dynamics.velocity(x);
+  dynamics.linearise(x);
+  const auto n = static_cast<Eigen::Index>(along_.size());
+  if (n == 0 || dynamics.mesh_motion(x).rows() == 0) return;
+  Eigen::MatrixXd slides(n, n), drawn(n, size());
+  for (Eigen::Index k = 0; k < n; ++k) slides.col(k) = coordinates_along(dynamics.mesh_motion(along(Eigen::VectorXd::Unit(n, k))));
+  for (Eigen::Index k = 0; k < size(); ++k)
+    drawn.col(k) = coordinates_along(dynamics.mesh_motion(displacement(Eigen::VectorXd::Unit(size(), k))));
+  const double scale = slides.diagonal().cwiseAbs().mean();
+  for (const Net& field : dynamics.relabellings(x)) {  // as (4.17) holds them
+    if (!admits(field)) continue;
+    const Eigen::VectorXd turn = coordinates_along(field).normalized();
+    slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
+    drawn -= turn * (turn.transpose() * drawn);
+  }
+  following_ = -slides.partialPivLu().solve(drawn);
+  take_first({following_.data(), static_cast<std::size_t>(following_.size())});
 }
 
 /// Translations of one drop become what they are, tangential parts included.
@@ -56,6 +90,7 @@ void ShapeCoordinates::carry_whole(const spline::Block& block) {
 Net ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
   Net d = across(y);
   for (const Translation& one : translations_) d += one.coordinates.dot(y) * one.rest;
+  if (following_.size() > 0) d += along(following_ * y);
   return d;
 }
 
@@ -75,6 +110,22 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
     d += projection_->control_values((projection_->values() * outward).asDiagonal() * normals_);
   }
   return d;
+}
+
+/// The field with these coordinates along the interface whose y are 0.
+Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
+  Net at_sites = Net::Zero(sites_.rows(), 3);
+  for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();
+  parity_.complete(at_sites);
+  const Net field = collocation_.solve(at_sites);
+  return projection_ ? field - across(coordinates(field)) : field;
+}
+
+Eigen::VectorXd ShapeCoordinates::coordinates_along(const Net& field) const {
+  const Net at_sites = sites_ * field;
+  Eigen::VectorXd t(static_cast<Eigen::Index>(along_.size()));
+  for (std::size_t k = 0; k < along_.size(); ++k) t[static_cast<Eigen::Index>(k)] = at_sites.row(along_[k].site).dot(along_[k].direction);
+  return t;
 }
 
 bool ShapeCoordinates::admits(const Net& field) const {

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
+#include "coupling/dynamics.hpp"
 #include "coupling/particle.hpp"
 #include "coupling/velocity_projection.hpp"
 #include "membrane/symmetric_solver.hpp"
@@ -25,12 +26,20 @@ namespace tanktread::coupling {
 /// Where velocities are projected, y are the control values of a scalar field there, that of the best fit to n.d; what moves the mesh along would
 /// otherwise show in them by the fourth power of the element.
 ///
+/// A mesh that slides by itself goes along with such a displacement, once `follow` is called, by what leaves it at rest on the shape: with w the rate
+/// at which it slides, and t' the derivative of t along d,
+///
+///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
+///
 /// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone, or
 /// those of another parity (surface/parity.hpp), for whom nothing else may know of the symmetry.
 class ShapeCoordinates {
  public:
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                    const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
+
+  /// Lets meshes go along, as `dynamics` has them at x. Collective.
+  void follow(Dynamics& dynamics, const Net& x);
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(all_.size()); }
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates
@@ -49,8 +58,13 @@ class ShapeCoordinates {
   };
   void carry_whole(const spline::Block& block);
   Net across(const Eigen::VectorXd& y) const;
+  Net along(const Eigen::VectorXd& t) const;
+  Eigen::VectorXd coordinates_along(const Net& field) const;
+  void add_along(int site, const Vec3& normal);
 
   std::vector<Coordinate> all_;
+  std::vector<Coordinate> along_;  // of drops, tangential
+  Eigen::MatrixXd following_;      // those of the mesh that follows, of coordinates y; empty: it does not
   std::vector<Translation> translations_;  // of drops
   surface::Parity parity_;
   Eigen::SparseMatrix<double> sites_;  // R

@@ -37,8 +37,13 @@ const char* name(ModeKind kind) {
   return names[static_cast<int>(kind)];
 }
 
-Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference)
-    : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference) {
+Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+                       double difference)
+    : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference), volume_(shapes.size()) {
+  for (Eigen::Index k = 0; k < volume_.size(); ++k)
+    volume_[k] = flux.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(volume_.size(), k))).sum();
+  if (volume_.norm() > 1e-6 * flux.norm()) volume_.normalize();
+  else volume_.setZero();  // of another parity than the volume
   const std::vector<Net> fields = dynamics.relabellings(x);
   if (fields.empty()) return;
   Eigen::MatrixXd all(x.size(), static_cast<Eigen::Index>(fields.size()));
@@ -55,12 +60,13 @@ Net Linearised::velocity(const Net& x) const {
 }
 
 Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
-  const Net d = shapes_.displacement(y);
+  const Net d = shapes_.displacement(of_the_volume(y));
+  if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
   const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / dynamics_.norm(d);
   const double e = difference_ * radius / d.rowwise().norm().maxCoeff();
   const Net change = (velocity(x_ + e * d) - velocity(x_ - e * d)) / (2 * e);
   if (!change.allFinite()) throw RunFailure("the velocity of a shape close to the one that is linearised about cannot be had");
-  return shapes_.coordinates(change);
+  return of_the_volume(shapes_.coordinates(change));
 }
 
 namespace {
@@ -138,21 +144,21 @@ namespace {
 using Pairs = std::vector<coupling::Eigenpair>;
 
 /// All of J, which is made column by column.
-Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const SpectrumOptions& options) {
+Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux, const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
   Eigen::MatrixXd jacobian(n, n);
-  const Linearised linearised(dynamics, shapes, x, options.difference);
+  const Linearised linearised(dynamics, shapes, x, flux, options.difference);
   for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(Eigen::VectorXd::Unit(n, k));
   coupling::take_first({jacobian.data(), static_cast<std::size_t>(jacobian.size())});
   return coupling::eigenpairs(std::move(jacobian));
 }
 
 /// Those with the largest (1 - rate/shift)^-1: (I - J/shift)^-1 by GMRES, with what an implicit step has for it as preconditioner.
-Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const SpectrumOptions& options,
-              const coupling::IterativeOptions& solver) {
+Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+              const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
   const double step = 1 / options.shift.value();
-  const Linearised linearised(dynamics, shapes, x, options.difference);
+  const Linearised linearised(dynamics, shapes, x, flux, options.difference);
   dynamics.freeze(x);
   dynamics.linearise(x);
   const Eigen::Index n = shapes.size();
@@ -182,7 +188,7 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
 
 std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
-  Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, options) : shifted(dynamics, shapes, x, options, solver);
+  Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, flux, options) : shifted(dynamics, shapes, x, flux, options, solver);
   const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
   std::ranges::stable_sort(pairs, {}, rank);
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));

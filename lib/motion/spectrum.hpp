@@ -48,22 +48,26 @@ struct Mode {
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
 ///
 /// v without the relabellings (Dynamics::relabellings) that it consists of at a shape at rest: modes are changes of shape as seen from outside.
+/// Before and after, what a displacement gains of the volume is taken away along its normals. At a fold two modes of rate 0 would else have one
+/// shape, and errors of J would move their rates by their square roots.
 class Linearised {
  public:
-  /// About x, which the motion outlives, as all else here. Collective.
-  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, double difference);
+  /// About x, where dV/dx is `flux`; the motion outlives it, as all else here. Collective.
+  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux, double difference);
 
   /// J y. Throws RunFailure where a velocity cannot be had. Collective.
   Eigen::VectorXd operator()(const Eigen::VectorXd& y) const;
 
  private:
   Net velocity(const Net& x) const;
+  Eigen::VectorXd of_the_volume(Eigen::VectorXd y) const { return y - volume_.dot(y) * volume_; }
 
   coupling::Dynamics& dynamics_;
   const coupling::ShapeCoordinates& shapes_;
   const Net& x_;
   double difference_;
   Eigen::VectorXd relabelling_;  // parts of v(x)
+  Eigen::VectorXd volume_;       // dV/dy over its size
 };
 
 /// The leading modes of the motion about x, as `options` ask, whose shift is given. `flux`: dV/dx, which tells the mode that only the conserved

@@ -66,7 +66,7 @@ def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
     at = fold.argmax()
     check(fold.sum() == 1 and parameter.argmax() == at, parameter, fold)
     check((rate[:at] < 0).all() and (rate[at + 1:] > 0).all() and len(rate) > at + 1, rate)
-    check(abs(rate[at]) < 3e-2, rate[at])  # of a sphere's mesh
+    check(abs(rate[at]) < 1e-3, rate[at])  # whatever the mesh, which follows the mode
 
 
 def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
@@ -78,7 +78,7 @@ def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
     parameter, ratio, fold, rate = (series("folds", name) for name in ("parameter", "second_parameter", "fold", "leading_rate"))
     check(list(ratio[fold > 0]) == [1, 1.4, 2] and list(fold[-3:]) == [1, 1, 1], ratio, fold)
     close(parameter[-1], series("own", "parameter")[series("own", "fold").argmax()], 1e-6)
-    check((abs(rate[-3:]) < 0.1).all(), rate)  # on so coarse a mesh
+    check((abs(rate[-3:]) < 1e-3).all(), rate)
 
 
 def a_branch_without_a_fold_says_so():

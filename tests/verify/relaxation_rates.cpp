@@ -47,7 +47,8 @@ struct Sphere {
           return settings;
         }()) {
     const Net& x = scene.body().rest;
-    const coupling::ShapeCoordinates shapes(scene.body().space, scene.capsule->particles(), scene.body().symmetry, x, scene.capsule->projection());
+    coupling::ShapeCoordinates shapes(scene.body().space, scene.capsule->particles(), scene.body().symmetry, x, scene.capsule->projection());
+    shapes.follow(*scene.capsule, x);
     motion::SpectrumOptions options;
     options.number = static_cast<int>(shapes.size());
     modes = motion::spectrum(*scene.capsule, shapes, x, scene.capsule->geometry().volume_gradient(x), options, {});
@@ -92,7 +93,7 @@ TEST_P(OfDrops, ConvergeToLambsSolution) {
   const double coarse = std::abs(Sphere(drop, 4).second_harmonic(exact) / exact - 1);
   const double fine = std::abs(Sphere(drop, 8).second_harmonic(exact) / exact - 1);
   EXPECT_LT(fine, 3e-4);
-  EXPECT_GT(std::log2(coarse / fine), 3);  // 4 between n = 6 and 12
+  EXPECT_GT(std::log2(coarse / fine), 2.8);  // 3.4 between n = 6 and 12
 }
 
 TEST_P(OfDrops, ConvergeFasterWhereVelocitiesAreProjected) {
