@@ -328,9 +328,9 @@ void check_contradictions(const Scene& scene) {
 void check_power(const Scene& scene) {
   if (!scene.output.power_balance || !scene.name.empty()) return;
   const std::string word = "Output/power balance";
-  refuse(scene.tube.present, word, scene.tube.list(), "the checks of its wall are (2.14)");
   refuse(scene.particle.rigid(), word, "Particle/motion " + text(scene.particle.motion), "nothing deforms");
-  refuse(!stokes::AmbientFlow(scene.flow).affine(), word, "Flow/type `" + scene.flow.type + "`", "it is for flows of one gradient");
+  refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, "Flow/type `" + scene.flow.type + "`",
+         "it is for flows of one gradient, and for tubes");
   refuse(!scene.runs_in_time(), word, scene.sought(), "it is of rows of a run in time");
   refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
   refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");

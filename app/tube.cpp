@@ -96,8 +96,9 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   surface::TubeOptions options = scene.tube;
   const double chain = length + 2 * images * period, alone = surface::tube_length({}, outline.radius(), length);
   options.axial_elements += static_cast<int>(std::ceil((chain - length) / alone * options.axial_elements));
-  auto wall = std::make_shared<surface::TubeWall>(
-      surface::tube_wall(outline, options, surface::tube_length(scene.tube, outline.radius(), chain), chain / 2));
+  double along = surface::tube_length(scene.tube, outline.radius(), chain);
+  if (images > 0 && options.grading == 1) along = surface::repeat_elements(options, along, period);
+  auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, chain / 2));
   wall->images = images;
   surface::check_length(*wall, x1.minCoeff() - images * period, x1.maxCoeff() + images * period);
   return wall;

@@ -35,19 +35,15 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const Net load = capsule_.load(x), v = capsule_.slides() ? capsule_.fluid_velocity(x) : slope;
   const RigidParticles rigid = capsule_.rigid_at(x);
   const Net& measured = capsule_.measure() == stokes::Measure::reference ? unstressed_ : x;
-  const Net work = mass_.update(measured) * load, inside = density(v, rigid), flux = capsule_.geometry().volume_gradient(x);
-  const stokes::AmbientFlow& flow = capsule_.flow();
-  const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  const Net work = mass_.update(measured) * load, inside = density(v, rigid);
   Powers powers;
-  powers.flow = product(work, flow.velocities(x));
+  powers.flow = of_flow(x, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
   std::vector<int> all(middles_.size());
   std::iota(all.begin(), all.end(), 0);
   capsule_.membrane().load(x, all, stored);
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
     const Particle& particle = capsule_.particles()[p];
-    const Mat3 moment = particle.block.rows(inside).transpose() * particle.block.rows(flux);
-    powers.flow -= 2 * viscosity_ * viscosity_contrast(particle) * strain.cwiseProduct(moment).sum();
     if (particle.rigid) continue;
     powers.membranes += capsule_.membrane_dissipation(x, v, p);
     powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
@@ -57,6 +53,23 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   powers.forces = powers.storing + powers.membranes - done;
   powers.left_over = left_over(load, missed(x, v, inside, load), measured);
   return powers;
+}
+
+/// In a tube the pressure drop that the particles add does the work (2.7).
+double PowerBalance::of_flow(const Net& x, const Net& work, const Net& inside) {
+  const stokes::AmbientFlow& flow = capsule_.flow();
+  if (const Tube* tube = capsule_.tube()) {
+    const double drop = capsule_.response(x).pressure_drop;
+    return flow.duct() ? flow.amplitude() * tube->flow_rate(drop) * drop / tube->copies() : 0;
+  }
+  const Net flux = capsule_.geometry().volume_gradient(x);
+  const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  double power = product(work, flow.velocities(x));
+  for (const Particle& particle : capsule_.particles()) {
+    const Mat3 moment = particle.block.rows(inside).transpose() * particle.block.rows(flux);
+    power -= 2 * viscosity_ * viscosity_contrast(particle) * strain.cwiseProduct(moment).sum();
+  }
+  return power;
 }
 
 /// int Df.r by the rule of the middles, of r there.
@@ -101,8 +114,13 @@ Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
     double_->apply(density, own, twice);
     u += twice;
   }
-  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
   const Net at = values_ * x;
+  if (Tube* tube = capsule_.tube()) {
+    Net answer(u.rows(), 3);
+    tube->velocity_at(at, capsule_.response(x), own, answer);
+    for (const int i : own) u.row(i) += answer.row(i);
+  }
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
   return values_ * v - flow.velocities(at) - u;
 }
 

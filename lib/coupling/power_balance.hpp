@@ -25,7 +25,7 @@ struct Powers {
   double left_over = 0;    ///< of what the velocities miss of (2.22) between the collocation sites (6.13)
 };
 
-/// The balance of power of particles that deform, and of rigid bodies among them, in affine flows without a tube.
+/// The balance of power of particles that deform, and of rigid bodies among them, in affine flows or a tube.
 class PowerBalance {
  public:
   /// Of the system's particles on their present meshes. What is given by reference outlives this.
@@ -39,6 +39,7 @@ class PowerBalance {
   double left_over(const Net& load, const Net& left, const Net& measured) const;
   Net missed(Net x, Net v, Net density, const Net& load);
   Net density(const Net& v, const RigidParticles& rigid) const;
+  double of_flow(const Net& x, const Net& work, const Net& inside);
 
   Capsule& capsule_;
   const spline::Space& space_;

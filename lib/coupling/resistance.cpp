@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "coupling/collocation.hpp"
 #include "membrane/mass.hpp"
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
@@ -98,11 +97,15 @@ Net Resistance::ambient(const stokes::AmbientFlow& flow) const { return collocat
 
 double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) / tube_->copies() : 0; }
 
-double Resistance::lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work) const {
+double Resistance::lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work) {
   if (!tube_ || !flow.duct()) return 0;
-  const auto [sites, at_sites, weights] = between_sites(space_, surface_);
-  const Net missed = weights * (flow.velocities(at_sites * place_) - flow.amplitude() * (at_sites * tube_->interpolated_ambient()));
-  return -(work + missed.cwiseProduct(f * turn_.transpose()).sum()) / (flow.amplitude() * tube_->flow().flow_rate());
+  const Net at_places = flow.velocities(between().values * place_);
+  return tube_->lacking_pressure(between(), at_places, flow.amplitude(), f * turn_.transpose(), work) / tube_->copies();
+}
+
+const BetweenSites& Resistance::between() {
+  if (!between_) between_ = between_sites(space_, surface_);
+  return *between_;
 }
 
 /// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
@@ -148,7 +151,7 @@ stokes::Evaluations Resistance::kernel_evaluations() const {
 
 Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z) {
   const auto clock = phases_.time("reciprocal correction");
-  const auto [sites, at_sites, weights] = between_sites(space_, surface_);
+  const auto& [sites, at_sites, weights] = between();
   const std::vector<int> own = ranks_.share(static_cast<int>(sites.size()));
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space_, sites, quadrature_);
   if (wall_) layer.set_wall(*wall_);

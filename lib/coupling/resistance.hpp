@@ -9,6 +9,7 @@
 #include "base/dense_factors.hpp"
 #include "base/timing.hpp"
 #include "base/types.hpp"
+#include "coupling/collocation.hpp"
 #include "coupling/krylov.hpp"
 #include "coupling/options.hpp"
 #include "coupling/ranks.hpp"
@@ -65,7 +66,7 @@ class Resistance {
 
   /// What it lacks where the flow is the duct's: what is left of v_inf where it is interpolated, and `work`, the residual work of the density that
   /// has v_inf on the surface (2.41).
-  double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0) const;
+  double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0);
 
   /// int z.(u - (1/mu) A f) dG for each density z: the velocity that a discrete f leaves over, at Gauss points away from the collocation sites,
   /// weighted (2.11). By the reciprocal theorem it is what int z_exact.f lacks, to the product of the errors of f and z: with z the density of a
@@ -90,6 +91,7 @@ class Resistance {
   void place_images();
   void factor();
   Net apply(const Net& f) const;
+  const BetweenSites& between();
 
   const spline::Space& space_;
   Net surface_;
@@ -118,6 +120,7 @@ class Resistance {
   long iterations_ = 0;
   int last_iterations_ = 0;
   stokes::Evaluations residual_evaluations_;
+  std::optional<BetweenSites> between_;  // made when first asked for
 };
 
 }  // namespace tanktread::coupling

@@ -10,19 +10,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// The five strains, and the components of a trace-free symmetric matrix in them.
-Mat3 unit_strain(int k) {
-  Mat3 e = Mat3::Zero();
-  if (k < 2) {
-    e(k, k) = 1;
-    e(k + 1, k + 1) = -1;
-  } else {
-    const int i = k == 4 ? 1 : 0, j = k == 2 ? 1 : 2;
-    e(i, j) = e(j, i) = 1;
-  }
-  return e;
-}
-
 constexpr int affine_modes = 11, quadratic_modes = 18;
 
 /// The fields y_b y_c e_i, b <= c.
@@ -34,6 +21,7 @@ UnitQuadratic unit_quadratic(int k) {
   return {k / 6, first[k % 6], second[k % 6]};
 }
 
+/// The components of a trace-free symmetric matrix in the unit strains.
 Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
   Eigen::Matrix<double, 5, 1> c;
   c << e(0, 0), e(0, 0) + e(1, 1), e(0, 1), e(0, 2), e(1, 2);
@@ -46,6 +34,18 @@ Eigen::Quaterniond quaternion(const Net& place) { return {place(2, 0), place(1, 
 Vec3 angular_velocity(const Mat3& l) { return 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1)); }
 
 }  // namespace
+
+Mat3 unit_strain(int k) {
+  Mat3 e = Mat3::Zero();
+  if (k < 2) {
+    e(k, k) = 1;
+    e(k + 1, k + 1) = -1;
+  } else {
+    const int i = k == 4 ? 1 : 0, j = k == 2 ? 1 : 2;
+    e(i, j) = e(j, i) = 1;
+  }
+  return e;
+}
 
 Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) {
   Net u(x.rows(), 3);

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 
 #include "base/dense_factors.hpp"
+#include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
@@ -19,6 +20,25 @@ Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) {
 void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net own = block.rows(x);
   for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
+}
+
+constexpr int strains = 5;
+
+/// The five unit strains of a body's sites.
+void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net from_centre = block.rows(at).rowwise() - centre.transpose();
+  for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
+}
+
+/// The trace-free symmetric matrix that has these products with the unit strains.
+Mat3 of_products(const Eigen::Matrix<double, strains, 1>& products) {
+  Eigen::Matrix<double, strains, strains> gram;
+  for (int j = 0; j < strains; ++j)
+    for (int k = 0; k < strains; ++k) gram(j, k) = unit_strain(j).cwiseProduct(unit_strain(k)).sum();
+  const Eigen::Matrix<double, strains, 1> components = gram.partialPivLu().solve(products);
+  Mat3 sum = Mat3::Zero();
+  for (int k = 0; k < strains; ++k) sum += components[k] * unit_strain(k);
+  return sum;
 }
 
 /// The motions, of those that are free, that take this much force and torque; 0 of the others.
@@ -158,11 +178,14 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   layer_.place(x);
   const Net at = sites_ * x;
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
+  const Eigen::Index n_strains = tube_ ? 0 : strains * static_cast<Eigen::Index>(particles_.size());
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1 + n_strains), fields = Eigen::MatrixXd::Zero(n, m);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
     set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
+    if (tube_) continue;
+    set_unit_strains(at, particles_[p].block, centres[p], velocities.middleCols<strains>(m + 1 + strains * static_cast<Eigen::Index>(p)));
   }
   velocities.col(m) = flat(flow.velocities(at));
   make_regular(x, at);
@@ -181,16 +204,14 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   f += z * change;
   const Eigen::VectorXd integrals = work.transpose() * f + lacking;
   density_ = as_net(f);
-  if (tube_ && flow.duct()) {
-    const Net missed = between_.weights * (between - flow.amplitude() * (between_.values * tube_->interpolated_ambient()));
-    lacking_pressure_ = -tube_->copies() * (lacks[m] + flat(missed).dot(f)) / (flow.amplitude() * tube_->flow().flow_rate());
-  }
+  if (tube_ && flow.duct()) lacking_pressure_ = tube_->lacking_pressure(between_, between, flow.amplitude(), density_, lacks[m]);
   const Net weighted = mass * density_;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;
     bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
                   block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
+    if (!tube_) bodies_[p].moment += of_products(lacks.segment<strains>(m + 1 + strains * static_cast<Eigen::Index>(p)));
   }
 }
 

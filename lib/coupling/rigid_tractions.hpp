@@ -31,7 +31,7 @@ namespace tanktread::coupling {
 /// with one motion or force and torque given of each body. At every place it is assembled, made regular by a flux of each body as in (2.10), and
 /// factored: a film takes no iterations. f is a sum of the densities z_k of unit motions and of that of the flow. What collocation lacks of a force
 /// or torque is, by the reciprocal theorem (2.11), int z_k.(v - (1/mu) A f) dG over all bodies: with it they err by the product of two errors of
-/// densities, where those of (2.23) err by one. Dense: for some thousands of control points.
+/// densities, where those of (2.23) err by one; and so a stresslet, with the densities of unit strains of its body, but in a tube, which needs none. Dense: for some thousands of control points.
 ///
 /// On a lattice A is that of all images, in a tube less mu times what wall and pressure drop answer: what they add is smooth, so a few iterations
 /// around the factors of the bodies alone solve for each density. The pressure drop
@@ -49,7 +49,7 @@ class RigidTractions {
   struct Body {
     RigidMotion motion;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the fluid, about the centre
-    Mat3 moment = Mat3::Zero();                        ///< int f r dG
+    Mat3 moment = Mat3::Zero();                        ///< int f r dG, symmetric part corrected
   };
 
   /// Of bodies with net x, where the tube has them placed, and these centres that are driven so; kept until the next call. Collective.

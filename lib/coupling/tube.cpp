@@ -1,5 +1,6 @@
 #include "coupling/tube.hpp"
 
+#include "coupling/collocation.hpp"
 #include "coupling/tube_particle.hpp"
 
 namespace tanktread::coupling {
@@ -34,7 +35,6 @@ Tube::~Tube() = default;
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
-const Net& Tube::interpolated_ambient() const { return particle_->interpolated_ambient; }
 int Tube::copies() const { return 1 + static_cast<int>(particle_->shifts.size()); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
@@ -65,6 +65,11 @@ double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   weigh_flow();
   const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(on_wall)) : dot(flow_of_wall_, on_wall);
   return (taken_away - dot(particle_->flow_of_strength(wall_->inlet()), particle_->strength(v))) / flow_of_pressure_;
+}
+
+double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
+  const Net missed = between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient));
+  return -copies() * (work + dot(missed, f)) / (amplitude * flow_->flow_rate());
 }
 
 Net Tube::load_on_wall(const Net& f) {

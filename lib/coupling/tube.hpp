@@ -21,6 +21,7 @@
 namespace tanktread::coupling {
 
 class Wall;
+struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;                                  ///< mu of the outer fluid
@@ -104,9 +105,12 @@ class Tube {
   Net copies_on_particle(const Net& f, const Net& v = {});  ///< what the other copies of a train do
   const Net& inlet_on_particle() const;       ///< c
   const Net& ambient() const;                 ///< v_inf at the collocation points, of the amplitude 1
-  const Net& interpolated_ambient() const;    ///< its control values there, which the pressure drop is told by
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
+
+  /// What `pressure_of` a force density f lacks, where `flow` is a duct's: of v_inf at the places what is left where it is interpolated, and `work`,
+  /// the residual work of the density that has v_inf on the surface (2.41).
+  double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors
 
   /// Independent routes to what a response satisfies, and how far off they are.

@@ -46,10 +46,8 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (phases) ranks_.measure(*phases);
   layer_.place(wall.net);
   targets_ = sites_, own_targets_ = own_;
-  if (wall.channel) {
-    boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
-    add_middles();
-  }
+  if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
+  if (has_middles()) add_middles();
   stokes::Sites sites = wall.space.collocation;
   for (int e = 0; e < targets_.rows() - n; ++e) sites.push_back({{e, 0.5, 0.5}});
   on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, sites, sharper(quadrature));

@@ -31,7 +31,8 @@ namespace tanktread::coupling {
 /// what the solves before tell (2.24).
 ///
 /// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through. On the wall of a channel
-/// the leak would be a part of the flow rate: there what vanishes is the mean around each of them, (2.39).
+/// the leak would be a part of the flow rate, of a train it would grow with the pressure from copy to copy: there what vanishes is the mean around
+/// each of them, (2.39).
 class Wall {
  public:
   /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
@@ -89,7 +90,7 @@ class Wall {
   void add_middles();
   Eigen::MatrixXd assembled();
   Net iterated(const Net& rhs) const;
-  bool has_middles() const { return surface_.channel != nullptr; }
+  bool has_middles() const { return surface_.channel || surface_.images > 0; }
   double share_of_middle(int point) const;
   Eigen::VectorXd fundamental(const Net& net) const;
   Net fundamental_net(const Eigen::VectorXd& numbers) const;

@@ -212,7 +212,8 @@ void TubeOptions::declare(deck::Section& list) {
              "many as make the former less than `Quadrature/tolerance`");
     list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along; of a train for each copy");
     list.key("grading", grading, deck::between(1.0, 20.0), "1",
-             "g: the wall's elements along the tube are denser around the particle, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform");
+             "g: the wall's elements along the tube are denser around the particle, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform, a whole "
+             "number in each period of a train");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest gap between particle and wall; a run that comes closer stops with a checkpoint. Integrals keep their accuracy down to "

@@ -197,6 +197,13 @@ double tube_length(const TubeOptions& options, double radius, double particle_le
   return options.length.value_or(std::max(2 * std::numbers::pi * radius, particle_length + 4.6 * radius));
 }
 
+double repeat_elements(TubeOptions& options, double length, double period) {
+  const auto whole = [](double number) { return static_cast<int>(std::ceil(number - 1e-9)); };
+  const int in_period = whole(options.axial_elements * period / length), odd = in_period % 2;
+  options.axial_elements = 2 * whole((length * in_period / period - odd) / 2) + odd;
+  return options.axial_elements * period / in_period;
+}
+
 int train_images(const TubeOptions& options, double radius, double tolerance) {
   if (!options.periodic_length) return 0;
   constexpr double decay = 2.57;  // of what a particle off the axis does, over R_T

@@ -41,6 +41,10 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
 /// decays like exp(-4.5 x1/R_T)).
 double tube_length(const TubeOptions& options, double radius, double particle_length);
 
+/// A length, no less than this one, and its number of elements, that are not wider: a whole number fits into a period, and one ends half a period
+/// from the middle. So all copies of a train see the same wall, and those of a period twice as long.
+double repeat_elements(TubeOptions& options, double length, double period);
+
 /// How many copies of a train's particle are modelled at either side: those of the options, or such that exp(-2.57 M L/R_T) is below the tolerance.
 /// Nothing repeats: 0.
 int train_images(const TubeOptions& options, double radius, double tolerance);

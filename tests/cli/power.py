@@ -36,6 +36,29 @@ def what_is_not_dissipated_is_stored():
     close(stored, energy[-1] - energy[0], 5e-3 * energy[-1], "the energy stored")
 
 
+TUBE = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle, azimuthal elements: 12, axial elements: 12}
+  Particle: {radius: 0.7, center: [0.0, 0.0, 0.1], viscosity ratio: 5.0}
+  Membrane: {capillary number: 0.1, pre-inflation: 0.05}
+  Surface: {elements per side: 4}
+  Time: {tolerance: 1.0e-5, final time: 0.1}
+  Output: {interval: 0.1, power balance: true}
+"""
+
+
+def the_pressure_drop_does_the_work_in_a_tube():
+    deck(TUBE, "tube.yaml")
+    errors = []
+    for n in (4, 8):
+        run("tube.yaml", "--output", f"tube_{n}", "--quiet", "--set", f"Surface/elements per side={n}")
+        errors.append(numpy.abs(series(f"tube_{n}", "power_residual")).max())
+    check(errors[0] < 2e-3 and errors[1] < errors[0] / 3, "the residual does not fall with the mesh", errors)
+    power, flow_rate = series("tube_8", "flow_power")[-1], numpy.pi
+    close(power, flow_rate * series("tube_8", "disturbed_pressure_drop")[-1], 1e-12 * power, "what the pressure drop does")
+
+
 def mistakes_are_named():
     deck(CAPSULE)
     refused(["Output/power balance", "parabolic"], "deck.yaml", "--set", "Flow/type=parabolic", "--set", "Flow/half width=5")

@@ -17,24 +17,25 @@ BODY = "Membrane: {law: neo-Hookean, capillary number: 0.1, pre-inflation: 0.05}
 ONE = HEAD + "  Particle: {radius: 0.4, center: [0.0, 0.0, 0.2]}\n" + "".join(f"  {part}\n" for part in BODY.replace("}, ", "}\n").splitlines())
 
 
-def _one(*settings, viscosity_ratio=1, ranks=1):
+def _one(*settings, viscosity_ratio=1, ranks=1, at=-1):
     words = [word for setting in (*settings, f"Particle/viscosity ratio={viscosity_ratio}") for word in ("--set", setting)]
     run(deck(ONE), *words, "--output", "one", "--overwrite", "--quiet", ranks=ranks)
-    return {name: series("one", name)[-1] for name in ("velocity_x1", "velocity_x3", "disturbed_pressure_drop", "stresslet_13")}
+    return {name: series("one", name)[at] for name in ("velocity_x1", "velocity_x3", "disturbed_pressure_drop", "stresslet_13")}
 
 
 def two_in_a_period_twice_as_long_do_the_same():
-    """The chain is as long, or longer by half a period; so only the wall's mesh and what is left out differ."""
-    for ratio in (1, 4):
-        one = _one("Tube/images=4", viscosity_ratio=ratio)
+    """The chain is as long, or longer by half a period, on a wall of seven elements in each of the shorter ones: at first what is left is the leak of
+    the wall (5e-7), later what the iterations of implicit steps leave (1.4e-5)."""
+    for ratio, at, within in ((4, 0, 1e-6), (4, -1, 1e-5), (1, -1, 5e-5)):
+        one = _one("Tube/images=4", "Tube/grading=1", viscosity_ratio=ratio, at=at)
         pair = HEAD + "  Particles:\n    defaults: {radius: 0.4, viscosity ratio: %d, %s}\n" % (ratio, BODY) + "".join(
             f"    {name}: {{center: [{x}, 0.0, 0.2]}}\n" for name, x in (("first", -1.0), ("second", 1.0)))
-        run(deck(pair, "pair.yaml"), "--set", "Tube/periodic length=4", "--set", "Tube/axial elements=20", "--output", "pair", "--overwrite", "--quiet")
+        run(deck(pair, "pair.yaml"), "--set", "Tube/periodic length=4", "--set", "Tube/axial elements=25", "--set", "Tube/grading=1", "--output", "pair", "--overwrite", "--quiet")
         for name in ("first", "second"):
             for what in ("velocity_x1", "velocity_x3"):
-                check(abs(series("pair", f"{name}/{what}")[-1] - one[what]) < 1e-4, f"{name} {what} {one[what]}")
-        drop = series("pair", "disturbed_pressure_drop")[-1]
-        check(abs(drop - 2 * one["disturbed_pressure_drop"]) < 1e-3 * drop, f"pressure drop {drop}, {one['disturbed_pressure_drop']}")
+                check(abs(series("pair", f"{name}/{what}")[at] - one[what]) < within, f"{name} {what} {one[what]}")
+        drop = series("pair", "disturbed_pressure_drop")[at]
+        check(abs(drop - 2 * one["disturbed_pressure_drop"]) < 10 * within * drop, f"pressure drop {drop}, {one['disturbed_pressure_drop']}")
 
 
 def what_images_leave_out_decays():
@@ -48,7 +49,7 @@ def what_images_leave_out_decays():
 SPHERES = """
 Tanktread:
   Flow: {type: duct}
-  Tube: {section: circle, azimuthal elements: 16, axial elements: 14, periodic length: 2.5, images: 1}
+  Tube: {section: circle, azimuthal elements: 16, axial elements: 20, periodic length: 2.5, images: 1}
   Particles: {sphere: {radius: 0.5, motion: free, Surface: {elements per side: 4}}}
   Solvers: {rigid bodies: first kind}
   Quadrature: {tolerance: 1.0e-5}
