@@ -30,8 +30,8 @@ namespace tanktread::coupling {
 ///
 /// with one motion or force and torque given of each body. At every place it is assembled, made regular by a flux of each body as in (2.10), and
 /// factored: a film takes no iterations. f is a sum of the densities z_k of unit motions and of that of the flow. What collocation lacks of a force
-/// or torque is, by the reciprocal theorem (2.11), int z_k.(v - (1/mu) A f) dG over all bodies: with it they err by the product of two errors of
-/// densities, where those of (2.23) err by one; and so a stresslet, with the densities of unit strains of its body, but in a tube, which needs none. Dense: for some thousands of control points.
+/// or torque is, by the reciprocal theorem (2.11), int z_k.(v - (1/mu) A f) dG over all bodies, and of a stresslet with the z of its body's unit
+/// strains, but in a tube: they err by the product of two errors of densities, where those of (2.23) err by one. Dense: some thousands of points.
 ///
 /// On a lattice A is that of all images, in a tube less mu times what wall and pressure drop answer: what they add is smooth, so a few iterations
 /// around the factors of the bodies alone solve for each density. The pressure drop

@@ -30,7 +30,9 @@ def two_in_a_period_twice_as_long_do_the_same():
         one = _one("Tube/images=4", "Tube/grading=1", viscosity_ratio=ratio, at=at)
         pair = HEAD + "  Particles:\n    defaults: {radius: 0.4, viscosity ratio: %d, %s}\n" % (ratio, BODY) + "".join(
             f"    {name}: {{center: [{x}, 0.0, 0.2]}}\n" for name, x in (("first", -1.0), ("second", 1.0)))
-        run(deck(pair, "pair.yaml"), "--set", "Tube/periodic length=4", "--set", "Tube/axial elements=25", "--set", "Tube/grading=1", "--output", "pair", "--overwrite", "--quiet")
+        longer = ("Tube/periodic length=4", "Tube/axial elements=25", "Tube/grading=1")
+        words = [word for setting in longer for word in ("--set", setting)]
+        run(deck(pair, "pair.yaml"), *words, "--output", "pair", "--overwrite", "--quiet")
         for name in ("first", "second"):
             for what in ("velocity_x1", "velocity_x3"):
                 check(abs(series("pair", f"{name}/{what}")[at] - one[what]) < within, f"{name} {what} {one[what]}")
