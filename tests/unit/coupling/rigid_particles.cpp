@@ -212,7 +212,7 @@ TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
   Capsule system = free.system();
   const RigidParticles& moved = system.rigid_about(free.rest, 0);
   EXPECT_NEAR(1 - (moved.motion(1).velocity - moved.motion(0).velocity)[0] / 3, 0.186662636, 2e-6);  // the surfaces are spheres to 1e-6
-  EXPECT_NEAR(system.stresslet(free.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 1e-5);  // 2e-4 without the correction
+  EXPECT_NEAR(system.stresslet(free.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 3e-5);  // 1.8e-4 without the correction
 }
 
 TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
