@@ -29,7 +29,6 @@ import copy
 import itertools
 import os
 import pathlib
-import sys
 
 import needs  # before what it looks for
 import numpy
