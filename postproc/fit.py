@@ -146,11 +146,12 @@ class SeriesData:
         expect(set(given) <= known and ("value" in given) != ("curve" in given), f"{name}: a series has value or curve, and error, at, over, origin")
         self.name, self.series, self.error = name, [given["series"], *([given["over"]] if "over" in given else [])], given.get("error")
         self.places = int("origin" in given)
-        expect(not self.places or given["origin"] == "free" and "curve" in given, f"{name}: `origin: free` is of a curve")
+        expect(not self.places or given["origin"] == "free" and "curve" in given, f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
             table = numbers_of(folder / given["curve"], 2)
             self.times, self.values = table[:, 0], table[:, 1]
             self.error = table[:, 2] if self.error is None and table.shape[1] > 2 else self.error
+            self.span = float(numpy.ptp(self.times))  # which the place is told in
         else:
             self.times, self.values = given.get("at"), numpy.array([float(given["value"])])
         self.count = len(self.values)
@@ -162,7 +163,7 @@ class SeriesData:
         times, values = prediction
         passed = numpy.flatnonzero((values[1:] - self.values[0]) * (values[:-1] - self.values[0]) <= 0)
         nearest = passed[-1] if len(passed) else numpy.argmin(abs(values - self.values[0]))
-        return times[[nearest]] - self.times[0]
+        return (times[[nearest]] - self.times[0]) / self.span
 
     def prediction(self, run):
         for name in self.series:
@@ -177,7 +178,7 @@ class SeriesData:
         times, values = prediction
         if self.times is None:
             return values[-1:]
-        wanted = numpy.atleast_1d(self.times) + (place[0] if self.places else 0)
+        wanted = numpy.atleast_1d(self.times) + (place[0] * self.span if self.places else 0)
         return literature.interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):

@@ -175,6 +175,7 @@ def mistakes_are_one_sentence():
                           ({"experiments": {"a": {"data": [{"outline": "circle.csv", "scale": 1, "errors": 0.1}]}}}, "an outline has"),
                           ({"experiments": {"a": {"data": [datum | {"series": "tailor"}]}}}, "no series tailor"),
                           ({"experiments": {"a": {"data": [datum | {"at": 9.0}]}}}, "before its data"),
+                          ({"experiments": {"a": {"data": [datum | {"origin": "free"}]}}}, "is of a curve"),
                           ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),
                           ({"set": {"Time/minimum step": 0.9, "Time/initial step": 0.95, "Membrane/capillary number": 1e-3}, "unknown": {"Particle/radius": 1.0}},
                            "all runs fail")):
