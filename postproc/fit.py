@@ -117,6 +117,11 @@ class OutlineData:
         self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
         self.count = len(self.points)
 
+    @property
+    def length(self):
+        """Of its residuals: those of the points, and that of a scale with an error."""
+        return self.count + (self.places > 2 and not self.free_scale)
+
     def start(self, prediction):
         """Its place, from the middles of both."""
         low, high = self.points.min(0), self.points.max(0)
@@ -139,7 +144,7 @@ class OutlineData:
 class SeriesData:
     """Values of a series, or of its ratio to another one, at times. Unknown with it: when a curve begins, where its origin is free."""
 
-    free_scale = True
+    length = property(lambda self: self.count)  # of its residuals
 
     def __init__(self, given, name, folder):
         known = {"series", "over", "value", "curve", "error", "at", "origin"}
@@ -272,8 +277,7 @@ class Fit:
         return numpy.concatenate([*parts, known])
 
     def length(self):
-        scales = sum(datum.places > 2 and not datum.free_scale for datum in self.data)
-        return self.count + scales + sum(one.known is not None for one in self.unknowns)
+        return sum(datum.length for datum in self.data) + sum(one.known is not None for one in self.unknowns)
 
     def split(self, x):
         return x[:len(self.unknowns)], x[len(self.unknowns):]
@@ -325,7 +329,7 @@ class Fit:
     def solve(self, start=None):
         x = self.begin() if start is None else start
         places = len(x) - len(self.unknowns)
-        free = len(x) - sum(one.known is not None for one in self.unknowns) - sum(datum.places > 2 and not datum.free_scale for datum in self.data)
+        free = len(x) - (self.length() - self.count)  # less what is known beforehand
         expect(free < self.count, f"{self.law}: {free} numbers are unknown, places of outlines among them, and there are {self.count} data")
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
 
@@ -389,9 +393,8 @@ class Fit:
         """{datum's name: (chi square, points)}"""
         found, start = {}, 0
         for datum in self.data:
-            length = datum.count + (datum.places > 2 and not datum.free_scale)
-            found[datum.name] = float((self.residual[start:start + length] ** 2).sum()), length
-            start += length
+            found[datum.name] = float((self.residual[start:start + datum.length] ** 2).sum()), datum.length
+            start += datum.length
         return found
 
     @property
@@ -409,7 +412,7 @@ class Fit:
         runs = mean = variance = start = 0
         for datum in self.data:
             signs = self.residual[start:start + datum.count] > 0
-            start += datum.count + (datum.places > 2 and not datum.free_scale)
+            start += datum.length
             plus, minus, n = signs.sum(), (~signs).sum(), datum.count
             if n < SERIES or not plus or not minus:
                 continue
@@ -591,7 +594,7 @@ def draw(fits, path):
             data.plot(datum.name, datum.predicted(prediction, [])[0], "_", color=color, ms=12)
         start += datum.places
         residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".", ms=2.5, color=color)
-        row += datum.count + (datum.places > 2 and not getattr(datum, "free_scale", True))
+        row += datum.length
     if data.get_legend_handles_labels()[0]:
         data.legend(fontsize=7)
     curves = [datum for datum in best.data if not isinstance(datum, OutlineData) and numpy.size(datum.times) > 1]

@@ -418,7 +418,7 @@ Net Capsule::evaluate_tractions(const Net& x) {
   }
   latest_.load = -tractions_->density();
   latest_.unknowns = v;
-  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
+  note_tractions();
   if (tube_) latest_.response = tube_->respond(latest_.load, {}, tractions_->lacking_pressure());
   return v;
 }
@@ -502,6 +502,11 @@ Net Capsule::viscous_load(const membrane::ViscousLoad& c, const Net& v) {
   }
   const auto clock = phases_.time("projection");
   return solved(mass_.reference(), std::move(load));
+}
+
+void Capsule::note_tractions() {
+  const Net& v = latest_.unknowns;
+  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
 }
 
 void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
@@ -662,7 +667,8 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
   Mat3 moment;
   if (tractions_) {
-    moment = -tractions_->bodies()[p].moment;
+    moment = -tractions_->moment(p);
+    note_tractions();
   } else if (rigid_.holds(p)) {
     moment = rigid_.load_moment(p);
   } else {

@@ -222,6 +222,7 @@ class Capsule : public Dynamics {
   Blocks velocity_blocks() const;
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
+  void note_tractions();
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }

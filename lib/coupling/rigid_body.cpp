@@ -47,6 +47,14 @@ Mat3 unit_strain(int k) {
   return e;
 }
 
+Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& p) {
+  Mat3 e;
+  e << (2 * p[0] + p[1]) / 3, p[2] / 2, p[3] / 2,  //
+      p[2] / 2, (p[1] - p[0]) / 3, p[4] / 2,       //
+      p[3] / 2, p[4] / 2, -(p[0] + 2 * p[1]) / 3;
+  return e;
+}
+
 Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) {
   Net u(x.rows(), 3);
   for (Eigen::Index a = 0; a < u.rows(); ++a)

@@ -15,6 +15,9 @@ namespace tanktread::coupling {
 /// A basis of the strains, trace-free symmetric matrices, k = 0 to 4.
 Mat3 unit_strain(int k);
 
+/// The strain E that has these products E : unit_strain(k).
+Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& products);
+
 /// Resistance to the six rigid motions, the five strains of unit size and, where `quadratic`, the fields y_j y_k e_i with y = x - centre, in the axes
 /// that the body has in `surface`. Whatever an affine flow does to the body is a combination of the first eleven solutions, whatever a flow (2.20)
 /// does one of all twenty-nine.

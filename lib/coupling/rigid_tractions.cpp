@@ -1,8 +1,9 @@
 #include "coupling/rigid_tractions.hpp"
 
+#include <utility>
+
 #include <Eigen/LU>
 
-#include "base/dense_factors.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
 
@@ -28,17 +29,6 @@ constexpr int strains = 5;
 void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net from_centre = block.rows(at).rowwise() - centre.transpose();
   for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
-}
-
-/// The trace-free symmetric matrix that has these products with the unit strains.
-Mat3 of_products(const Eigen::Matrix<double, strains, 1>& products) {
-  Eigen::Matrix<double, strains, strains> gram;
-  for (int j = 0; j < strains; ++j)
-    for (int k = 0; k < strains; ++k) gram(j, k) = unit_strain(j).cwiseProduct(unit_strain(k)).sum();
-  const Eigen::Matrix<double, strains, 1> components = gram.partialPivLu().solve(products);
-  Mat3 sum = Mat3::Zero();
-  for (int k = 0; k < strains; ++k) sum += components[k] * unit_strain(k);
-  return sum;
 }
 
 /// The motions, of those that are free, that take this much force and torque; 0 of the others.
@@ -116,12 +106,19 @@ Net RigidTractions::images_of(const Net& f) {
   return u;
 }
 
+void RigidTractions::factor() {
+  factors_.reset();  // before there is another matrix
+  alone_ = system();
+  if (tube_)
+    factors_.emplace(alone_);
+  else
+    factors_.emplace(std::exchange(alone_, {}));
+}
+
 /// Of velocities at the sites, one a column, for the viscosity 1.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
-  Eigen::MatrixXd alone = system();
-  if (!repeats_ && !tube_) return DenseFactors(std::move(alone)).solve(velocities);
-  const DenseFactors factors(alone);
+  if (!repeats_ && !tube_) return factors_->solve(velocities);
   const Eigen::Index n = velocities.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net f = Eigen::Map<const Net>(in, n / 3, 3);
@@ -129,10 +126,10 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
     if (repeats_)
       u = images_of(f);
     else
-      u = as_net(alone * flat(f)) - viscosity_ * tube_->respond(f).velocity;
+      u = as_net(alone_ * flat(f)) - viscosity_ * tube_->respond(f).velocity;
   };
   const auto precondition = [&](const double* in, double* out) {
-    Eigen::Map<Eigen::VectorXd>(out, n) = factors.solve(Eigen::Map<const Eigen::VectorXd>(in, n));
+    Eigen::Map<Eigen::VectorXd>(out, n) = factors_->solve(Eigen::Map<const Eigen::VectorXd>(in, n));
   };
   const LinearSystem system{{{"traction", n}}, apply, precondition};
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
@@ -178,17 +175,15 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   layer_.place(x);
   const Net at = sites_ * x;
-  const Eigen::Index n_strains = tube_ ? 0 : strains * static_cast<Eigen::Index>(particles_.size());
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1 + n_strains), fields = Eigen::MatrixXd::Zero(n, m);
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
     set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
-    if (tube_) continue;
-    set_unit_strains(at, particles_[p].block, centres[p], velocities.middleCols<strains>(m + 1 + strains * static_cast<Eigen::Index>(p)));
   }
   velocities.col(m) = flat(flow.velocities(at));
   make_regular(x, at);
+  factor();
   const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
@@ -198,7 +193,9 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
   Eigen::VectorXd f = z * motion - of_all.col(m);
   const Net between = flow.velocities(between_.values * x);
-  const Eigen::VectorXd v = fields * motion, lacks = of_all.transpose() * flat(left_over(x, as_net(f), as_net(v), between)), lacking = lacks.head(m);
+  const Eigen::VectorXd v = fields * motion;
+  left_ = flat(left_over(x, as_net(f), as_net(v), between));
+  const Eigen::VectorXd lacks = of_all.transpose() * left_, lacking = lacks.head(m);
   const Eigen::VectorXd change = freed(free_, resistance, -lacking);
   motion += change;
   f += z * change;
@@ -211,8 +208,16 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
     const spline::Block& block = particles_[p].block;
     bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
                   block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
-    if (!tube_) bodies_[p].moment += of_products(lacks.segment<strains>(m + 1 + strains * static_cast<Eigen::Index>(p)));
   }
+  at_ = at;
+  centres_.assign(centres.begin(), centres.end());
+}
+
+Mat3 RigidTractions::moment(std::size_t p) {
+  if (tube_) return bodies_[p].moment;
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(left_.size(), strains);
+  set_unit_strains(at_, particles_[p].block, centres_[p], velocities);
+  return bodies_[p].moment + strain_of_products(viscosity_ * densities(velocities).transpose() * left_);
 }
 
 }  // namespace tanktread::coupling

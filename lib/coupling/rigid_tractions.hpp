@@ -7,6 +7,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "base/dense_factors.hpp"
 #include "base/types.hpp"
 #include "coupling/collocation.hpp"
 #include "coupling/krylov.hpp"
@@ -49,20 +50,26 @@ class RigidTractions {
   struct Body {
     RigidMotion motion;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the fluid, about the centre
-    Mat3 moment = Mat3::Zero();                        ///< int f r dG, symmetric part corrected
+    Mat3 moment = Mat3::Zero();                        ///< int f r dG, as it is
   };
 
   /// Of bodies with net x, where the tube has them placed, and these centres that are driven so; kept until the next call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
 
   const std::vector<Body>& bodies() const { return bodies_; }
+
+  /// int f r dG of a body of the latest call, with what its symmetric part lacks but for the trace, which takes five more systems; in a tube as it
+  /// is. Collective.
+  Mat3 moment(std::size_t p);
+
   const Net& density() const { return density_; }  ///< control values of f
   double lacking_pressure() const { return lacking_pressure_; }         ///< what (2.7) lacks, of all copies
-  const std::vector<SolveReport>& reports() const { return reports_; }  ///< of the systems, if there were any
+  const std::vector<SolveReport>& reports() const { return reports_; }  ///< of the systems of the latest call of either, if there were any
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
  private:
   Eigen::MatrixXd system();
+  void factor();
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
   void make_regular(const Net& x, const Net& at);
   Net images_of(const Net& f);
@@ -83,6 +90,11 @@ class RigidTractions {
   double tolerance_;
   std::vector<int> free_;  // numbers, six a body, of motions that are not given
   Net flux_, outward_;     // b of each body, and a velocity with a flux over that flux
+  Eigen::MatrixXd alone_;  // the system without what a tube answers, kept in one
+  std::optional<DenseFactors> factors_;  // of that
+  Net at_;                               // the sites, and of the density there what it leaves over
+  Eigen::VectorXd left_;
+  std::vector<Vec3> centres_;
   std::vector<Body> bodies_;
   Net density_;
   double lacking_pressure_ = 0;

@@ -49,10 +49,11 @@ void ShapeCoordinates::add_along(int site, const Vec3& normal) {
 }
 
 void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
+  const auto n = static_cast<Eigen::Index>(along_.size());
+  if (n == 0) return;
   dynamics.velocity(x);
   dynamics.linearise(x);
-  const auto n = static_cast<Eigen::Index>(along_.size());
-  if (n == 0 || dynamics.mesh_motion(x).rows() == 0) return;
+  if (dynamics.mesh_motion(x).rows() == 0) return;
   Eigen::MatrixXd slides(n, n), drawn(n, size());
   for (Eigen::Index k = 0; k < n; ++k) slides.col(k) = coordinates_along(dynamics.mesh_motion(along(Eigen::VectorXd::Unit(n, k))));
   for (Eigen::Index k = 0; k < size(); ++k)
