@@ -20,7 +20,7 @@ constexpr double noise = 30;  // a correction this many times the tolerance is a
 void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
               "path of the key of this deck that changes along the branch, say Membrane/capillary number: a number");
-  section.key("to", to, deck::any(), "that of the key", "where the branch ends; it starts at the value that the deck gives to the key");
+  section.key("to", to, deck::any(), "that of the key", "where the branch ends, unless a fold leads it back to where it starts: at the value that the deck gives to the key");
   section.key("method", method, deck::Choice{"arclength", "natural"},
               "`arclength`: around folds, where the parameter turns back; `natural`: up to the first");
   section.key("step", step, deck::positive(), "that of the key", "first step of the parameter; if not given, a twentieth of the way");
@@ -108,8 +108,17 @@ void Branch::keep(const Solved& solved) {
 
 /// Whether the parameter is where the branch is to end, or has come back to where it began.
 bool Branch::ends(const Solved& solved) const {
-  const double way = options_.to - start_, gone = solved.place.q * unit_ - start_, rounding = 1e-12 * std::abs(way);
-  return gone / way >= 1 - 1e-12 || (last_.size() > 2 && gone * way < rounding);
+  constexpr double rounding = 1e-12;
+  const double gone = (solved.place.q * unit_ - start_) / (options_.to - start_);
+  return gone >= 1 - rounding || (last_.size() > 2 && gone < rounding);
+}
+
+/// The end of the branch that this place lies beyond, a value of the parameter.
+std::optional<double> Branch::end_before(const Place& place) const {
+  const double gone = (place.q * unit_ - start_) / (options_.to - start_);
+  if (gone > 1) return options_.to;
+  if (gone < 0) return start_;
+  return {};
 }
 
 /// A step further; shorter where that fails.
@@ -119,15 +128,20 @@ std::optional<Branch::Solved> Branch::stepped() {
   Place t = now.place - last_[last_.size() - 2].place;
   const double before = length(t);
   t = {t.x / before, t.q / before};
+  const auto near = [&](const std::optional<Solved>& solved) { return solved && length(solved->place - now.place) < 2 * step_; };
   for (double first = step_; step_ > least * first; step_ *= 0.5) {
-    Place predicted = now.place.along(t, step_);
-    const double beyond = predicted.q * unit_ - options_.to;
-    if (options_.method == "natural" || beyond * (options_.to - start_) > 0) {  // the last point has the parameter that was asked for
-      const double target = beyond * (options_.to - start_) > 0 ? options_.to : predicted.q * unit_;
-      if (auto solved = at_parameter(target, now.place.along(t, (target / unit_ - now.place.q) / t.q).x)) return solved;
-    } else if (auto solved = on_plane(predicted, t)) {
-      if (length(solved->place - now.place) < 2 * step_) return solved;
+    Place next = now.place.along(t, step_);
+    std::optional<double> asked = end_before(next);
+    if (options_.method == "natural" && !asked) asked = next.q * unit_;
+    if (!asked) {
+      auto solved = on_plane(next, t);
+      if (!near(solved)) continue;
+      asked = end_before(solved->place);
+      if (!asked) return solved;
+      next = solved->place;
     }
+    const Place way = next - now.place;
+    if (auto solved = at_parameter(*asked, now.place.along(way, (*asked / unit_ - now.place.q) / way.q).x); near(solved)) return solved;
   }
   return {};
 }

@@ -69,6 +69,17 @@ def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
     check(abs(rate[at]) < 1e-3, rate[at])  # whatever the mesh, which follows the mode
 
 
+def a_branch_that_turns_back_ends_where_it_began():
+    """With the unstable shape, at the very value of the parameter."""
+    deck(LONG, "long.yaml")
+    run(deck(DECK), "long.yaml", "--set", "Surface/elements per side=4", "--set", "Membrane/capillary number=0.117", "--set",
+        "Particle/initial shape/stretch=[1.15, 1.15, 0.756]", "--set", "Continuation/parameter=Membrane/capillary number", "--set",
+        "Continuation/to=0.14", "--set", "Continuation/step=0.002", "--output", "back", "--quiet")
+    parameter, fold, d = (series("back", name) for name in ("parameter", "fold", "taylor_surface"))
+    check(parameter[-1] == parameter[0] == 0.117 and fold.sum() == 1, parameter, fold)
+    check((numpy.diff(d) > 0).all() and d[-1] > d[fold.argmax()] + 0.02, d)
+
+
 def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
     coarse = ["--set", "Surface/elements per side=4", "--quiet", "--no-expect"]
     second = ["--set", "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[1.4, 2]"]
