@@ -68,8 +68,8 @@ double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
 }
 
 double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
-  const Net missed = between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient));
-  return -copies() * (work + dot(missed, f)) / (amplitude * flow_->flow_rate());
+  if (fixed()) work += dot(between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient)), f);
+  return -copies() * work / (amplitude * flow_->flow_rate());
 }
 
 Net Tube::load_on_wall(const Net& f) {

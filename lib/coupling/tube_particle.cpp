@@ -9,6 +9,23 @@ namespace tanktread::coupling {
 
 using stokes::Layer;
 
+namespace {
+
+Net as_net(const std::vector<double> (&columns)[3]) {
+  Net net(static_cast<Eigen::Index>(columns[0].size()), 3);
+  for (int c = 0; c < 3; ++c) net.col(c) = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), net.rows());
+  return net;
+}
+
+void set_columns(const Net& net, std::vector<double> (&columns)[3]) {
+  for (int c = 0; c < 3; ++c) {
+    columns[c].resize(static_cast<std::size_t>(net.rows()));
+    Eigen::Map<Eigen::VectorXd>(columns[c].data(), net.rows()) = net.col(c);
+  }
+}
+
+}  // namespace
+
 Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& how)
     : space(particle),
       parameters(how),
@@ -80,40 +97,27 @@ const Net& Tube::Particle::flow_of_strength(const stokes::Cap& end) {
   return flow_of_strength_;
 }
 
-/// The weights of (2.7) over Q, with v_inf and, in a straight tube, its gradient interpolated at the collocation points: v_1, v_1,2 and
-/// v_1,3 make the three columns.
-///   f_inf.v = G x1 n.v + mu [v_1,2 (n_2 v_1 + n_1 v_2) + v_1,3 (n_3 v_1 + n_1 v_3)]
+/// The weights of (2.7) over Q. In a straight tube v_inf and f_inf are those at the layers' nodes, so that no load lets the flow rate of the disturbance
+/// be other than 0; that of a channel, which takes an integral over its wall, is interpolated at the collocation points.
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
-  interpolated_ambient = from_sites.solve(ambient);
-  Net at_sites = ambient;
-  if (dual && straight) {
-    const std::vector<Mat3> gradient = flow.gradients(sites);
-    for (std::size_t i = 0; i < gradient.size(); ++i) at_sites.row(static_cast<Eigen::Index>(i)).tail<2>() = gradient[i].row(0).tail<2>();
+  const auto n = static_cast<std::size_t>(single.n_nodes());
+  std::vector<double> flow_at[3], weighted(n);
+  if (straight) {
+    set_columns(flow.velocities(as_net(single.nodes())), flow_at);
+  } else {
+    interpolated_ambient = from_sites.solve(ambient);
+    single.values(interpolated_ambient, flow_at);
   }
-  const Net field = dual && straight ? from_sites.solve(at_sites) : interpolated_ambient;
-  const std::size_t n = static_cast<std::size_t>(single.n_nodes());
-  std::vector<double> flow_at[3], weighted[3];
-  single.values(field, flow_at);
-  for (auto& component : weighted) component.resize(n);
   pressure_of_load = Net::Zero(sites.rows(), 3);
   for (int c = 0; c < (straight ? 1 : 3); ++c) {
-    for (std::size_t k = 0; k < n; ++k) weighted[c][k] = single.weights()[k] * flow_at[c][k];
-    pressure_of_load.col(c) = single.moments(weighted[c]) / flow.flow_rate();
+    for (std::size_t k = 0; k < n; ++k) weighted[k] = single.weights()[k] * flow_at[c][k];
+    pressure_of_load.col(c) = single.moments(weighted) / flow.flow_rate();
   }
   if (!dual || !straight) return;
-  const double mu = flow.viscosity(), gradient = flow.pressure_gradient(), factor = -1 / flow.flow_rate();
-  const auto& normal = dual->normals();
-  dual->values(field, flow_at);
-  for (auto& component : weighted) component.resize(static_cast<std::size_t>(dual->n_nodes()));
-  for (std::size_t k = 0; k < weighted[0].size(); ++k) {
-    const double pressure = -gradient * dual->nodes()[0][k], n1 = normal[0][k], n2 = normal[1][k], n3 = normal[2][k];
-    weighted[0][k] = -pressure * n1 + mu * (flow_at[1][k] * n2 + flow_at[2][k] * n3);
-    weighted[1][k] = -pressure * n2 + mu * flow_at[1][k] * n1;
-    weighted[2][k] = -pressure * n3 + mu * flow_at[2][k] * n1;
-  }
+  set_columns(flow.tractions(as_net(dual->nodes()), as_net(dual->normals())), flow_at);
   pressure_of_velocity.resize(sites.rows(), 3);
-  for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = factor * contrasts.cwiseProduct(dual->moments(weighted[c]));
+  for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = contrasts.cwiseProduct(dual->moments(flow_at[c])) / -flow.flow_rate();
 }
 
 /// Of a symmetric scene at the fundamental points, and their images.

@@ -67,7 +67,7 @@ struct Tube::Particle {
   double centroid = 0;                                                  ///< where that frame has its origin
   Net sites;                                                            ///< collocation points, in the wall's frame
   Net inlet;                                                            ///< (1/mu) c there
-  Net ambient, interpolated_ambient;                                    ///< the duct's flow there, and control values from it
+  Net ambient, interpolated_ambient;                                    ///< the duct's flow there, and of a channel control values from it
   Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
   std::vector<int> nearest;                                             ///< to a collocation point of the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
