@@ -108,8 +108,8 @@ class Tube {
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
 
-  /// What `pressure_of` a force density f lacks, where `flow` is a duct's: `work`, the residual work of the density that has v_inf on the surface, and in
-  /// a channel of v_inf at the places what is left where it is interpolated (2.41).
+  /// What `pressure_of` a force density f lacks, where `flow` is a duct's: `work`, the residual work of the density that has v_inf on the surface,
+  /// and in a channel of v_inf at the places what is left where it is interpolated (2.41).
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors
 

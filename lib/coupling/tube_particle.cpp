@@ -97,8 +97,8 @@ const Net& Tube::Particle::flow_of_strength(const stokes::Cap& end) {
   return flow_of_strength_;
 }
 
-/// The weights of (2.7) over Q. In a straight tube v_inf and f_inf are those at the layers' nodes, so that no load lets the flow rate of the disturbance
-/// be other than 0; that of a channel, which takes an integral over its wall, is interpolated at the collocation points.
+/// The weights of (2.7) over Q. In a straight tube v_inf and f_inf are those at the layers' nodes, so that no load lets the flow rate of the
+/// disturbance be other than 0; that of a channel, which takes an integral over its wall, is interpolated at the collocation points.
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
   const auto n = static_cast<std::size_t>(single.n_nodes());
