@@ -253,7 +253,8 @@ void check_contradictions(const Scene& scene) {
   const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
   refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
-  refuse(steady && scene.tube.channel, sought, "Channel", "in a channel what is carried along is nowhere at rest");
+  refuse(steady && scene.tube.channel && scene.flow.held == "flow rate", sought, "Flow/held `flow rate`",
+         "what is carried along in a channel rests only where a pressure drop does not push it through");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
   if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");

@@ -48,6 +48,7 @@ coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
 
 /// The rigid motions about the origin that change nothing of flow, weight, forces on patches and walls: the flow's Lie derivative along them is 0.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& body) {
+  if (scene.tube.channel) return {};
   if (body.wall) return {coupling::unit_motion(0)};
   const double size = body.radius;
   Net places(4, 3);

@@ -2,12 +2,14 @@
 
 import numpy
 
+import stuck
 import style
 from style import plt
 
 DROP = "inputs/drop_folds.yaml"
 SHEARED = "inputs/drop_shear_folds.yaml"
 CAPSULE = "inputs/capsule_branch.yaml"
+STUCK = "inputs/capsule_stuck_folds.yaml"
 WRINKLED = "inputs/capsule_wrinkles.yaml"
 ELLIPSOID = {"Flow/type": "planar hyperbolic", "Particle/shape": "ellipsoid", "Particle/semi-axes": "[1.8785, 0.7653, 0.6957]",
              "Particle/initial shape/stretch": "[0.7167, 1.1541, 1.2091]"}  # 2.7 : 1.1 : 1, at first 1.6 : 1.05 : 1
@@ -42,6 +44,31 @@ def bursting(study):
         axis.set_ylabel("Ca at the fold")
         axis.legend()
     return figure, ["scene", "viscosity_ratio_or_pre_inflation", "capillary_number", "taylor_parameter", "change_of_ca_relative", "change_of_d"], rows
+
+
+def squeezing(study):
+    """The largest capsule that a constriction lets through
+
+    Neo-Hookean capsules, pre-inflated by 0.1, in a round channel that narrows to half its radius, the pressure drop held. Smaller ones than the curve tells
+    pass; larger ones rest before the throat, on a branch of steady shapes whose fold, in the pressure drop or in the size, is that curve. Ca = μV/G_s,
+    V being the mean velocity of the empty channel. The wall repels the membrane, so that a film stays; broken line: a membrane
+    without film and friction, axisymmetric, whatever the viscosity ratio (postproc/stuck.py).
+
+    Survives: a smaller or softer capsule, a larger pressure drop."""
+    figure, axis = plt.subplots(figsize=(5.6, 4.2))
+    values, rows = "[0.65, 0.6, 0.55]", []
+    for n, mark in ((8, "x"), (10, "o-")):
+        outcome = study.run(STUCK, {"Surface/elements per side": n, "Continuation/second values": values})
+        size, ca, _ = folds(outcome)
+        axis.plot(size, ca, mark, color=style.RUNS[0], ms=4, label=f"Continuation, n = {n}")
+        rows += [("with a film", n, *pair) for pair in zip(size, ca)]
+    dry = [stuck.highest(*stuck.Pushed(outcome.run, 160, radius).through())[0] / stuck.drop_of_velocity(outcome.run) for radius in size]
+    axis.plot(size, dry, "--", color=style.RUNS[1], label="without film and friction")
+    rows += [("without film", "", *pair) for pair in zip(size, dry)]
+    axis.set_xlabel("radius of the capsule over that of the channel")
+    axis.set_ylabel("Ca above which it passes")
+    axis.legend()
+    return figure, ["kind", "elements_per_side", "radius", "capillary_number"], rows
 
 
 def wrinkling(study):
@@ -120,4 +147,4 @@ def folds(outcome):
     return numpy.array([series[name][series["fold"] > 0] for name in ("second_parameter", "parameter", "taylor_surface")])
 
 
-MAPS = [bursting, wrinkling]
+MAPS = [bursting, squeezing, wrinkling]

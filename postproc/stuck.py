@@ -33,11 +33,9 @@ def main():
         if first.value(key) != wanted:
             sys.exit(f"stuck.py: {key} must be {wanted}, but is {first.value(key)}.")
     pushed = Pushed(first, arguments.elements)
-    drop = first.series["channel_pressure_drop"][0] / (first.value("Flow/viscosity", 1.0) * first.value("Flow/mean velocity", 1.0))
+    drop = drop_of_velocity(first)
     way, pressure = pushed.through()
-    top = numpy.argmax(pressure)
-    fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
-    largest, there = fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
+    largest, there = highest(way, pressure)
     print(f"without friction: critical Ca = {largest / drop:.5g}, centroid there {there:.3f}, pressure drop {largest:.5g} G_s / length")
 
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(5.6, 6), sharex=True)
@@ -65,12 +63,24 @@ def capillary_number(run):
     return told if told else run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity", 1.0) / run.value("Membrane/shear modulus")
 
 
+def drop_of_velocity(run):
+    """Pressure drop of the empty channel over viscosity times mean velocity."""
+    return run.series["channel_pressure_drop"][0] / (run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity", 1.0))
+
+
+def highest(way, pressure):
+    """The pressure at the vertex of the parabola through its highest values, and where that is."""
+    top = numpy.argmax(pressure)
+    fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
+    return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
+
+
 class Pushed:
     """The membrane as cones between rings: x and r of each, from the rear to the front; in units of the shear modulus."""
 
-    def __init__(self, run, n):
+    def __init__(self, run, n, radius=None):
         self.mouth, self.depth, self.width = run.value("Channel/radius", 1.0), run.value("Channel/depth", 0.5), run.value("Channel/half length")
-        self.radius = run.value("Particle/radius", 1.0)
+        self.radius = radius or run.value("Particle/radius", 1.0)
         unstressed = self.radius / (1 + run.value("Membrane/pre-inflation", 0.0))
         angle = numpy.linspace(0, numpy.pi, n + 1)
         x, r = -unstressed * numpy.cos(angle), unstressed * numpy.sin(angle)

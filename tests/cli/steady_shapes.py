@@ -27,6 +27,15 @@ Tanktread:
   Surface: {elements per side: 6}
   Solvers: {projection: least squares}
 """
+STUCK = """
+Tanktread:
+  Flow: {type: duct, mean velocity: 0.005, held: pressure drop}
+  Channel: {section: circle, profile: constriction, depth: 0.5, half length: 1.5, start: -4, end: 4, contact gap: 0.001, repulsion: 2.0, repulsion range: 0.06,
+            azimuthal elements: 8, axial elements: 32}
+  Particle: {shape: sphere, radius: 0.65, center: [-0.95, 0, 0]}
+  Membrane: {law: neo-Hookean, shear modulus: 1.0, pre-inflation: 0.1}
+  Surface: {elements per side: 4}
+"""
 BRANCH = """
 Tanktread:
   Membrane: {capillary number: 0.1}
@@ -171,6 +180,18 @@ def the_mesh_of_a_shape_and_of_a_branch_adapts():
     points = series("branch_cut", "n_control_points")
     check(points[-1] > points[0], points)
     close(series("branch_cut", "taylor_surface")[-1], 0.3038398, 5e-3)
+
+
+def a_capsule_that_a_pressure_drop_does_not_push_through_a_constriction_rests():
+    """Carried along with a flow rate it does not."""
+    search = ["--set", "Steady/tolerance=1e-7", "--set", "Steady/step=7", "--quiet"]
+    run(deck(STUCK), *search, "--output", "stuck")
+    place = series("stuck", "centroid_x1")[-1]
+    check(place < -0.3 and abs(series("stuck", "velocity_x1")[-1]) < 1e-6, place, series("stuck", "velocity_x1"))
+    run(deck(STUCK), "--set", "Particle/initial shape/run=stuck", "--set", "Time/final time=10", "--output", "stays", "--quiet")
+    close(series("stays", "centroid_x1")[-1], place, 1e-5)
+    said = run(deck(STUCK), *search, "--set", "Flow/held=flow rate", "--output", "no", code=2).stderr
+    check(len(said.splitlines()) == 1 and "Flow/held" in said and "rests" in said, said)
 
 
 def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
