@@ -30,8 +30,8 @@ Tanktread:
 STUCK = """
 Tanktread:
   Flow: {type: duct, mean velocity: 0.005, held: pressure drop}
-  Channel: {section: circle, profile: constriction, depth: 0.5, half length: 1.5, start: -4, end: 4, contact gap: 0.001, repulsion: 2.0, repulsion range: 0.06,
-            azimuthal elements: 8, axial elements: 32}
+  Channel: {section: circle, profile: constriction, depth: 0.5, half length: 1.5, start: -4, end: 4, contact gap: 0.001, repulsion: 2.0,
+            repulsion range: 0.06, azimuthal elements: 8, axial elements: 32}
   Particle: {shape: sphere, radius: 0.65, center: [-0.95, 0, 0]}
   Membrane: {law: neo-Hookean, shear modulus: 1.0, pre-inflation: 0.1}
   Surface: {elements per side: 4}
