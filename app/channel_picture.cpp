@@ -24,11 +24,11 @@ struct WallLine {
 
 WallLine along_wall(const coupling::ChannelFlow& flow) {
   const surface::TubeWall& wall = *flow.surface();
-  const auto around = static_cast<int>(wall.space.elements.size()) / (wall.n_along - 3);
   WallLine line;
-  for (int i = 0; i < wall.n_along - 3; ++i)
+  for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e)
     for (const double s : {0.125, 0.375, 0.625, 0.875}) {
-      const spline::Site site{i * around, s, 0};
+      if (wall.space.elements[static_cast<std::size_t>(e)].origin[1] > 0) break;
+      const spline::Site site{e, s, 0};
       const surface::Point at = surface::point(wall.space, wall.net, site);
       const Vec3 f = surface::value(wall.space, flow.wall_traction(), site);
       line.s.push_back(flow.channel().coordinates(at.x)[0]);

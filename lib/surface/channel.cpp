@@ -219,9 +219,10 @@ std::vector<double> Channel::lines() const {
   return u;
 }
 
-/// Values of u at which the curvature of wall or centre line jumps, which splines follow to second order only.
+/// Values of u at which the curvature of wall or centre line jumps.
 std::vector<double> Channel::kinks() const {
   std::vector<double> u;
+  if (factors_) u = {factors_->breaks.front(), factors_->breaks.back()};
   if (own_.profile == "constriction" || own_.profile == "expansion") u = {-*own_.half_length, *own_.half_length};
   if (own_.profile == "step") {
     const double first = *own_.half_length - *own_.corner_radius, arc = pi / 2 * *own_.corner_radius;
@@ -268,17 +269,35 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-std::vector<double> Channel::knots(int elements) const {
+Channel::Knots Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};
   for (std::size_t k = 1; k < u.size(); ++k) count.push_back(count.back() + (u[k] - u[k - 1]) * (1 / size[k] + 1 / size[k - 1]) / 2);
-  std::vector<double> knots{u.front()};
-  for (int i = 1; i < elements; ++i) {
-    const double wanted = count.back() * i / elements;
-    const auto k = static_cast<std::size_t>(std::ranges::lower_bound(count, wanted) - count.begin());
-    knots.push_back(u[k - 1] + (u[k] - u[k - 1]) * (wanted - count[k - 1]) / (count[k] - count[k - 1]));
+  for (double& c : count) c *= elements / count.back();
+  const auto between = [](const std::vector<double>& x, const std::vector<double>& y, double at) {
+    const auto k = static_cast<std::size_t>(std::lower_bound(x.begin() + 1, x.end() - 1, at) - x.begin());
+    return y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]);
+  };
+  Knots knots{{u.front()}, {}};
+  double begin = 0;
+  int done = 0;
+  const auto fill = [&](double last, double end, int whole) {
+    for (int i = 1; i < whole - done; ++i) knots.u.push_back(between(count, u, begin + (end - begin) * i / (whole - done)));
+    knots.u.push_back(last);
+    begin = end, done = whole;
+  };
+  std::vector<double> joints = kinks();
+  if (own_.profile == "step")  // where it goes straight across its own sides are folded: there splines are smooth, which keeps their points apart
+    std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
+  std::ranges::sort(joints);
+  for (const double joint : joints) {
+    const double end = between(u, count, joint);
+    const auto whole = static_cast<int>(std::lround(end - 1e-6));
+    if (whole <= done || whole >= elements) continue;
+    fill(joint, end, whole);
+    knots.joints.push_back(whole);
   }
-  knots.push_back(u.back());
+  fill(u.back(), elements, elements);
   return knots;
 }
 

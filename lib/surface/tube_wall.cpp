@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -30,9 +31,12 @@ struct Line {
     const int m = static_cast<int>(knots.size()) - 1;
     const double tiny = 1e-9 * (knots[m] - knots[0]);
     std::vector<std::pair<int, double>> at;
-    for (int e = 0; e < m; ++e)
-      if (u > knots[e] - tiny && u < knots[e + 1] + tiny)
-        at.emplace_back(first + e, std::clamp((u - knots[e]) / (knots[e + 1] - knots[e]), 0., 1.));
+    int piece = first;
+    for (int e = 0; e < m; ++e) {
+      if (knots[e] == knots[e + 1]) continue;
+      if (u > knots[e] - tiny && u < knots[e + 1] + tiny) at.emplace_back(piece, std::clamp((u - knots[e]) / (knots[e + 1] - knots[e]), 0., 1.));
+      ++piece;
+    }
     if (closed && std::abs(u - knots[0]) <= tiny) at.emplace_back(first + m - 1, 1.);
     for (auto& [e, s] : at)
       for (const double end : {0., 1.})
@@ -44,6 +48,7 @@ struct Line {
   template <class Number>
   void add_pieces(const std::vector<double>& extended, int m, const Number& number) {
     for (int e = 0; e < m; ++e) {
+      if (extended[e + 3] == extended[e + 4]) continue;
       Piece piece;
       for (int a = 0; a < 4; ++a) {
         std::array<double, 5> k;
@@ -141,7 +146,7 @@ std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::
   wall.space = product(along, around);
   wall.n_along = along.n, wall.n_around = around.n;
   wall.space.description = formatted("%d x %d cubic elements, %d control points", static_cast<int>(around.pieces.size()),
-                                     static_cast<int>(knots.size()) - 1, wall.space.n_points);
+                                     static_cast<int>(along.pieces.size()), wall.space.n_points);
   wall.net.resize(wall.space.n_points, 3);
   return {std::move(wall), std::move(ring)};
 }
@@ -164,29 +169,59 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
   return wall;
 }
 
+namespace {
+
+/// Three times where the curvature of a channel jumps: beside such a line the pressure on the wall goes on with another slope, and its shear stress as
+/// d log d with the distance d. Splines that are smooth across it ring.
+std::vector<double> creased(const Channel::Knots& knots) {
+  std::vector<double> all = knots.u;
+  for (auto joint = knots.joints.rbegin(); joint != knots.joints.rend(); ++joint) {
+    const auto at = static_cast<std::size_t>(*joint);
+    all.insert(all.begin() + *joint, 2, knots.u[at]);
+  }
+  return all;
+}
+
+/// Control points of the spline through a channel's sections, with its slopes at the ends and at the joints.
+std::vector<Vec2> through(const Channel& channel, const Channel::Knots& knots, const std::function<Vec2(const Channel::Section&)>& value) {
+  const auto at = [&](double u) { return value(channel.at(u)); };
+  const double step = 1e-6 * (knots.u.back() - knots.u.front());
+  const auto slope = [&](double u, double h) -> Vec2 { return (4 * at(u + h) - 3 * at(u) - at(u + 2 * h)) / (2 * h); };
+  std::vector<Vec2> all;
+  auto first = knots.u.begin();
+  for (std::size_t k = 0; k <= knots.joints.size(); ++k) {
+    const auto last = k < knots.joints.size() ? knots.u.begin() + knots.joints[k] : knots.u.end() - 1;
+    std::vector<Vec2> points;
+    for (auto u = first; u <= last; ++u) points.push_back(at(*u));
+    const auto span = control_points(interpolate_open({first, last + 1}, points, slope(*first, step), slope(*last, -step)));
+    all.insert(all.end(), span.begin() + (k > 0), span.end());
+    first = last;
+  }
+  return all;
+}
+
+}  // namespace
+
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
-  const std::vector<double> knots = channel->knots(channel->elements());
-  auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements);
+  const Channel::Knots knots = channel->knots(channel->elements());
+  auto [wall, ring] = woven(channel->outline(), creased(knots), azimuthal_elements);
   wall.space.description = "channel, " + wall.space.description;
   const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // the spline's area is that of the section
   for (Vec2& point : ring) point *= wider;
-  std::vector<Vec2> centre, across, upward;
   double narrowest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    const Channel::Section at = channel->at(knots[k]);
-    centre.push_back(at.centre.head<2>());
-    across.push_back(at.factor[0] * at.across.head<2>());
-    upward.emplace_back(at.factor[1], 0);
+  for (std::size_t k = 0; k < knots.u.size(); ++k) {
+    const Channel::Section at = channel->at(knots.u[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
-    const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
+    const double widest = std::max(knots.u[k] - knots.u[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
     wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // the ends of a straight one are coarser
     narrowest = at.factor.minCoeff();
   }
-  const auto control = [&](const std::vector<Vec2>& points) { return control_points(interpolate_open(knots, points)); };
-  const std::vector<Vec2> c = control(centre), a = control(across), u = control(upward);
+  const auto centre = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.centre.head<2>(); });
+  const auto across = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.factor[0] * at.across.head<2>(); });
+  const auto upward = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return Vec2(at.factor[1], 0); });
   for (int i = 0; i < wall.n_along; ++i)
     for (int k = 0; k < wall.n_around; ++k)
-      wall.net.row(i * wall.n_around + k) << (c[i] + ring[k][0] * a[i]).transpose(), ring[k][1] * u[i][0];
+      wall.net.row(i * wall.n_around + k) << (centre[i] + ring[k][0] * across[i]).transpose(), ring[k][1] * upward[i][0];
   wall.outline = scaled(channel->outline(channel->start()).spline(azimuthal_elements), Vec2::Constant(wider));
   wall.start = channel->start(), wall.end = channel->end();
   wall.channel = std::move(channel);

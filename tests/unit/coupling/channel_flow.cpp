@@ -47,6 +47,23 @@ TEST(ChannelFlow, PassesEverySectionAlike) {
   EXPECT_GT(flow.extra_pressure_drop(), 0);
 }
 
+/// Beside the ends of the constriction, where the wall's curvature jumps, the shear stress falls to the kink and rises after it, once.
+TEST(ChannelFlow, HasAShearStressThatDoesNotRing) {
+  const ChannelFlow flow(channel("constriction", 16), 1, 1, {});
+  const surface::TubeWall& wall = *flow.surface();
+  std::vector<double> shear;
+  for (int e = 0; e < static_cast<int>(wall.space.elements.size()); e += 16)
+    for (const double s : {0.2, 0.4, 0.6, 0.8}) {
+      const surface::Point at = surface::point(wall.space, wall.net, {e, s, 0.5});
+      const Vec3 f = surface::value(wall.space, flow.wall_traction(), {e, s, 0.5});
+      if (at.x[0] > -1.6 && at.x[0] < -0.2) shear.push_back((f - f.dot(at.n) * at.n).norm());
+    }
+  int turns = 0;
+  for (std::size_t k = 2; k < shear.size(); ++k) turns += (shear[k] - shear[k - 1]) * (shear[k - 1] - shear[k - 2]) < 0;
+  EXPECT_GT(shear.size(), 30u);
+  EXPECT_LE(turns, 1);
+}
+
 TEST(ChannelFlow, CostsInASlenderChannelWhatLubricationSays) {
   surface::TubeOptions options = channel("constriction", 12);
   options.channel->depth = 0.2, options.channel->half_length = 8;
