@@ -269,7 +269,9 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-Channel::Knots Channel::knots(int elements) const {
+/// A line is there three times where the curvature of wall or centre line jumps, unless elements are too few for that: beside it the pressure on the wall
+/// goes on with another slope, and the shear stress as d log d with the distance d. Splines that are smooth across it ring.
+std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};
   for (std::size_t k = 1; k < u.size(); ++k) count.push_back(count.back() + (u[k] - u[k - 1]) * (1 / size[k] + 1 / size[k - 1]) / 2);
@@ -278,12 +280,12 @@ Channel::Knots Channel::knots(int elements) const {
     const auto k = static_cast<std::size_t>(std::lower_bound(x.begin() + 1, x.end() - 1, at) - x.begin());
     return y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]);
   };
-  Knots knots{{u.front()}, {}};
+  std::vector<double> knots{u.front()};
   double begin = 0;
   int done = 0;
   const auto fill = [&](double last, double end, int whole) {
-    for (int i = 1; i < whole - done; ++i) knots.u.push_back(between(count, u, begin + (end - begin) * i / (whole - done)));
-    knots.u.push_back(last);
+    for (int i = 1; i < whole - done; ++i) knots.push_back(between(count, u, begin + (end - begin) * i / (whole - done)));
+    knots.push_back(last);
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
@@ -295,7 +297,7 @@ Channel::Knots Channel::knots(int elements) const {
     const auto whole = static_cast<int>(std::lround(end - 1e-6));
     if (whole <= done || whole >= elements) continue;
     fill(joint, end, whole);
-    knots.joints.push_back(whole);
+    knots.insert(knots.end(), 2, joint);
   }
   fill(u.back(), elements, elements);
   return knots;

@@ -37,12 +37,8 @@ class Channel {
   bool inside(const Vec3& x) const;
 
   /// Of the wall, along: lines of a surface u = knots, from start to end, and a section at any u between them. Where f jumps in a step, u goes on and
-  /// s does not. `joints`: those where the curvature of wall or centre line jumps, if elements are not too few for that; none in a step.
-  struct Knots {
-    std::vector<double> u;
-    std::vector<int> joints;
-  };
-  Knots knots(int elements) const;
+  /// s does not.
+  std::vector<double> knots(int elements) const;
   int elements() const;  ///< as many as are needed for elements as long as they are wide
   Section at(double u) const;
 

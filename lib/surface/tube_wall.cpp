@@ -171,31 +171,20 @@ TubeWall tube_wall(const Outline& section, const TubeOptions& options, double le
 
 namespace {
 
-/// Three times where the curvature of a channel jumps: beside such a line the pressure on the wall goes on with another slope, and its shear stress as
-/// d log d with the distance d. Splines that are smooth across it ring.
-std::vector<double> creased(const Channel::Knots& knots) {
-  std::vector<double> all = knots.u;
-  for (auto joint = knots.joints.rbegin(); joint != knots.joints.rend(); ++joint) {
-    const auto at = static_cast<std::size_t>(*joint);
-    all.insert(all.begin() + *joint, 2, knots.u[at]);
-  }
-  return all;
-}
-
-/// Control points of the spline through a channel's sections, with its slopes at the ends and at the joints.
-std::vector<Vec2> through(const Channel& channel, const Channel::Knots& knots, const std::function<Vec2(const Channel::Section&)>& value) {
+/// Control points of the spline through a channel's sections, with its slopes at the ends and where a knot is there three times.
+std::vector<Vec2> through(const Channel& channel, const std::vector<double>& knots, const std::function<Vec2(const Channel::Section&)>& value) {
   const auto at = [&](double u) { return value(channel.at(u)); };
-  const double step = 1e-6 * (knots.u.back() - knots.u.front());
+  const double step = 1e-6 * (knots.back() - knots.front());
   const auto slope = [&](double u, double h) -> Vec2 { return (4 * at(u + h) - 3 * at(u) - at(u + 2 * h)) / (2 * h); };
   std::vector<Vec2> all;
-  auto first = knots.u.begin();
-  for (std::size_t k = 0; k <= knots.joints.size(); ++k) {
-    const auto last = k < knots.joints.size() ? knots.u.begin() + knots.joints[k] : knots.u.end() - 1;
+  for (auto first = knots.begin(); first + 1 < knots.end();) {
+    const auto last = std::adjacent_find(first, knots.end()), end = last == knots.end() ? last : last + 1;
+    const std::vector<double> part(first, end);
     std::vector<Vec2> points;
-    for (auto u = first; u <= last; ++u) points.push_back(at(*u));
-    const auto span = control_points(interpolate_open({first, last + 1}, points, slope(*first, step), slope(*last, -step)));
-    all.insert(all.end(), span.begin() + (k > 0), span.end());
-    first = last;
+    for (const double u : part) points.push_back(at(u));
+    const auto span = control_points(interpolate_open(part, points, slope(part.front(), step), slope(part.back(), -step)));
+    all.insert(all.end(), span.begin() + !all.empty(), span.end());
+    first = last == knots.end() ? last : last + 2;
   }
   return all;
 }
@@ -203,16 +192,16 @@ std::vector<Vec2> through(const Channel& channel, const Channel::Knots& knots, c
 }  // namespace
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
-  const Channel::Knots knots = channel->knots(channel->elements());
-  auto [wall, ring] = woven(channel->outline(), creased(knots), azimuthal_elements);
+  const std::vector<double> knots = channel->knots(channel->elements());
+  auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements);
   wall.space.description = "channel, " + wall.space.description;
   const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // the spline's area is that of the section
   for (Vec2& point : ring) point *= wider;
   double narrowest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < knots.u.size(); ++k) {
-    const Channel::Section at = channel->at(knots.u[k]);
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
-    const double widest = std::max(knots.u[k] - knots.u[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
+    const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
     wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // the ends of a straight one are coarser
     narrowest = at.factor.minCoeff();
   }

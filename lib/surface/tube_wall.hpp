@@ -33,7 +33,7 @@ struct TubeWall {
 /// or `half_length` of the particle where that is more.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
-/// The wall of a channel: (C, f2 N, f3 e3) by splines through its knots, creased at the joints, times the outline. `start` and `end` count along its
+/// The wall of a channel: (C, f2 N, f3 e3) interpolated by cubic splines at the channel's knots, times the outline. `start` and `end` count along its
 /// centre line.
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements);
 
