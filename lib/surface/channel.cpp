@@ -269,8 +269,8 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-/// A line is there three times where the curvature of wall or centre line jumps, unless elements are too few for that: beside it the pressure on the wall
-/// goes on with another slope, and the shear stress as d log d with the distance d. Splines that are smooth across it ring.
+/// A line is there three times where the curvature of wall or centre line jumps, unless elements are too few for that: beside it the pressure on the
+/// wall goes on with another slope, and the shear stress as d log d with the distance d. Splines that are smooth across it ring.
 std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};

@@ -44,6 +44,17 @@ def _rows(path="results/study/table.csv"):
         return list(csv.DictReader(file))
 
 
+def what_stays_in_a_constriction_is_told_from_what_creeps():
+    import critical
+    t = numpy.linspace(0, 30, 301)
+    check(critical.stays(t, 1 - numpy.exp(-t), 1, 1), "it came to rest")
+    check(critical.stays(t, 0.01 * t, 1, 1) is None, "it creeps on")
+    check(critical.stays(t, 0.0005 * numpy.maximum(t - 25, 0), 1, 1) is None, "it is slow and sets off")
+    check(critical.stays(t[:50], 0 * t[:50], 1, 1) is None, "nobody looked for long enough")
+    refused = subprocess.run([SOURCE / "postproc/critical.py", "deck.yaml", "--between", "2", "1", "--past", "0"], capture_output=True, text=True)
+    check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
+
+
 def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
     path = deck(DECK).resolve()
     found = tanktread.run(path, {"Particle/semi-axes": [1.0, 1.0, 0.8], "Particle/shape": "spheroid"})
