@@ -17,7 +17,7 @@ namespace {
 membrane::Material material(const Scene& scene, const Body& body) {
   if (scene.particle.rigid()) return {body.law, {}, {}};
   return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed", scene.membrane.spontaneous_curvature.value_or(0)},
-          {scene.membrane.shear_viscosity, scene.membrane.dilatational_viscosity}, scene.membrane.area_order};
+          scene.membrane.relaxation_time ? membrane::SurfaceViscosity{} : scene.membrane.viscosity(), scene.membrane.area_order};
 }
 
 Eigen::MatrixXd numbers_of(const auto& values) {

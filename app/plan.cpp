@@ -75,7 +75,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 }
 
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
-  if (scene.particle.viscosity_ratio == 1 && scene.viscous_membrane())
+  if (scene.particle.viscosity_ratio == 1 && scene.viscous_membrane() && !scene.maxwell_membrane())
     return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns a velocity",
                      scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
@@ -90,7 +90,8 @@ std::string membrane_line(const Scene& scene) {
   const std::string law = own ? formatted(" with shear modulus %.6g G_s and area modulus %.6g G_s for small strains", own->shear_modulus(),
                                           own->area_modulus())
                               : "";
-  const std::string load = scene.membrane.law + law + pulled + ", load " + scene.membrane.load;
+  const std::string memory = scene.maxwell_membrane() ? formatted(", a Maxwell element that forgets within %g", *scene.membrane.relaxation_time) : "";
+  const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
   if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
   if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
   if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";

@@ -116,8 +116,9 @@ struct Scene : ParticleKind {
   double rate() const;               ///< speed over radius; of the membrane at rest, modulus/(viscosity x radius), where nothing else moves
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
-  bool viscous_membrane() const { return !particle.rigid() && membrane.shear_viscosity + membrane.dilatational_viscosity > 0; }
-  bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || viscous_membrane(); }
+  bool viscous_membrane() const { return !particle.rigid() && membrane.viscous(); }
+  bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }
+  bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || (viscous_membrane() && !maxwell_membrane()); }
   Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
   double bending_modulus() const;    ///< E_b, units force x length
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law

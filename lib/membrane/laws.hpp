@@ -150,6 +150,28 @@ struct UserLaw {
   friend bool operator==(const UserLaw&, const UserLaw&) = default;
 };
 
+/// Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2, the springs of a MaxwellElement (3.23): shear and dilatation apart, per present area.
+struct MaxwellSpring {
+  double shear_modulus = 1;     ///< G, force per length
+  double dilatation_modulus = 0;  ///< K
+
+  template <class Number>
+  Number energy(const Number& i1, const Number& i2) const {
+    const Number j = sqrt(i2 + 1.0);
+    return (0.5 * shear_modulus) * (i1 + 2.0 - 2.0 * j) + (0.5 * dilatation_modulus) * (j * (j - 1.0) * (j - 1.0));
+  }
+  template <class Number>
+  Response<Number> response(const Number&, const Number& i2) const {
+    const Number zero = 0.0 * i2, square = i2 + 1.0, j = sqrt(square), inverse = 1.0 / j;
+    const double g = shear_modulus, k = dilatation_modulus;
+    return {zero + 0.5 * g, (-0.5 * g) * inverse + (0.25 * k) * (3.0 * j - 4.0 + inverse), zero, zero,
+            (0.5 * g + 0.25 * k * (3.0 * square - 1.0)) * (inverse * inverse * inverse)};
+  }
+  double modulus() const { return shear_modulus; }
+  double area_modulus() const { return dilatation_modulus; }
+  friend bool operator==(const MaxwellSpring&, const MaxwellSpring&) = default;
+};
+
 /// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
 struct SurfaceTension {
   double tension = 1;  ///< sigma
@@ -188,7 +210,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 }
 
 /// A law of the deck's choice; visited once outside the hot loops.
-using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity>;
+using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
 /// A law in two parts, whose energies add up to its own: without its resistance to a change of area as far as that is apart, and this one.
 struct SplitLaw {

@@ -187,7 +187,7 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
     for (int q = 0; q < at.n; ++q)
       for (int l = 0; l < at.batch.used; ++l) {
         const double here = numbers(tension)[lanes * q + l] / unit, area = numbers(share)[lanes * q + l];
-        result.area_change = std::max(result.area_change, std::abs(area / numbers(&at.reference[q].area)[l] - 1));
+        result.area_change = std::max(result.area_change, std::abs(area / numbers(at.reference, q, 4)[l] - 1));
         if (!sampled) continue;
         result.smallest = std::min(result.smallest, here);
         result.area[at.batch.elements[l]] += area;

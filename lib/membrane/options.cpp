@@ -103,6 +103,9 @@ void Options::declare(deck::Section& section) {
               "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
   section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
               "kappa_s: the same against a change of area");
+  section.key("relaxation time", relaxation_time, deck::positive(), "time",
+              "T: the membrane forgets within it what its viscosity resists: springs eta_s/T and kappa_s/T in series with the dashpots, a Maxwell "
+              "element (3.23) beside the elastic membrane; if not given, the dashpots are alone (Kelvin and Voigt). For explicit schemes");
   section.optional_section("forces", forces, "forces on patches of the membrane, none without this list");
 }
 
@@ -139,7 +142,9 @@ void Options::check() const {
   if (spontaneous_curvature && bending(1, 1) == 0)
     throw UserError("Membrane/spontaneous curvature needs Membrane/bending modulus or Membrane/bending number.");
   forces.check();
-  if (shear_viscosity + dilatational_viscosity > 0) {
+  if (relaxation_time && !viscous())
+    throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");
+  if (viscous()) {
     const std::string key = std::string("Membrane/") + (shear_viscosity > 0 ? "shear" : "dilatational") + " viscosity";
     if (law == "surface tension")
       throw UserError(key + " and Membrane/law `surface tension` contradict each other: an interface has no material points.");

@@ -17,6 +17,10 @@ struct ReferencePointOf {
 };
 using ReferencePoint = ReferencePointOf<Pack>;
 
+/// Where number `field` of the five at point q of a batch lies, a lane behind the other.
+inline const double* numbers(const ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
+inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
+
 /// The tangent at a Gauss point. With e = (a1.u1, a1.u2 + a2.u1, a2.u2) the change of the stress is dS = C e.
 template <class Number>
 struct TangentPointOf {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "membrane/carried.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/surfactant_options.hpp"
@@ -18,27 +19,27 @@ namespace tanktread::membrane {
 ///
 /// with u the velocity of the control points and v that of the fluid, both the same across the surface. Kept are q_A = m_A/int N_A dG of the initial
 /// surface, 1 at the start. Serial.
-class Surfactant {
+class Surfactant : public Carried {
  public:
   /// `clean_tension` sigma(0); `space` must outlive it.
   Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
 
-  Eigen::Index size() const { return share_.size(); }  ///< of q: one a control point
+  Eigen::Index size() const override { return share_.size(); }  ///< one a control point
+  Eigen::VectorXd start(const Net&) override { return Eigen::VectorXd::Ones(size()); }
 
-  /// Takes the surface x and q there: what follows is of both. Throws RunFailure where no tension is left somewhere.
-  void place(const Net& x, const Eigen::VectorXd& q);
+  /// Throws RunFailure where no tension is left somewhere.
+  void place(const Net& x, const Eigen::VectorXd& q) override;
 
   const Eigen::VectorXd& concentration() const { return concentration_; }  ///< control values of c
 
   /// What the surfactant adds to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).     (3.18)
-  Net load() const;
+  Net load() const override;
 
-  /// dq/dt, where the fluid is faster than the control points by `faster` (control values).
-  Eigen::VectorXd rate(const Net& faster) const;
+  Eigen::VectorXd rate(const Net& faster) const override;
 
   double mass(const Eigen::VectorXd& q) const { return share_.dot(q) / share_.sum(); }  ///< int c dG over the initial one
   /// int (f(c) - sigma(0)) dG of the free energy f of the surface: what the surfactant adds to that of the clean interface.     (3.21)
-  double energy() const;
+  double energy() const override;
   double smallest() const { return smallest_; }                          ///< c at the Gauss points
   double largest() const { return largest_; }
 

@@ -1,0 +1,74 @@
+#include "app/carrying_particle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/series.hpp"
+
+namespace tanktread {
+
+void CarryingParticle::carry(membrane::Carried& carried) {
+  carried_ = &carried;
+  take_particle();
+}
+
+void CarryingParticle::take_particle() { motion_.emplace(static_cast<coupling::Capsule&>(particle_->dynamics()), *carried_); }
+
+motion::State CarryingParticle::of_particle(const motion::State& state) const {
+  motion::State own = state;
+  own.x = motion_->shape(state.x);
+  for (Net& slope : own.history) slope = motion_->shape(slope);
+  return own;
+}
+
+bool CarryingParticle::resume(Resumed& resumed) {
+  motion::State whole = std::exchange(resumed.state, of_particle(resumed.state));
+  const bool another_mesh = particle_->resume(resumed);
+  resumed.state = std::move(whole);
+  take_particle();
+  return another_mesh;
+}
+
+bool CarryingParticle::adapt(motion::State& state, RunTotals& totals) {
+  motion::State own = of_particle(state);
+  const bool another_mesh = particle_->adapt(own, totals);
+  state.x = motion_->with_shape(state.x, own.x);
+  for (std::size_t k = 0; k < state.history.size(); ++k) state.history[k] = motion_->with_shape(state.history[k], own.history[k]);
+  return another_mesh;
+}
+
+std::size_t CarryingParticle::column(std::string_view name) const {
+  const std::vector<Series> all = run_series(scene_);
+  return static_cast<std::size_t>(std::ranges::find(all, name, &Series::name) - all.begin());
+}
+
+std::vector<double> CarryingParticle::row(const motion::State& state, const motion::StepReport& report, double wall_seconds) {
+  const motion::State own = of_particle(state);
+  motion_->place(state.x);
+  std::vector<double> row = particle_->row(own, report, wall_seconds);
+  row[column("energy")] += carried_->energy();
+  if (scene_.output.power_balance) own_power(row, own);
+  complete(row, motion_->content(state.x));
+  return row;
+}
+
+/// What is carried drives the particle from outside as far as that knows: its power is of no force, but the surface's own.
+void CarryingParticle::own_power(std::vector<double>& row, const motion::State& own) {
+  auto& capsule = static_cast<coupling::Capsule&>(particle_->dynamics());
+  const Net velocity = capsule.slides() ? capsule.fluid_velocity(own.x) : own.history.front();
+  double &forces = row[column("force_power")], &residual = row[column("power_residual")];
+  const double flow = std::abs(row[column("flow_power")]), before = flow + std::abs(forces);
+  forces += carried_->load().cwiseProduct(velocity).sum();
+  if (const double all = flow + std::abs(forces); all > 0) residual *= before / all;
+}
+
+SurfacePicture CarryingParticle::picture(const motion::State& state) {
+  motion_->place(state.x);
+  pictured_ = of_particle(state);
+  SurfacePicture picture = particle_->picture(pictured_);
+  complete(picture);
+  return picture;
+}
+
+}  // namespace tanktread

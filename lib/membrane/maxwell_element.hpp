@@ -1,0 +1,56 @@
+#pragma once
+// The membrane's viscosity with a memory: springs in series with its dashpots.
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "base/types.hpp"
+#include "membrane/carried.hpp"
+#include "membrane/laws.hpp"
+#include "membrane/packed.hpp"
+#include "membrane/points_kernel.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::membrane {
+
+/// Maxwell's element beside an elastic membrane, which makes it a standard linear solid: springs G = eta_s/T, K = kappa_s/T that lie in the surface
+/// and forget within the time T, their stress-free metric following that of the surface,
+///
+///   E = int (G/2 (t/J - 2) + K/2 (J - 1)^2) dG,   t = C^ab g_ab,   J^2 = |C| |g|                                            (3.23)
+///   T dC^ab/dt = (2 J^2/t) g^ab - (2 - 1/J) C^ab                                                                           (3.24)
+///
+/// of which nothing but heat comes out (3.25), and which is (3.10) where T is short. The energy is that of a law (`MaxwellSpring`) on the surface of
+/// metric C^-1. C is kept at the Gauss points, its components over those at the start of the metric of `initial`. Serial.
+class MaxwellElement : public Carried {
+ public:
+  /// `order` Gauss points a direction as of a Membrane; `space` must outlive it. `time` T.
+  MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
+
+  Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< C^11, C^12, C^22 of each Gauss point of each element
+  Eigen::VectorXd start(const Net& shape) override;                ///< of an element without stress
+  void place(const Net& x, const Eigen::VectorXd& q) override;
+  Net load() const override;
+  Eigen::VectorXd rate(const Net&) const override { return rate_; }
+  double energy() const override;
+
+  /// int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG: the power that the dashpots turn into heat.                              (3.25)
+  double dissipation() const { return dissipation_; }
+
+ private:
+  template <class Use>
+  void each_point(const Net& x, const Use& use);
+
+  const spline::Space& space_;
+  MaxwellSpring spring_;
+  double time_;
+  std::vector<Group> groups_;
+  std::vector<Eigen::Index> first_;                     // of an element's Gauss points
+  Eigen::Matrix<double, Eigen::Dynamic, 2> unit_;       // square roots of g^11 and g^22 of `initial`
+  Net x_;
+  std::vector<std::vector<ReferencePoint>> relaxed_;    // the stress-free surface, a group; point q of batch k at n_gauss k + q
+  Eigen::VectorXd rate_;
+  double dissipation_ = 0;
+};
+
+}  // namespace tanktread::membrane
