@@ -116,6 +116,7 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
     lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
+  if (scene.periodic.present) lines.emplace_back("periodic", "the shape that comes back, as the fixed point of runs over a period");
   if (scene.continuation.present)
     lines.emplace_back("branch", formatted("along %s to %g, ", scene.continuation.parameter.c_str(), scene.continuation.to) +
                                      scene.continuation.method + ", each point by an iteration of its own");

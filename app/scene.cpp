@@ -253,6 +253,9 @@ void check_contradictions(const Scene& scene) {
   const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
   refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
+  refuse(scene.steady.present && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
+  refuse(adapts && scene.periodic.present, "Periodic", "Adaptation/enabled", "shapes that come back are compared on one mesh");
+  refuse(scene.spectrum.parity && scene.periodic.present, "Periodic", "Spectrum/parity", "returns are of the symmetry of the scene");
   refuse(steady && scene.tube.channel && scene.flow.held == "flow rate", sought, "Flow/held `flow rate`",
          "what is carried along in a channel rests only where a pressure drop does not push it through");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
@@ -423,6 +426,8 @@ void Scene::declare(deck::Section& root) {
   steady.present = root.optional_section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
   continuation.present =
       root.optional_section("Continuation", continuation, "of the steady shape along a number of the deck; a row and a snapshot each point");
+  periodic.present = root.optional_section(
+      "Periodic", periodic, "in place of a run in time: the shape that the initial one leads to and that comes back after a period");
   spectrum.present = root.optional_section(
       "Spectrum", spectrum,
       "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at rest, grow or "

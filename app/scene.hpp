@@ -18,6 +18,7 @@
 #include "motion/adaptation.hpp"
 #include "motion/options.hpp"
 #include "motion/continuation.hpp"
+#include "motion/periodic.hpp"
 #include "motion/spectrum.hpp"
 #include "motion/steady.hpp"
 #include "output/options.hpp"
@@ -92,6 +93,7 @@ struct Scene : ParticleKind {
   motion::SteadyOptions steady;
   motion::ContinuationOptions continuation;
   motion::SpectrumOptions spectrum;
+  motion::PeriodicOptions periodic;
   coupling::SymmetryOptions symmetry;
   coupling::SolverOptions solvers;
   output::Options output;
@@ -103,8 +105,9 @@ struct Scene : ParticleKind {
 
   /// One sentence (UserError) for what contradicts each other, within a list and between lists, or is too large.
   void check() const;
-  bool runs_in_time() const { return !spectrum.present && !steady.present; }  ///< otherwise steady shapes are looked at
-  std::string sought() const { return steady.present ? "Steady" : "Spectrum"; }  ///< the list that asks for what is not a run in time
+  bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< otherwise steady shapes are looked at
+  /// The list that asks for what is not a run in time.
+  std::string sought() const { return steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum"; }
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// The scene of each particle, as if it were alone.

@@ -199,6 +199,7 @@ constexpr Statement table[] = {
     {"parameter", "", "of the key", "Continuation/parameter", of_branch, [](const Moment& m, int) { return m.parameter; }},
     {"fold", "", "1", "1 where the parameter turns back along the branch, else 0", of_branch, [](const Moment& m, int) { return m.fold; }},
     {"second_parameter", "", "of the key", "Continuation/second parameter", of_folds, [](const Moment& m, int) { return m.second_parameter; }},
+    {"period", "", "time", "after which the shape is back (Periodic)", of_periodic, [](const Moment& m, int) { return m.period; }},
     {"leading_rate", "", "1/time",
      "largest rate of the modes that change the shape, translations and rotations left out: negative where it is stable",
      of_spectrum, [](const Moment& m, int) { return m.leading_rate; }},
@@ -285,6 +286,7 @@ std::vector<Series> steady_series(const Scene& scene) {
   std::vector<Series> all;
   if (scene.continuation.present) all = series(scene, of_branch);
   if (scene.continuation.second_parameter) std::ranges::move(series(scene, of_folds), std::back_inserter(all));
+  if (scene.periodic.present) std::ranges::move(series(scene, of_periodic), std::back_inserter(all));
   if (scene.spectrum.present) std::ranges::move(series(scene, of_spectrum), std::back_inserter(all));
   for (int k = 1; scene.spectrum.present && k <= scene.spectrum.number; ++k)
     for (Series one : series(scene, of_mode)) {

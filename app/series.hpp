@@ -46,6 +46,7 @@ struct Moment {
   double leading_rate = 0, unstable_modes = 0;  ///< of a spectrum
   double surfactant_mass = 0, smallest_concentration = 0, largest_concentration = 0;
   double parameter = 0, second_parameter = 0, fold = 0;  ///< of a branch
+  double period = 0;  ///< of a motion that comes back
   double pressure_drop = 0, gap = 0;  ///< in a tube; the latter beside a wall too
   double flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;  ///< in a tube; of an empty channel
   Nearest at_wall;                    ///< of a plane wall: the particle's number, and its place there
@@ -63,10 +64,10 @@ struct Moment {
 
 /// Whose row a series is in, as bits: the run's, which of several particles is that of all; a capsule's or drop's; that of a rigid body among several
 /// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum, of all of it; of a branch; of a drop with surfactant;
-/// of folds that go on.
+/// of folds that go on; of a periodic motion.
 enum Owner : unsigned {
   of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64, of_mode = 128,
-  of_spectrum = 256, of_branch = 512, of_surfactant = 1024, of_folds = 2048
+  of_spectrum = 256, of_branch = 512, of_surfactant = 1024, of_folds = 2048, of_periodic = 4096
 };
 
 /// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.

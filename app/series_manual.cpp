@@ -60,7 +60,7 @@ std::string owners(const Series& one) {
                                                       {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
                                                       {of_prescribed, "prescribed body"}, {of_mode | of_spectrum, "spectrum of a capsule or drop"},
                                                       {of_branch, "branch of steady shapes"}, {of_surfactant, "drop with surfactant"},
-                                                      {of_folds, "folds in a second parameter"},
+                                                      {of_folds, "folds in a second parameter"}, {of_periodic, "periodic motion"},
                                                       {of_run | of_several, "several particles together"}};
   std::string list;
   for (const auto& [owner, text] : all)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <complex>
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
@@ -26,6 +28,7 @@
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
+#include "motion/periodic.hpp"
 
 namespace tanktread {
 
@@ -165,6 +168,7 @@ class SteadyRun {
 
   /// One shape: the steady one that the first leads to, or that itself.
   void look() {
+    if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {
       system_->motion->restore_volume(state_.x);
       return write();
@@ -176,6 +180,20 @@ class SteadyRun {
     write();
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
+  }
+
+  /// The shape that comes back after a period.
+  void shoot() {
+    const motion::PeriodicOptions& options = scene_.periodic;
+    coupling::Dynamics& dynamics = *system_->motion;
+    state_.x = motion::after_periods(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
+    returns_.emplace(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
+    const motion::PeriodicReport found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
+    report_.iterations = found.iterations, report_.error = found.rest;
+    moment_.period = returns_->period();
+    write();
+    if (!found.converged)
+      throw RunFailure(formatted("no shape that comes back was found: after %d periods it misses that by %.2g", found.iterations, found.rest));
   }
 
   /// Cuts and merges elements where the shape asks for it; whether the mesh is another one now. Coarsening might never end.
@@ -290,18 +308,39 @@ class SteadyRun {
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));
-    shapes.follow(*system->motion, state_.x);
-    if (!options.shift) options.shift = system_->scene.rate();
-    modes_ = motion::spectrum(*system->motion, shapes, state_.x, capsule.geometry().volume_gradient(state_.x), options,
-                              scene_.solvers.of(scene_.solvers.spectrum));
+    const Net flux = capsule.geometry().volume_gradient(state_.x);
+    if (returns_) {
+      keep(motion::recognised(*system->motion, shapes, state_.x, {}, exponents(shapes)));  // runs keep the volume
+    } else {
+      shapes.follow(*system->motion, state_.x);
+      if (!options.shift) options.shift = system_->scene.rate();
+      keep(motion::spectrum(*system->motion, shapes, state_.x, flux, options, scene_.solvers.of(scene_.solvers.spectrum)));
+    }
+    if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
+    system_->motion->velocity(state_.x);
+  }
+
+  /// Floquet exponents: the rates at which what the returns multiply grows over a period.
+  std::vector<coupling::Eigenpair> exponents(const coupling::ShapeCoordinates& shapes) {
+    Eigen::VectorXd start(shapes.size());
+    for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // the same on every run
+    std::vector<coupling::Eigenpair> pairs;
+    for (const motion::Multiplier& one : motion::multipliers(*returns_, state_.x, shapes.displacement(start), scene_.spectrum.number)) {
+      Eigen::VectorXcd y = shapes.coordinates(one.real).cast<std::complex<double>>();
+      y += std::complex<double>(0, 1) * shapes.coordinates(one.imaginary);
+      pairs.push_back({std::log(one.value) / moment_.period, y.normalized()});
+    }
+    return pairs;
+  }
+
+  void keep(std::vector<motion::Mode> modes) {
+    modes_ = std::move(modes);
     moment_.leading_rate = -std::numeric_limits<double>::infinity(), moment_.unstable_modes = 0;
     for (const motion::Mode& mode : modes_) {
       if (mode.kind != motion::ModeKind::shape) continue;
       moment_.leading_rate = std::max(moment_.leading_rate, mode.rate.real());
       moment_.unstable_modes += mode.rate.real() > 0;
     }
-    if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
-    system_->motion->velocity(state_.x);
   }
 
   /// The present system with nothing left out: modes of another parity than the shape's have velocities of all points.
@@ -339,6 +378,7 @@ class SteadyRun {
     };
     if (scene_.continuation.present) append(of_branch, moment_);
     if (scene_.continuation.second_parameter) append(of_folds, moment_);
+    if (scene_.periodic.present) append(of_periodic, moment_);
     if (scene_.spectrum.present) append(of_spectrum, moment_);
     for (const motion::Mode& mode : modes_) {
       moment_.rate = mode.rate;
@@ -396,6 +436,7 @@ class SteadyRun {
   RunTotals totals_;
   coupling::Work work_;          // of systems that are gone
   stokes::Evaluations kernel_;
+  std::optional<motion::ReturnMap> returns_;
   std::vector<motion::Mode> modes_;
   Moment moment_;
   std::string failure_;

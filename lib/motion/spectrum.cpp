@@ -192,12 +192,17 @@ std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCo
   const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
   std::ranges::stable_sort(pairs, {}, rank);
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));
+  return recognised(dynamics, shapes, x, flux, pairs);
+}
+
+std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+                             const std::vector<coupling::Eigenpair>& pairs) {
   const Recognition recognition(dynamics, shapes, x, flux);
   std::vector<Mode> modes;
   std::vector<double> gains;
   for (const coupling::Eigenpair& pair : pairs) {
     modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
-    gains.push_back(recognition.gain(pair.vector));
+    gains.push_back(flux.size() > 0 ? recognition.gain(pair.vector) : 0);
   }
   const auto most = std::ranges::max_element(gains);
   if (*most > 1e-3) modes[static_cast<std::size_t>(most - gains.begin())].kind = ModeKind::volume;  // near a fold it is hardly told by its shape

@@ -9,6 +9,7 @@
 
 #include "base/types.hpp"
 #include "coupling/dynamics.hpp"
+#include "coupling/eigenvalues.hpp"
 #include "coupling/options.hpp"
 #include "coupling/shape_coordinates.hpp"
 
@@ -70,8 +71,13 @@ class Linearised {
   Eigen::VectorXd volume_;       // dV/dy over its size
 };
 
-/// The leading modes of the motion about x, as `options` ask, whose shift is given. `flux`: dV/dx, which tells the mode that only the conserved
-/// volume keeps at rate 0. `solver`: of the shift-inverted systems. Collective. Throws RunFailure where a velocity or the eigenvalues cannot be had.
+/// Eigenpairs in coordinates of shapes as fields on the surface, what is no change of shape recognised. `flux`: dV/dx, which tells the mode that only
+/// the conserved volume keeps at rate 0. Collective.
+std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+                             const std::vector<coupling::Eigenpair>& pairs);
+
+/// The leading modes of the motion about x, as `options` ask, whose shift is given. `solver`: of the shift-inverted systems. Collective. Throws
+/// RunFailure where a velocity or the eigenvalues cannot be had.
 std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver);
 

@@ -194,6 +194,34 @@ def a_capsule_that_a_pressure_drop_does_not_push_through_a_constriction_rests():
     check(len(said.splitlines()) == 1 and "Flow/held" in said and "rests" in said, said)
 
 
+SWINGS = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particle: {shape: spheroid, semi-axes: [1.0772173, 1.0772173, 0.8617739], orientation: [0, -45, 0]}
+  Membrane: {law: Skalak, area dilatation: 1.0, capillary number: 0.6}
+  Surface: {elements per side: 3}
+"""
+
+
+def an_oblate_capsule_that_swings_comes_back():
+    """To where a run in time is one period later, turned by half a round; and `Steady` has nothing to find there."""
+    run(deck(SWINGS), "--set", "Periodic/period=9", "--set", "Periodic/turn=180", "--set", "Periodic/tolerance=1e-4", "--set", "Time/tolerance=1e-5",
+        "--output", "swings", "--quiet")
+    period, d, angle = (series("swings", name)[-1] for name in ("period", "taylor_inertia", "inclination"))
+    check(8.5 < period < 9.7, period)
+    run(deck(SWINGS), "--set", "Particle/initial shape/run=swings", "--set", "Time/tolerance=1e-5", "--set", f"Time/final time={float(period)!r}",
+        "--output", "on", "--quiet")
+    half = len(series("on", "time")) // 2
+    close(series("on", "taylor_inertia")[-1], d, 1e-4)
+    close(series("on", "inclination")[-1], angle, 0.02)
+    check(abs(series("on", "inclination")[half] - angle) > 0.2 or abs(series("on", "taylor_inertia")[half] - d) > 5e-3, "it swings")
+    for settings, word in (["Steady/tolerance=1e-6"], "swings"), (["Periodic/period=9", "Steady/tolerance=1e-6"], "no period"):
+        said = run(deck(SWINGS), *(word for one in settings for word in ("--set", one)), "--output", "no", "--quiet", code=2).stderr
+        check(len(said.splitlines()) == 1 and word in said, said)
+    said = run(deck(SWINGS), "--set", "Periodic/period=1", "--output", "never", "--quiet", code=3).stderr
+    check(len(said.splitlines()) == 1 and "not come back" in said, said)
+
+
 def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
     shear = ["--set", "Flow/type=simple shear", "--set", "Membrane/law=neo-Hookean", "--set", "Membrane/capillary number=0.3", "--set",
              "Surface/elements per side=4"]

@@ -1,0 +1,150 @@
+#include "motion/periodic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "coupling/eigenvalues.hpp"
+#include "coupling/nonlinear.hpp"
+#include "deck/section.hpp"
+#include "motion/integrator.hpp"
+
+namespace tanktread::motion {
+
+void PeriodicOptions::declare(deck::Section& section) {
+  section.key("period", period, deck::positive(), "time", "expected; the one that is found lies between half and one and a half of it");
+  section.key("turn", turn, deck::between(-360, 360), "degrees",
+              "about x2, by which the shape is turned when it is back: 180 after half a round of a membrane in shear, which is half the work");
+  section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
+              "what the shape misses of being back: root mean square displacement of the control points over R_C; some ten times Time/tolerance");
+  section.key("iterations", iterations, deck::between(1, 1000), "1", "most iterations of NOX, a period each");
+  section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
+              "displacements whose returns the multipliers are made of, at the largest, with Spectrum");
+}
+
+namespace {
+
+Net turned_back(const Net& x, double degrees) {
+  return x * Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix();
+}
+
+/// A run from x, until `done` says so after a step, or `most` is over.
+State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox, const Net& x, double most,
+          const std::function<bool(const State& before, const State& after)>& done) {
+  State state;
+  state.x = x;
+  dynamics.restore_volume(state.x);
+  begin(dynamics, state);
+  if (!state.x.allFinite() || !state.history.front().allFinite()) throw RunFailure("the velocity of a shape that should come back cannot be had");
+  state.step = time.initial_step.value_or(first_step(dynamics, state, time));
+  const std::unique_ptr<Integrator> scheme = integrator(time, nox);
+  while (state.time < most * (1 - 1e-12)) {
+    const State before = state;
+    scheme->advance(dynamics, state, most);
+    if (done(before, state)) break;
+  }
+  return state;
+}
+
+}  // namespace
+
+ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox,
+                     const PeriodicOptions& options, Net c)
+    : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)), normal_(dynamics.velocity(origin_)) {
+  if (!normal_.allFinite() || normal_.isZero(0)) throw RunFailure("a shape that is at rest, or has no velocity, cannot come back");
+  normal_ /= normal_.norm();
+}
+
+Net ReturnMap::operator()(const Net& x) {
+  const auto ahead = [&](const Net& y) { return beyond(turned_back(y, options_.turn)); };
+  Net found;
+  const double most = 1.5 * options_.period;
+  run(dynamics_, time_, nox_, x, most, [&](const State& before, const State& after) {
+    if (after.time < 0.5 * options_.period || !(ahead(before.x) < 0 && ahead(after.x) >= 0)) return false;
+    const DenseOutput within(before, after);
+    double early = before.time, late = after.time;
+    while (late - early > 1e-14 * late) {
+      const double middle = 0.5 * (early + late);
+      if (middle <= early || middle >= late) break;
+      (ahead(within.place(middle)) < 0 ? early : late) = middle;
+    }
+    period_ = late;
+    found = turned_back(within.place(late), options_.turn);
+    return true;
+  });
+  if (found.size() == 0)
+    throw RunFailure(formatted("the shape has not come back within a time of %.6g: Periodic/period or Periodic/turn is another one", most));
+  return found;
+}
+
+Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
+                  const PeriodicOptions& options, Net x) {
+  constexpr int settling = 3;
+  for (int k = 0; k < settling; ++k)
+    x = turned_back(run(dynamics, time, nox, x, options.period, [](const State&, const State&) { return false; }).x, options.turn);
+  return x;
+}
+
+PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox, Net& x) {
+  const auto norm = [&](const Net& d) { return map.dynamics().norm(d); };
+  double rest = std::numeric_limits<double>::infinity();
+  const auto back = [&](const Net& y) {
+    Net p = map(y);
+    rest = norm(p - y);
+    return p;
+  };
+  const coupling::FixedPoint solver("anderson", nox);
+  const coupling::NonlinearReport found = solver.solve(back, norm, map.options().tolerance, map.options().iterations, x);
+  return {found.iterations, found.converged, rest};
+}
+
+std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, int number) {
+  constexpr double exhausted = 1e-8;
+  const auto product = [&](const Net& d) -> Net {
+    const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / map.dynamics().norm(d);
+    const double e = map.options().difference * radius / d.rowwise().norm().maxCoeff();
+    return map.dynamics().symmetric((map(x + e * d) - map(x - e * d)) / (2 * e));  // what breaks the symmetry would stay for ever, as 1
+  };
+  const int most = static_cast<int>(std::min<Eigen::Index>(2 * number + 4, x.size()));
+  std::vector<Net> basis{map.dynamics().symmetric(start / start.norm())};
+  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(most + 1, most);
+  int m = 0;
+  while (m < most) {
+    Net w = product(basis.back());
+    for (int pass = 0; pass < 2; ++pass)
+      for (int k = 0; k <= m; ++k) {
+        const double part = basis[static_cast<std::size_t>(k)].cwiseProduct(w).sum();
+        h(k, m) += part;
+        w -= part * basis[static_cast<std::size_t>(k)];
+      }
+    h(m + 1, m) = w.norm();
+    if (h(m + 1, m) < exhausted || m + 1 == most) {
+      ++m;
+      break;
+    }
+    basis.push_back(w / h(m + 1, m));
+    ++m;
+  }
+  std::vector<coupling::Eigenpair> pairs = coupling::eigenpairs(h.topLeftCorner(m, m));
+  std::ranges::stable_sort(pairs, {}, [](const coupling::Eigenpair& pair) { return -std::abs(pair.value); });
+  pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(number)));
+  std::vector<Multiplier> found;
+  for (const coupling::Eigenpair& pair : pairs) {
+    Multiplier one{pair.value, Net::Zero(x.rows(), 3), Net::Zero(x.rows(), 3)};
+    for (int k = 0; k < m; ++k) {
+      one.real += pair.vector[k].real() * basis[static_cast<std::size_t>(k)];
+      one.imaginary += pair.vector[k].imag() * basis[static_cast<std::size_t>(k)];
+    }
+    found.push_back(std::move(one));
+  }
+  return found;
+}
+
+}  // namespace tanktread::motion

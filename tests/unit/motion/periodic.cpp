@@ -1,0 +1,82 @@
+// Returns of a motion with a known cycle: shape, period, multipliers.
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "motion/periodic.hpp"
+
+namespace tanktread::motion {
+namespace {
+
+constexpr double inward = 0.15, damping = 0.1, frequency = 1.3;
+
+/// One control point on its way to the unit circle in x1 x3, which it goes round: with r and y = x2, r' = inward r (1 - r^2), y' = -damping y.
+/// Over a period T the multipliers are exp(-2 inward T) and exp(-damping T).
+class Cycle : public coupling::Dynamics {
+ public:
+  Net velocity(const Net& x) override {
+    const double a = inward * (1 - x(0, 0) * x(0, 0) - x(0, 2) * x(0, 2));
+    Net v(1, 3);
+    v << a * x(0, 0) - frequency * x(0, 2), -damping * x(0, 1), a * x(0, 2) + frequency * x(0, 0);
+    return v;
+  }
+  void freeze(const Net&) override {}
+  void linearise(const Net&) override {}
+  Net solve(double, const Net& r, double, const coupling::Secants&) override { return r; }
+  Net missed(const Net& dv, const Net&) override { return 0 * dv; }
+  void restore_volume(Net&) override {}
+  double norm(const Net& d) const override { return d.norm(); }
+};
+
+TimeOptions explicit_steps() {
+  TimeOptions time;
+  time.scheme = "bs3", time.tolerance = 1e-9;
+  return time;
+}
+
+/// Half a round is a whole one with a turn of 180 degrees.
+class Periodic : public testing::TestWithParam<double> {};
+
+TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
+  const double turn = GetParam(), period = (turn == 0 ? 2 : 1) * std::numbers::pi / frequency;
+  Cycle motion;
+  const TimeOptions time = explicit_steps();
+  PeriodicOptions options;
+  options.period = 1.1 * period, options.turn = turn, options.tolerance = 1e-8, options.difference = 1e-3;
+  Net x(1, 3);
+  x << 0.5, 0.4, 0.1;
+  x = after_periods(motion, time, nullptr, options, x);
+  ReturnMap map(motion, time, nullptr, options, x);
+  const PeriodicReport report = find_periodic(map, nullptr, x);
+  ASSERT_TRUE(report.converged);
+  EXPECT_NEAR(std::hypot(x(0, 0), x(0, 2)), 1, 1e-7);
+  EXPECT_NEAR(x(0, 1), 0, 1e-7);
+  EXPECT_NEAR(map.period(), period, 1e-6);
+  Net start(1, 3);
+  start << 0.3, 1, -0.2;
+  const std::vector<Multiplier> found = multipliers(map, x, start, 2);
+  ASSERT_EQ(found.size(), 2U);
+  const double slow = std::exp(-damping * period), fast = std::exp(-2 * inward * period);
+  EXPECT_NEAR(found[0].value.real(), slow, 1e-4 * slow);
+  EXPECT_NEAR(found[1].value.real(), fast, 1e-4 * slow);
+  EXPECT_NEAR(std::abs(found[0].real(0, 1)) / found[0].real.norm(), 1, 1e-3);  // along x2
+}
+
+INSTANTIATE_TEST_SUITE_P(Turns, Periodic, testing::Values(0., 180.));
+
+TEST(Periodic, WhatDoesNotComeBackSaysSo) {
+  Cycle motion;
+  const TimeOptions time = explicit_steps();
+  PeriodicOptions options;
+  options.period = 0.4 / frequency;  // up to a tenth of a round
+  Net x(1, 3);
+  x << 1, 0, 0;
+  ReturnMap map(motion, time, nullptr, options, x);
+  EXPECT_THROW(map(x), RunFailure);
+}
+
+}  // namespace
+}  // namespace tanktread::motion
