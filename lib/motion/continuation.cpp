@@ -20,7 +20,8 @@ constexpr double noise = 30;  // a correction this many times the tolerance is a
 void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
               "path of the key of this deck that changes along the branch, say Membrane/capillary number: a number");
-  section.key("to", to, deck::any(), "that of the key", "where the branch ends, unless a fold leads it back to where it starts: at the value that the deck gives to the key");
+  section.key("to", to, deck::any(), "that of the key",
+              "where the branch ends, unless a fold leads it back to where it starts: at the value that the deck gives to the key");
   section.key("method", method, deck::Choice{"arclength", "natural"},
               "`arclength`: around folds, where the parameter turns back; `natural`: up to the first");
   section.key("step", step, deck::positive(), "that of the key", "first step of the parameter; if not given, a twentieth of the way");

@@ -39,8 +39,9 @@ struct BranchPoint {
   double rest = 0;     ///< the correction that was left
 };
 
-/// The shapes at rest that hang together, from one on to a value of the parameter, or around a fold back to the first one. With t the direction from the point before last to the last one, in the norm of
-/// `Time/tolerance` and with the parameter p in units in which the first step is as long as the change of the shape, the next point is where
+/// The shapes at rest that hang together, from one on to a value of the parameter, or around a fold back to the first one. With t the direction from
+/// the point before last to the last one, in the norm of `Time/tolerance` and with the parameter p in units in which the first step is as long as the
+/// change of the shape, the next point is where
 ///
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///

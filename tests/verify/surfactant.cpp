@@ -6,8 +6,9 @@
 #include <Eigen/SparseCholesky>
 #include <gtest/gtest.h>
 
-#include "coupling/surfactant_motion.hpp"
+#include "coupling/carried_motion.hpp"
 #include "membrane/mass.hpp"
+#include "membrane/surfactant.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
@@ -31,7 +32,7 @@ Eigen::Matrix2d theory(double lambda, double tension, double elasticity, double 
 struct Laden {
   Evolution scene;
   membrane::Surfactant surfactant;
-  coupling::SurfactantMotion motion;
+  coupling::CarriedMotion motion;
 
   explicit Laden(std::vector<std::string> settings, double diffusivity)
       : scene([&] {
