@@ -45,11 +45,14 @@ std::size_t CarryingParticle::column(std::string_view name) const {
 
 std::vector<double> CarryingParticle::row(const motion::State& state, const motion::StepReport& report, double wall_seconds) {
   const motion::State own = of_particle(state);
-  motion_->place(state.x);
+  const Eigen::VectorXd q = motion_->content(state.x);
+  const auto& capsule = static_cast<coupling::Capsule&>(particle_->dynamics());
+  if (!capsule.evaluated_about(own.x, scene_.time.tolerance)) motion_->place(state.x);  // else what the step evaluated last serves the row
   std::vector<double> row = particle_->row(own, report, wall_seconds);
+  carried_->place(own.x, q);
   row[column("energy")] += carried_->energy();
   if (scene_.output.power_balance) own_power(row, own);
-  complete(row, motion_->content(state.x));
+  complete(row, q);
   return row;
 }
 

@@ -75,7 +75,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 }
 
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
-  if (scene.particle.viscosity_ratio == 1 && scene.viscous_membrane() && !scene.maxwell_membrane())
+  if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
     return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns a velocity",
                      scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";

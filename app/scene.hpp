@@ -121,7 +121,8 @@ struct Scene : ParticleKind {
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscous(); }
   bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }
-  bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || (viscous_membrane() && !maxwell_membrane()); }
+  bool kelvin_voigt_membrane() const { return viscous_membrane() && !membrane.relaxation_time; }
+  bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || kelvin_voigt_membrane(); }
   Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
   double bending_modulus() const;    ///< E_b, units force x length
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law

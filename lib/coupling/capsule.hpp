@@ -133,11 +133,11 @@ class Capsule : public Dynamics {
   /// The fluids' velocity on the surface at x: `velocity`, unless control points slide.
   Net fluid_velocity(const Net& x, const Net& guess = {});
 
-  /// The same at the latest place that was asked about, if that is within `distance` (in `norm`) of x: for a row of the series, at no cost.
-  Net fluid_velocity_about(const Net& x, double distance) {
-    const bool about = latest_.x.rows() == x.rows() && norm(x - latest_.x) <= distance;
-    return fluid_velocity(about ? latest_.x : x);
-  }
+  /// Whether the latest place that was asked about is within `distance` (in `norm`) of x.
+  bool evaluated_about(const Net& x, double distance) const { return latest_.x.rows() == x.rows() && norm(x - latest_.x) <= distance; }
+
+  /// The fluids' velocity there, if it is, otherwise at x: for a row of the series, at no cost.
+  Net fluid_velocity_about(const Net& x, double distance) { return fluid_velocity(evaluated_about(x, distance) ? latest_.x : x); }
 
   /// Stresslet of particle p (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force x length.
   /// The fluids' velocity v is `slope`, that of the control points, or is evaluated where it matters and they slide along an interface.

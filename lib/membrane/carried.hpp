@@ -13,7 +13,7 @@ class Carried {
   virtual ~Carried() = default;
 
   virtual Eigen::Index size() const = 0;                      ///< of q
-  virtual Eigen::VectorXd start(const Net& shape) = 0;        ///< q of a run that begins with this shape
+  virtual Eigen::VectorXd start(const Net& shape) const = 0;  ///< q of a run that begins with this shape
 
   /// Takes the surface x and q there: what follows is of both.
   virtual void place(const Net& x, const Eigen::VectorXd& q) = 0;

@@ -28,7 +28,7 @@ class MaxwellElement : public Carried {
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
   Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< C^11, C^12, C^22 of each Gauss point of each element
-  Eigen::VectorXd start(const Net& shape) override;                ///< of an element without stress
+  Eigen::VectorXd start(const Net& shape) const override;          ///< of an element without stress
   void place(const Net& x, const Eigen::VectorXd& q) override;
   Net load() const override;
   Eigen::VectorXd rate(const Net&) const override { return rate_; }
@@ -39,16 +39,18 @@ class MaxwellElement : public Carried {
 
  private:
   template <class Use>
-  void each_point(const Net& x, const Use& use);
+  void each_batch(const Net& x, const Use& use) const;
+  template <class Use>
+  void each_point(const Net& x, const Use& use) const;
 
   const spline::Space& space_;
   MaxwellSpring spring_;
   double time_;
   std::vector<Group> groups_;
   std::vector<Eigen::Index> first_;                     // of an element's Gauss points
-  Eigen::Matrix<double, Eigen::Dynamic, 2> unit_;       // square roots of g^11 and g^22 of `initial`
+  Net unit_;                                            // g^11, sqrt(g^11 g^22), g^22 of `initial`, a row a Gauss point
   Net x_;
-  std::vector<std::vector<ReferencePoint>> relaxed_;    // the stress-free surface, a group; point q of batch k at n_gauss k + q
+  std::vector<ReferencePoint> relaxed_;                 // the stress-free surface, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
 };

@@ -25,7 +25,7 @@ class Surfactant : public Carried {
   Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
 
   Eigen::Index size() const override { return share_.size(); }  ///< one a control point
-  Eigen::VectorXd start(const Net&) override { return Eigen::VectorXd::Ones(size()); }
+  Eigen::VectorXd start(const Net&) const override { return Eigen::VectorXd::Ones(size()); }
 
   /// Throws RunFailure where no tension is left somewhere.
   void place(const Net& x, const Eigen::VectorXd& q) override;
