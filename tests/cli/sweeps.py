@@ -55,6 +55,63 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
 
 
+def tumbling_is_told_from_treading_by_shape_and_membrane():
+    import phases
+    t = numpy.linspace(0, 40, 801)
+    shape = 360 * t / 22  # it turns over each eleven, of the sense of the phase
+    swung = 20 * numpy.sin(t)
+
+    def told(inclination, phase):
+        return phases.motion(t, (inclination + 90) % 180 - 90, phase, 0.4)[0]
+
+    check(told(-shape, shape + swung) == "tumbles", "its membrane swings on it")
+    check(told(20 + swung, shape) == "treads", "its shape swings")
+    check(told(-shape, 2 * shape) == "both", "its membrane goes around on it")
+    check(told(20 + swung, swung) is None, "nothing went around")
+    check(told(-numpy.maximum(shape, 200), numpy.maximum(shape, 200) + swung) == "tumbles", "late")
+    check(told(-numpy.minimum(shape, 200), shape) == "treads", "it has stopped tumbling")
+
+
+def a_border_is_found_about_the_last_one_and_where_it_is_not():
+    import phases
+    deck(DECK)
+    deck("""
+deck: deck.yaml
+along: {key: Flow/shear rate, from: 0.01, to: 10, within: 1.1}
+across: {Particle/viscosity ratio: [1, 2, 3, 4, 5]}
+curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}}
+""", "phases.yaml")
+    diagram = phases.Diagram("phases.yaml", None)
+    at = {1: 0.3, 2: 0.33, 3: 2.0, 4: 0.001, 5: 100.0}
+
+    def tumbles(name, row, value):
+        holds = value < at[row["Particle/viscosity ratio"]]
+        diagram.made[name, row["Particle/viscosity ratio"], value] = ("tumbles" if holds else "treads",)
+        return holds
+
+    diagram.tumbles = tumbles
+    diagram.find()
+    rows = diagram.borders["one"]
+    check([row[3] for row in rows] == ["edge"] * 3 + ["fails from here", "holds to here"], rows)
+    check(all(row[1] < at[row[0]] <= row[2] < 1.11 * row[1] for row in rows[:3]), rows)
+    made = [sum(key[0] == "one" and key[1] == x for key in diagram.made) for x in at]
+    check(made[1] <= 6 < made[0], f"runs of each border: {made}")
+    check(diagram.rows["other"] == [{"Particle/viscosity ratio": 1, "Membrane/law": "Skalak"}], diagram.rows)
+    deck("deck: deck.yaml\nalong: {key: a, from: 2, to: 1, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
+    refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
+    check(refused.returncode == 2 and "ascend" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
+
+
+def what_drifts_over_many_turns_is_told_from_what_swings():
+    import drift
+    t = numpy.linspace(0, 100, 20001)
+    phase = 360 * t / 2 + 10 * numpy.sin(numpy.pi * t)
+    means = drift.turns(t, 1 + 0.3 * numpy.sin(2 * numpy.pi * t), phase)
+    check(len(means) == 50 and abs(drift.drift(means, 5)[0]) < 1e-6, means)
+    change, error = drift.drift(drift.turns(t, 1e-3 * t + 0.3 * numpy.sin(2 * numpy.pi * t), phase), 5)
+    check(abs(change - 1e-3 * 2 * 44) < 1e-6 and error < 1e-6, f"{change} {error}")
+
+
 def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
     path = deck(DECK).resolve()
     found = tanktread.run(path, {"Particle/semi-axes": [1.0, 1.0, 0.8], "Particle/shape": "spheroid"})

@@ -1,0 +1,148 @@
+#!/usr/bin/python3
+"""A phase diagram of a particle in shear: below which value of a key it tumbles and above which its membrane treads, by bisection, over another key.
+
+    phases.py inputs/studies/red_cell_phases.yaml              # results/phases/borders.csv, runs.csv and phases.png
+
+A study is a small YAML file: `deck`; `set`, keys of all runs; `along`, the key that is bisected: {key, from, to, within: a factor, to which a border
+is found}; `across`, {another key: its values}; `curves`, {name: keys}, where a list as long as that of `across` goes with it, and `across` may have other
+values; `begin`, the share of a run that is not looked at (0.4); `literature`, {name: rows of a value across, the lowest and the highest one along}.
+
+The shape is followed by `inclination`, the membrane by `phase`: a run tumbles where its shape turns half over or more after `begin`, whether its membrane
+goes around on it (then it does both in turn) or not, and treads where only its membrane goes half around. One that does neither is told and ends its
+border. The particle starts as the deck says; where both motions are stable, a border is that of this start. A run that is there is not made again.
+"""
+
+import argparse
+import pathlib
+
+import needs  # before what it looks for
+import numpy
+
+import study
+import style
+import sweep
+import tanktread
+from style import plt
+
+NEAR = 1.5  # factor about the last border between which the next one is looked for first
+KEYS = {"deck", "set", "along", "across", "curves", "begin", "literature"}
+HALF = 180  # degrees: a shape, or its membrane, looks as before
+
+
+def motion(time, inclination, phase, begin):
+    """`tumbles`, `both`, `treads` or None; half turns of the shape backwards, and of the membrane on it, after the share `begin` of the time."""
+    turned = -numpy.unwrap(inclination, period=HALF)  # of the sense of the phase
+    late = time >= time[0] + begin * (time[-1] - time[0])
+    over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
+    if over >= 1:
+        return ("both" if around >= 1 else "tumbles"), over, around
+    return ("treads" if around >= 1 else None), over, around
+
+
+class Diagram:
+    """A study file and the borders that are found, {curve: rows of the value across, the two values that a border lies between, and how it ended}."""
+
+    def __init__(self, path, runs):
+        text = sweep.yaml_of(path, KEYS)
+        self.runs, self.decks, self.fixed = runs, sweep.decks_of(text, path), text.get("set") or {}
+        self.along, across, curves = (text.get(name) or {} for name in ("along", "across", "curves"))
+        sweep.expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
+        sweep.expect(0 < self.along["from"] < self.along["to"] and self.along["within"] > 1,
+                     f"{path}: along needs positive values that ascend and a factor above 1, but is from {self.along['from']} to {self.along['to']} within "
+                     f"{self.along['within']}")
+        sweep.expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
+        self.across, self.begin, self.literature = next(iter(across)), float(text.get("begin", 0.4)), text.get("literature") or {}
+        self.rows = {name: self.settings(name, across | (keys or {})) for name, keys in curves.items()}
+        self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
+
+    def settings(self, name, keys):
+        """Those of a curve, one for each of its values across."""
+        values = sweep.values_of(self.across, keys[self.across])
+        lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: values}
+        for key, given in lists.items():
+            sweep.expect(len(given) == len(values), f"{name}: {key} has {len(given)} values where {self.across} has {len(values)}")
+        return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
+
+    def tumbles(self, name, row, value):
+        outcome = self.runs.run(self.decks[0], self.fixed | row | {self.along["key"]: value})
+        said, over, around = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
+        if outcome.done:
+            series = outcome.series
+            said, over, around = motion(series["time"], series["inclination"], series["phase"], self.begin)
+        self.made[name, row[self.across], value] = said or "neither", over, around, outcome.processor_seconds, outcome.directory.name
+        print(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said or 'neither'} (half turns: shape {over:.2f}, "
+              f"membrane {around:.2f}; {outcome.processor_seconds:.0f} processor seconds)", flush=True)
+        sweep.expect(said in ("tumbles", "both", "treads"), said or "neither: it needs a later Time/final time")
+        return said != "treads"
+
+    def border(self, name, row, last):
+        """Looked for about the last one, and where it is not there, or there is none, in what is left of the range."""
+        low, high, factor = self.along["from"], self.along["to"], self.along["within"]
+
+        def holds(value):
+            return self.tumbles(name, row, value)
+
+        if last:
+            found, how = study.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
+            if how == "edge" or (how == "fails from here" and found == low) or (how == "holds to here" and found == high):
+                return found, how
+            low, high = (low, found) if how == "fails from here" else (found, high)
+        return study.edge(holds, low, high, factor)
+
+    def find(self):
+        last = None
+        for name, row in ((name, row) for name, rows in self.rows.items() for row in rows):
+            try:
+                low, how = self.border(name, row, last)
+            except sweep.Mistake as mistake:
+                low, how = numpy.nan, str(mistake)
+            above = [key[2] for key, run in self.made.items() if key[:2] == (name, row[self.across]) and key[2] > low and run[0] == "treads"]
+            self.borders[name].append((row[self.across], low, min(above, default=numpy.nan), how))
+            last = low if how == "edge" else last
+
+    def write(self, directory):
+        study.write_table(directory / "borders.csv", ["curve", self.across, "tumbles at", "treads at", "how"],
+                          [(name, *row) for name, rows in self.borders.items() for row in rows])
+        study.write_table(directory / "runs.csv", ["curve", self.across, self.along["key"], "motion", "half turns of the shape", "of the membrane",
+                                                   "processor seconds", "directory"], [(*key, *run) for key, run in self.made.items()])
+
+    def draw(self, output):
+        figure, axes = plt.subplots(figsize=(6.2, 4.2))
+        for (name, rows), color in zip(self.borders.items(), style.RUNS * len(self.borders)):
+            edges = numpy.array([row[:3] for row in rows if row[3] == "edge"]).reshape(-1, 3)
+            if len(edges):
+                middle = numpy.sqrt(edges[:, 1] * edges[:, 2])
+                bars = [middle - edges[:, 1], edges[:, 2] - middle]
+                axes.errorbar(edges[:, 0], middle, bars, fmt="o-", color=color, markersize=3.5, capsize=2, label=name)
+            for how, mark in ("fails from here", "v"), ("holds to here", "^"):  # it treads from the lowest value on, or tumbles to the highest
+                there = [row[:2] for row in rows if row[3] == how]
+                label = None if len(edges) else name + (", below" if mark == "v" else ", above")
+                axes.plot(*numpy.array(there).reshape(-1, 2).T, mark, color=color, markersize=6, label=label if there else None)
+        for (name, rows), mark in zip(self.literature.items(), style.MARKS[1:] * len(self.literature)):
+            x, low, high = numpy.array(rows, float).T
+            middle = numpy.sqrt(low * high)
+            axes.errorbar(x, middle, [middle - low, high - middle], fmt=mark, color=style.FAINT, markersize=4, linewidth=0.8, capsize=2, label=name)
+        axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
+        axes.text(0.02, 0.98, "treads", transform=axes.transAxes, va="top", color=style.FAINT)
+        axes.text(0.98, 0.02, "tumbles", transform=axes.transAxes, ha="right", color=style.FAINT)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        style.save(figure, output)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("study", type=pathlib.Path, help="the study, a YAML file")
+    study.arguments(parser, pathlib.Path("results/phases"))
+    parser.set_defaults(limit=None)
+    parsed = parser.parse_args()
+    diagram = Diagram(parsed.study, study.study(parsed))
+    try:
+        diagram.find()
+    finally:  # what is there, when it is stopped
+        diagram.write(parsed.output)
+        diagram.draw(parsed.output / "phases.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sweep.answer(main)
