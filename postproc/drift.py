@@ -10,6 +10,7 @@ flow has a history that ends in rest, how often the energy then rises.
 """
 
 import argparse
+import sys
 
 import needs  # before what it looks for
 import numpy
@@ -50,6 +51,8 @@ def main():
         stop = run.value("Flow/history/times")[numpy.flatnonzero(run.value("Flow/history/amplitudes"))[-1]]
     flows = run.series["time"] <= stop
     time, phase = run.series["time"][flows], run.series["phase"][flows]
+    if phase[-1] / 360 < arguments.first + 3:
+        sys.exit(f"{run.directory} has {max(phase[-1] / 360, 0):.1f} turns; a line from turn {arguments.first} on needs {arguments.first + 3}: --from an earlier one")
     figure, plots = plt.subplots(len(SERIES), 1, figsize=(6.4, 7.6), sharex=True)
     print(f"{phase[-1] / 360:.1f} turns, {len(time)} steps; the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
     for (name, label), plot in zip(SERIES.items(), plots):
