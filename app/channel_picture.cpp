@@ -43,7 +43,7 @@ WallLine along_wall(const coupling::ChannelFlow& flow) {
 std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
   const surface::Channel& channel = flow.channel();
   const auto [low, high] = channel.outline().box();
-  std::vector<double> s, factor, rate_s, rate;
+  std::vector<double> s, factor, rate_s;
   std::vector<Vec3> centre, lines[4];
   for (int k = 0; k < places; ++k) {
     s.push_back(channel.start() + (channel.end() - channel.start()) * k / (places - 1));
@@ -57,10 +57,8 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
   for (int k = 0; k < places; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
   const Net v = flow.velocities(axis);
   std::vector<double> velocity(v.data(), v.data() + v.size());
-  for (int k = 0; k < sections; ++k) {
-    rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
-    rate.push_back(flow.flow_rate_at(rate_s.back()));
-  }
+  for (int k = 0; k < sections; ++k) rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
+  const std::vector<double> rate = flow.flow_rates_at(rate_s);
   const WallLine wall = along_wall(flow);
   const std::size_t n = s.size();
   return {{"s", "length", "way along the centre line", s, {n}},

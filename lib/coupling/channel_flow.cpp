@@ -129,9 +129,21 @@ double ChannelFlow::extra_pressure_drop() const { return pressure_drop() - press
 
 const Net& ChannelFlow::wall_traction() const { return solved().traction; }
 
-double ChannelFlow::flow_rate_at(double s) const {
-  const stokes::DuctEnd::Points at = section(s, 1).points();
-  return at.area.dot(this->at(at.x) * channel_->section(s).along);
+std::vector<double> ChannelFlow::flow_rates_at(const std::vector<double>& s) const {
+  std::vector<stokes::DuctEnd::Points> points;
+  Eigen::Index n = 0;
+  for (const double at : s) points.push_back(section(at, 1).points()), n += points.back().x.rows();
+  Net all(n, 3);
+  n = 0;
+  for (const stokes::DuctEnd::Points& of : points) all.middleRows(n, of.x.rows()) = of.x, n += of.x.rows();
+  const Net v = at(all);
+  std::vector<double> rates;
+  n = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    rates.push_back(points[k].area.dot(v.middleRows(n, points[k].x.rows()) * channel_->section(s[k]).along));
+    n += points[k].x.rows();
+  }
+  return rates;
 }
 
 }  // namespace tanktread::coupling

@@ -38,8 +38,8 @@ class ChannelFlow : public stokes::DuctFlow {
   double extra_pressure_drop() const;  ///< over that of a straight duct of the inlet's section, as long as the centre line
   const Net& wall_traction() const;    ///< f, control values
 
-  /// Flow rate through the section at s, by a sum of velocities.
-  double flow_rate_at(double s) const;
+  /// Flow rates through the sections at s, by sums of velocities, which are evaluated together.
+  std::vector<double> flow_rates_at(const std::vector<double>& s) const;
 
   const surface::Channel& channel() const { return *channel_; }
   const std::shared_ptr<const surface::TubeWall>& surface() const { return surface_; }

@@ -48,7 +48,9 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     import critical
     t = numpy.linspace(0, 30, 301)
     check(critical.stays(t, 1 - numpy.exp(-t), 1, 1), "it came to rest")
+    check(critical.stays(t, 1.4e-3 * numpy.sin(numpy.pi * (t / 2 - 0.75)), 1, 1), "it rests, but for what integrals leave")
     check(critical.stays(t, 0.01 * t, 1, 1) is None, "it creeps on")
+    check(critical.stays(t, 1.3e-5 * t**2, 1, 1) is None, "it is slow and grows faster")
     check(critical.stays(t, 0.0005 * numpy.maximum(t - 25, 0), 1, 1) is None, "it is slow and sets off")
     check(critical.stays(t[:50], 0 * t[:50], 1, 1) is None, "nobody looked for long enough")
     refused = subprocess.run([SOURCE / "postproc/critical.py", "deck.yaml", "--between", "2", "1", "--past", "0"], capture_output=True, text=True)
@@ -110,6 +112,15 @@ def what_drifts_over_many_turns_is_told_from_what_swings():
     check(len(means) == 50 and abs(drift.drift(means, 5)[0]) < 1e-6, means)
     change, error = drift.drift(drift.turns(t, 1e-3 * t + 0.3 * numpy.sin(2 * numpy.pi * t), phase), 5)
     check(abs(change - 1e-3 * 2 * 44) < 1e-6 and error < 1e-6, f"{change} {error}")
+
+
+def what_sharp_edges_do_is_told_from_two_roundings():
+    import step
+    q = step.power() / 2
+    close(numpy.sin(1.5 * numpy.pi * q), q, 1e-14, "the velocity beside an edge of 90 degrees")
+    close(step.sharp_edges(2 + 0.1**(2 * q), 2 + 0.05**(2 * q), 2), 2, 1e-14, "without rounding")
+    refused = subprocess.run([SOURCE / "postproc/step.py", "deck.yaml", "--radii", "0.05", "0.1"], capture_output=True, text=True)
+    check(refused.returncode == 2 and "larger one first" in refused.stderr, refused.stderr)
 
 
 def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
