@@ -7,8 +7,8 @@ A study is a small YAML file: `deck`; `set`, keys of all runs; `along`, the key 
 is found}; `across`, {another key: its values}; `curves`, {name: keys}, where a list as long as that of `across` goes with it, and `across` may have other
 values; `begin`, the share of a run that is not looked at (0.4); `literature`, {name: rows of a value across, the lowest and the highest one along}.
 
-The shape is followed by `inclination`, the membrane by `phase`: a run tumbles where its shape turns half over or more after `begin`, whether its membrane
-goes around on it (then it does both in turn) or not, and treads where only its membrane goes half around. One that does neither is told and ends its
+The shape is followed by `inclination`, the membrane by `phase`: a run tumbles where its shape turns by a right angle or more after `begin`, whether its
+membrane goes around on it (then it does both in turn) or not, and treads where only its membrane goes half around. One that does neither is told and ends its
 border. The particle starts as the deck says; where both motions are stable, a border is that of this start. A run that is there is not made again.
 """
 
@@ -26,6 +26,7 @@ from style import plt
 
 NEAR = 1.5  # factor about the last border between which the next one is looked for first
 KEYS = {"deck", "set", "along", "across", "curves", "begin", "literature"}
+SWING = 0.5  # half turns that a shape makes at least which tumbles; one whose membrane treads swings by less
 HALF = 180  # degrees: a shape, or its membrane, looks as before
 
 
@@ -34,7 +35,7 @@ def motion(time, inclination, phase, begin):
     turned = -numpy.unwrap(inclination, period=HALF)  # of the sense of the phase
     late = time >= time[0] + begin * (time[-1] - time[0])
     over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
-    if over >= 1:
+    if over >= SWING:
         return ("both" if around >= 1 else "tumbles"), over, around
     return ("treads" if around >= 1 else None), over, around
 
@@ -64,6 +65,8 @@ class Diagram:
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def tumbles(self, name, row, value):
+        if (name, row[self.across], value) in self.made:
+            return self.made[name, row[self.across], value][0] != "treads"
         outcome = self.runs.run(self.decks[0], self.fixed | row | {self.along["key"]: value})
         said, over, around = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
         if outcome.done:

@@ -69,6 +69,7 @@ def tumbling_is_told_from_treading_by_shape_and_membrane():
     check(told(-shape, shape + swung) == "tumbles", "its membrane swings on it")
     check(told(20 + swung, shape) == "treads", "its shape swings")
     check(told(-shape, 2 * shape) == "both", "its membrane goes around on it")
+    check(told(-numpy.maximum(shape, 550), 2 * shape) == "both", "it turns over as the run ends")
     check(told(20 + swung, swung) is None, "nothing went around")
     check(told(-numpy.maximum(shape, 200), numpy.maximum(shape, 200) + swung) == "tumbles", "late")
     check(told(-numpy.minimum(shape, 200), shape) == "treads", "it has stopped tumbling")
