@@ -70,12 +70,12 @@ Id new_file() {
   return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file in memory"};
 }
 
-std::string image(const Id& file) {
+std::string_view image(const Id& file) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot flush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  std::string bytes(static_cast<std::size_t>(std::max<ssize_t>(size, 0)), '\0');
-  if (size <= 0 || H5Fget_file_image(file, bytes.data(), bytes.size()) < 0) throw std::runtime_error("HDF5: no image");
-  return bytes;
+  void* handle = nullptr;  // of a file in memory: where the pointer to its bytes is
+  if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
+  return {*static_cast<const char**>(handle), static_cast<std::size_t>(size)};
 }
 
 Id open(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <hdf5.h>
@@ -26,9 +27,10 @@ class Id {
 };
 
 /// A new file in memory, and its bytes as they would stand on disk: what is written to the disk goes there in one piece (write_whole), and a disk
-/// that refuses is met with the system's reason and outside of HDF5, which does not recover from it.
+/// that refuses is met with the system's reason and outside of HDF5, which does not recover from it. They are the file's own, not a copy, and stand
+/// until it is written to again or closed.
 Id new_file();
-std::string image(const Id& file);
+std::string_view image(const Id& file);
 
 /// An existing file, for reading. Throws RunFailure when the system does not open it as a file, std::runtime_error when it is no HDF5 file.
 Id open(const std::filesystem::path& path);

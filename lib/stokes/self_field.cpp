@@ -40,20 +40,28 @@ Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   return sum;
 }
 
+/// The polynomials at the site, made when first asked for: but for the first pair of a site that is on the rank whose target it is.
+void fill(SelfPair& pair, int degree) {
+  if (!pair.bernstein.empty()) return;
+  const int n = degree + 1;
+  pair.bernstein.resize(static_cast<std::size_t>(4) * n);
+  double* b = pair.bernstein.data();
+  spline::bernstein(degree, pair.s, b, b + 2 * n, nullptr);
+  spline::bernstein(degree, pair.t, b + n, b + 3 * n, nullptr);
+}
+
 }  // namespace
 
 SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options)
     : options_(options), radial_(radial_points(options.tolerance)), first_{0} {
+  std::size_t pairs = 0;
+  for (const auto& places : sites) pairs += places.size();
+  pairs_.reserve(pairs);
   for (const auto& places : sites) {
     for (const spline::Site& site : places) {
-      const int degree = space.elements[site.element].degree, n = degree + 1;
-      SelfPair pair;
+      SelfPair& pair = pairs_.emplace_back();
       pair.panel = site.element, pair.s = site.s, pair.t = site.t;
-      pair.bernstein.resize(static_cast<std::size_t>(4) * n);
-      double* b = pair.bernstein.data();
-      spline::bernstein(degree, site.s, b, b + 2 * n, nullptr);
-      spline::bernstein(degree, site.t, b + n, b + 3 * n, nullptr);
-      pairs_.push_back(std::move(pair));
+      if (&site == &places.front()) fill(pair, space.elements[site.element].degree);
     }
     first_.push_back(pairs_.size());
   }
@@ -61,6 +69,7 @@ SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadr
 
 const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
   const int degree = panels[pair.panel].table->degree, n = degree + 1;
+  fill(pair, degree);
   quadrature::Shear shear;
   quadrature::PolarOrders orders;
   if (options_.rule != "fixed") {
