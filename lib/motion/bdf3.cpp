@@ -82,7 +82,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
       state.step = std::min(state.step, growth * dt);
       return report;
     }
-    attempts.reject(std::min(factor, 0.8));
+    attempts.reject(std::min(factor, 0.8), error);
   }
 
   State fresh = state;

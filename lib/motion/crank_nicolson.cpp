@@ -65,7 +65,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
       if (!converged && options_.fixed_step) throw RunFailure("Crank-Nicolson with a fixed step ended in numbers that are not finite");
     }
     if (slope.size() == 0 || !converged) {
-      attempts.reject(by_error_ ? (converged ? std::min(0.8, step_factor(error, 0, 3)) : 0.5) : shrink);
+      attempts.reject(by_error_ ? (converged ? std::min(0.8, step_factor(error, 0, 3)) : 0.5) : shrink, by_error_ && converged ? error : 0);
       continue;
     }
     double factor = count < few ? grow : 1;

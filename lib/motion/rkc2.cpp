@@ -97,7 +97,7 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
       state.history = {slope};
       return attempts.accept(dynamics, std::move(y), error, factor);
     }
-    attempts.reject(std::min(factor, 0.8));
+    attempts.reject(std::min(factor, 0.8), error);
     if (memory.age > 0) measure(dynamics, state, memory, attempts.report);
   }
 }

@@ -28,7 +28,13 @@ bool Attempts::holds(double error, const char* kind) const {
   return finite && (error <= 1 || options_.fixed_step);
 }
 
-void Attempts::reject(double part) {
+void Attempts::reject(double part, double error) {
+  const bool known = std::isfinite(error) && error > 1;
+  if (known && rejected_error_ > error) {
+    const double power = std::log(rejected_error_ / error) / std::log(rejected_size_ / size_);
+    part = std::min(part, std::max(0.1, 0.9 * std::pow(error, -1 / power)));
+  }
+  rejected_size_ = size_, rejected_error_ = known ? error : 0;
   proposed_ = size_ * part;
   ++report.rejected;
 }
@@ -65,7 +71,7 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
       state.history = {k4};
       return attempts.accept(dynamics, std::move(y), error, factor);
     }
-    attempts.reject(std::min(factor, 0.9));
+    attempts.reject(std::min(factor, 0.9), error);
   }
 }
 

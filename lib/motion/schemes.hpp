@@ -41,8 +41,10 @@ class Attempts {
   /// Whether an attempt of this error over the tolerance is a step. Throws RunFailure where the error of a fixed step, of this `kind`, is not finite.
   bool holds(double error, const char* kind) const;
 
-  /// Gives the attempt up; the next one is this part of it.
-  void reject(double part);
+  /// Gives the attempt up, which erred by `error` over the tolerance (0: not known); the next one is this part of it, or less where the error falls
+  /// more slowly with the step than `part` takes it to, as the attempt before shows: of what a refined mesh relaxes it goes with a power below 1.
+  /// Gustafsson 1994.
+  void reject(double part, double error = 0);
 
   /// Ends the step at y: place, time and next step of the state, `factor` times this one, and the report. A step cut short to meet the limit says
   /// nothing against the longer one. The scheme's history and memory are its own.
@@ -54,6 +56,7 @@ class Attempts {
   const TimeOptions& options_;
   State& state_;
   double limit_, proposed_, size_ = 0;
+  double rejected_size_ = 0, rejected_error_ = 0;  // of the attempt before
 };
 
 class Scheme : public Integrator {

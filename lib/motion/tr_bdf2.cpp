@@ -60,7 +60,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       state.memory = values_of(Memory{third.contraction, error, dt});
       return attempts.accept(dynamics, std::move(third.y), error, factor);
     }
-    attempts.reject(std::min(factor, 0.8));
+    attempts.reject(std::min(factor, 0.8), error);
   }
 }
 

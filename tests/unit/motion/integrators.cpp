@@ -383,6 +383,20 @@ TEST(Integrators, AFixedStepMayBeShorterThanTheLeastOfAControlledOne) {
   EXPECT_EQ(integrator(options)->advance(model, state, 1).step, 1e-12);
 }
 
+TEST(Integrators, AttemptsFollowTheErrorDownWhateverItsPower) {
+  const TimeOptions options;
+  for (const double power : {3., 1., 0.7}) {
+    State state;
+    state.step = 1;
+    Attempts attempts(options, state, 100);
+    const auto error = [&] { return 5 * std::pow(attempts.next(), power); };
+    double last = error();
+    for (; last > 1; last = error()) attempts.reject(std::min(0.8, step_factor(last, 0, 3)), last);
+    EXPECT_LE(attempts.report.rejected, 2) << power;
+    EXPECT_GT(last, 0.5) << power;  // no shorter than it has to be: the factor of safety is 0.9
+  }
+}
+
 TEST(Integrators, StepsTowardsALimitLeaveNoSliver) {
   EXPECT_EQ(step_towards(1, 2, 5), 1);
   EXPECT_EQ(step_towards(1, 2, 0.7), 0.5);
