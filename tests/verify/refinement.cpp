@@ -6,6 +6,7 @@
 #include "spline/refinement.hpp"
 #include "spline/polar.hpp"
 #include "spline/transfer.hpp"
+#include "tests/unit/spline/samples.hpp"
 #include "tests/unit/spline/sequences.hpp"
 
 namespace tanktread::spline {

@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "samples.hpp"
 #include "sequences.hpp"
 #include "spline/locate.hpp"
 #include "spline/transfer.hpp"
+#include "suitability.hpp"
 
 namespace tanktread::spline {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/errors.hpp"
+#include "samples.hpp"
 #include "sequences.hpp"
 #include "spline/polar.hpp"
 

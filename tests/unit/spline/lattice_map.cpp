@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "samples.hpp"
 #include "sequences.hpp"
 #include "spline/polar.hpp"
+#include "suitability.hpp"
 
 namespace tanktread::spline {
 namespace {

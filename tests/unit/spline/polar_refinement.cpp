@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "samples.hpp"
 #include "sequences.hpp"
 #include "spline/refinement.hpp"
 #include "spline/polar.hpp"

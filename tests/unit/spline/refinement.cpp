@@ -4,7 +4,10 @@
 
 #include <algorithm>
 
+#include "samples.hpp"
 #include "sequences.hpp"
+#include "spline/extended_mesh.hpp"
+#include "spline/transfer.hpp"
 #include "spline/tile_functions.hpp"
 #include "spline/locate.hpp"
 
