@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "app/series.hpp"
@@ -40,7 +41,9 @@ bool CarryingParticle::adapt(motion::State& state, RunTotals& totals) {
 
 std::size_t CarryingParticle::column(std::string_view name) const {
   const std::vector<Series> all = run_series(scene_);
-  return static_cast<std::size_t>(std::ranges::find(all, name, &Series::name) - all.begin());
+  const auto found = std::ranges::find(all, name, &Series::name);
+  if (found == all.end()) throw std::logic_error("a run without the series " + std::string(name));
+  return static_cast<std::size_t>(found - all.begin());
 }
 
 std::vector<double> CarryingParticle::row(const motion::State& state, const motion::StepReport& report, double wall_seconds) {

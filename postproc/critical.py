@@ -18,7 +18,6 @@ import numpy
 
 import study
 import sweep
-import tanktread
 
 SLOW = 1e-3  # speed of one that stays, over the mean velocity
 NOISE = 0.1  # of that, by which a second half may be faster
@@ -44,8 +43,8 @@ class Search:
     """Runs at one value of the key after the other."""
 
     def __init__(self, parsed):
-        self.parsed, self.runs = parsed, study.study(parsed)
-        self.settings = {"Time/end when past": parsed.past} | dict(setting.split("=", 1) for setting in parsed.set)
+        self.parsed, self.runs, self.deck = parsed, study.study(parsed), study.deck_of(parsed.deck)
+        self.settings = {"Time/end when past": parsed.past} | study.settings_of(parsed.set)
 
     def stays(self, value):
         held, settings = None, self.settings | {self.parsed.key: value}
@@ -57,7 +56,7 @@ class Search:
         raise sweep.Mistake(f"{self.parsed.key}={value:.6g} neither passes nor stays")
 
     def one(self, value, settings):
-        outcome = self.runs.run(self.parsed.deck.resolve(), settings)
+        outcome = self.runs.run(self.deck, settings)
         sweep.expect(outcome.done, f"{self.parsed.key}={value:.6g}: {outcome.message}")
         run, series = outcome.run, outcome.series
         speed = run.value("Flow/mean velocity", 1.0)
@@ -82,7 +81,6 @@ def main():
     parsed = parser.parse_args()
     low, high = parsed.between
     sweep.expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")
-    sweep.expect(all("=" in setting for setting in parsed.set), "--set needs KEY=VALUE")
     search = Search(parsed)
     found, how = study.edge(search.stays, low, high, 1 + parsed.within)
     sweep.expect(how == "edge", f"{'it passes' if how == 'fails from here' else 'it stays'} at {found:g} already: --between other values")

@@ -10,12 +10,13 @@ flow has a history that ends in rest, how often the energy then rises.
 """
 
 import argparse
-import sys
 
 import needs  # before what it looks for
 import numpy
 
 import style
+import study
+import sweep
 import tanktread
 from style import plt
 
@@ -37,6 +38,15 @@ def drift(means, first):
     return slope * (len(number) - 1), covariance[0, 0] ** 0.5 * (len(number) - 1)
 
 
+def flow_of(run):
+    """When the flow begins to end, and from when on it is at rest; never where its history does not end so."""
+    amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
+    on = numpy.flatnonzero(amplitudes)
+    if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):
+        return times[on[-1]], times[on[-1] + 1]
+    return numpy.inf, numpy.inf
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", help="a deck, or the directory of a run's results")
@@ -44,15 +54,15 @@ def main():
     parser.add_argument("--from", dest="first", type=int, default=10, metavar="TURN", help="of the line (default: %(default)s)")
     parser.add_argument("-o", "--output", default="drift.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
-    run = tanktread.run(arguments.run, dict(setting.split("=", 1) for setting in arguments.set))
+    sweep.expect(arguments.first >= 0, f"--from needs a turn, but is given {arguments.first}")
+    sweep.expect(not arguments.set or arguments.run.endswith(".yaml"), f"--set changes keys of a deck, but {arguments.run} is none")
+    run = tanktread.run(arguments.run, study.settings_of(arguments.set))
     run.require("phase", *SERIES)
-    stop = numpy.inf
-    if "history" in run.deck["Flow"] and run.value("Flow/history/amplitudes")[-1] == 0:
-        stop = run.value("Flow/history/times")[numpy.flatnonzero(run.value("Flow/history/amplitudes"))[-1]]
+    stop, rest = flow_of(run)
     flows = run.series["time"] <= stop
     time, phase = run.series["time"][flows], run.series["phase"][flows]
-    if phase[-1] / 360 < arguments.first + 3:
-        sys.exit(f"{run.directory} has {max(phase[-1] / 360, 0):.1f} turns; a line from turn {arguments.first} on needs {arguments.first + 3}: --from an earlier one")
+    sweep.expect(phase[-1] / 360 >= arguments.first + 3, f"{run.directory} has {max(phase[-1] / 360, 0):.1f} turns; a line from turn {arguments.first} on needs "
+                 f"{arguments.first + 3}: a later Time/final time, or --from an earlier one")
     figure, plots = plt.subplots(len(SERIES), 1, figsize=(6.4, 7.6), sharex=True)
     print(f"{phase[-1] / 360:.1f} turns, {len(time)} steps; the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
     for (name, label), plot in zip(SERIES.items(), plots):
@@ -69,11 +79,11 @@ def main():
         plot.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
         plot.set_ylabel(label, fontsize=8)
     plots[-1].set_xlabel("turns of the membrane")
-    if not flows.all():
-        energy = run.series["energy"][run.series["time"] > stop]
+    energy = run.series["energy"][run.series["time"] >= rest]
+    if len(energy) > 1:
         print(f"without flow the energy goes from {energy[0]:.6g} to {energy[-1]:.6g} in {len(energy)} steps; it rises in {(numpy.diff(energy) > 0).sum()}")
     style.save(figure, arguments.output)
 
 
 if __name__ == "__main__":
-    main()
+    sweep.answer(main)

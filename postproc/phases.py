@@ -21,7 +21,6 @@ import numpy
 import study
 import style
 import sweep
-import tanktread
 from style import plt
 
 NEAR = 1.5  # factor about the last border between which the next one is looked for first
@@ -48,6 +47,7 @@ class Diagram:
         self.runs, self.decks, self.fixed = runs, sweep.decks_of(text, path), text.get("set") or {}
         self.along, across, curves = (text.get(name) or {} for name in ("along", "across", "curves"))
         sweep.expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
+        self.along |= {name: sweep.number(self.along[name], f"{path}: along, {name}") for name in ("from", "to", "within")}
         sweep.expect(0 < self.along["from"] < self.along["to"] and self.along["within"] > 1,
                      f"{path}: along needs positive values that ascend and a factor above 1, but is from {self.along['from']} to {self.along['to']} within "
                      f"{self.along['within']}")
@@ -58,25 +58,32 @@ class Diagram:
 
     def settings(self, name, keys):
         """Those of a curve, one for each of its values across."""
-        values = sweep.values_of(self.across, keys[self.across])
+        values = [sweep.number(value, f"{name}: {self.across}") for value in sweep.values_of(self.across, keys[self.across])]
         lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: values}
         for key, given in lists.items():
             sweep.expect(len(given) == len(values), f"{name}: {key} has {len(given)} values where {self.across} has {len(values)}")
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def tumbles(self, name, row, value):
-        if (name, row[self.across], value) in self.made:
-            return self.made[name, row[self.across], value][0] != "treads"
-        outcome = self.runs.run(self.decks[0], self.fixed | row | {self.along["key"]: value})
+        key = name, row[self.across], value
+        if key not in self.made:
+            self.made[key] = self.motion_at(name, row, value)
+        said = self.made[key][0]
+        sweep.expect(said in ("tumbles", "both", "treads"), "it neither tumbles nor treads: it needs a later Time/final time" if said == "neither" else said)
+        return said != "treads"
+
+    def motion_at(self, name, row, value):
+        """Of one run: its motion, or why there is none, half turns of the shape and of the membrane, processor seconds and directory."""
+        outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
         said, over, around = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
         if outcome.done:
+            outcome.run.require("inclination", "phase")
             series = outcome.series
             said, over, around = motion(series["time"], series["inclination"], series["phase"], self.begin)
-        self.made[name, row[self.across], value] = said or "neither", over, around, outcome.processor_seconds, outcome.directory.name
-        print(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said or 'neither'} (half turns: shape {over:.2f}, "
+        said = said or "neither"
+        print(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} (half turns: shape {over:.2f}, "
               f"membrane {around:.2f}; {outcome.processor_seconds:.0f} processor seconds)", flush=True)
-        sweep.expect(said in ("tumbles", "both", "treads"), said or "neither: it needs a later Time/final time")
-        return said != "treads"
+        return said, over, around, outcome.processor_seconds, outcome.directory.name
 
     def border(self, name, row, last):
         """Looked for about the last one, and where it is not there, or there is none, in what is left of the range."""
@@ -100,7 +107,9 @@ class Diagram:
             except sweep.Mistake as mistake:
                 low, how = numpy.nan, str(mistake)
             above = [key[2] for key, run in self.made.items() if key[:2] == (name, row[self.across]) and key[2] > low and run[0] == "treads"]
-            self.borders[name].append((row[self.across], low, min(above, default=numpy.nan), how))
+            low, high, how = {"fails from here": (numpy.nan, low, "treads from here"), "holds to here": (low, numpy.nan, "tumbles to here")}.get(
+                how, (low, min(above, default=numpy.nan), how))
+            self.borders[name].append((row[self.across], low, high, how))
             last = low if how == "edge" else last
 
     def write(self, directory):
@@ -117,8 +126,8 @@ class Diagram:
                 middle = numpy.sqrt(edges[:, 1] * edges[:, 2])
                 bars = [middle - edges[:, 1], edges[:, 2] - middle]
                 axes.errorbar(edges[:, 0], middle, bars, fmt="o-", color=color, markersize=3.5, capsize=2, label=name)
-            for how, mark in ("fails from here", "v"), ("holds to here", "^"):  # it treads from the lowest value on, or tumbles to the highest
-                there = [row[:2] for row in rows if row[3] == how]
+            for how, at, mark in ("treads from here", 2, "v"), ("tumbles to here", 1, "^"):  # there is no border in the range
+                there = [(row[0], row[at]) for row in rows if row[3] == how]
                 label = None if len(edges) else name + (", below" if mark == "v" else ", above")
                 axes.plot(*numpy.array(there).reshape(-1, 2).T, mark, color=color, markersize=6, label=label if there else None)
         for (name, rows), mark in zip(self.literature.items(), style.MARKS[1:] * len(self.literature)):

@@ -42,6 +42,7 @@ def extents(outcome, x):
     sweep.expect(outcome.done, f"{outcome.directory}: {outcome.message}")
     series, a = outcome.series, outcome.run.value("Particle/radius", 1.0)
     way = series["centroid_x1"]
+    sweep.expect((numpy.diff(way) > 0).all(), f"{outcome.directory}: its centroid went back, so that there are several extents at a place")
     sweep.expect(way[0] <= x[0] and x[-1] <= way[-1], f"{outcome.directory}: --between {x[0]:g} {x[-1]:g}, but it went from {way[0]:g} to {way[-1]:g}")
     return scipy.interpolate.CubicSpline(way, numpy.transpose([series[f"length_x{k}"] for k in (1, 2, 3)]))(x).T / (2 * a)
 
@@ -49,13 +50,24 @@ def extents(outcome, x):
 def of_radius(runs, parsed, radius, x):
     """The extents, with what each --finer changes."""
     def of(words):
-        return extents(runs.run(parsed.deck.resolve(), {"Channel/corner radius": radius} | dict(word.split("=", 1) for word in words)), x)
+        return extents(runs.run(study.deck_of(parsed.deck), {"Channel/corner radius": radius} | study.settings_of(words)), x)
     first = found = of(parsed.set)
     for finer in parsed.finer:
         change = of(parsed.set + [finer]) - first
         print(f"radius {radius:g}, {finer}: changes " + ", ".join(f"{value:.1e}" for value in numpy.abs(change).max(axis=1)), flush=True)
         found = found + change
     return found
+
+
+def curve_of(path, between):
+    """A published curve, rows of a centroid and an extent, and its points between these centroids."""
+    try:
+        curve = numpy.loadtxt(path, delimiter=",", ndmin=2)
+    except (OSError, ValueError) as error:
+        raise sweep.Mistake(f"{path} is no curve: {error}") from error
+    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])] if curve.shape[1] == 2 else []
+    sweep.expect(len(inside), "{} has no rows of two numbers with the first between {:g} and {:g}".format(path, *between))
+    return curve, inside
 
 
 def main():
@@ -71,8 +83,9 @@ def main():
     parsed = parser.parse_args()
     large, small = parsed.radii
     sweep.expect(0 < small < large, f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
-    sweep.expect(all("=" in setting for setting in parsed.set + parsed.finer), "--set and --finer need KEY=VALUE")
-    curves = [numpy.loadtxt(path, delimiter=",", ndmin=2) for path in parsed.curves or []]
+    sweep.expect(parsed.between[0] < parsed.between[1], "--between needs two centroids that ascend, but is given {:g} and {:g}".format(*parsed.between))
+    study.settings_of(parsed.set + parsed.finer)
+    curves = [curve_of(path, parsed.between) for path in parsed.curves or []]
     x, runs = numpy.linspace(*parsed.between, PLACES), study.study(parsed)
     of_large, of_small = of_radius(runs, parsed, large, x), of_radius(runs, parsed, small, x)
     sharp = sharp_edges(of_large, of_small, large / small)
@@ -84,8 +97,7 @@ def main():
         at = numpy.argmax(numpy.abs(sharp[k] - of_small[k]))
         print(f"along {name}: radii {large:g} and {small:g} differ by {numpy.abs(of_large[k] - of_small[k]).max():.1e}, sharp edges from {small:g} by "
               f"{abs(sharp[k, at] - of_small[k, at]):.1e} at most, at {x[at]:.2f}")
-    for k, curve in enumerate(curves):
-        inside = curve[(curve[:, 0] > x[0]) & (curve[:, 0] < x[-1])]
+    for k, (curve, inside) in enumerate(curves):
         off = numpy.interp(inside[:, 0], x, sharp[k]) - inside[:, 1]
         at = numpy.argmax(numpy.abs(off))
         axis.plot(*curve.T, style.MARKS[k], color=style.FAINT, markersize=3, label=f"published, {names[k]}")

@@ -3,6 +3,7 @@
 import pathlib
 
 import tanktread
+import sweep
 from tanktread import Study, quoted, text_of
 
 
@@ -29,6 +30,19 @@ def arguments(parser, results):
                         help="of pictures, tables and, under runs/, results (default: %(default)s)")
     parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
     parser.add_argument("--limit", type=float, default=300, metavar="SECONDS", help="of processor time that one run may take (default: %(default)s)")
+
+
+def settings_of(words):
+    """{key: value} of the words of --set."""
+    for word in words:
+        sweep.expect("=" in word, f"{word}: a setting is KEY=VALUE")
+    return dict(word.split("=", 1) for word in words)
+
+
+def deck_of(path):
+    """A deck that is there, as a whole path."""
+    sweep.expect(path.is_file(), f"{path}: there is no such deck")
+    return path.resolve()
 
 
 def study(parsed, jobs=1):

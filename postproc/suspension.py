@@ -28,7 +28,7 @@ def main():
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 6.4), sharex=True)
     for run, color in zip(runs, style.RUNS * len(runs)):
         run.require(*SERIES)
-        strain = run.time * run.rate[0]
+        strain = run.time
         label = f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         words = []
         for name, symbol in SERIES.items():

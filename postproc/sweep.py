@@ -43,6 +43,14 @@ def expect(holds, message):
         raise Mistake(message)
 
 
+def number(given, name):
+    """A number of a YAML file, in which 1e-2 is a word."""
+    try:
+        return float(given)
+    except (TypeError, ValueError):
+        raise Mistake(f"{name}: {given} is not a number") from None
+
+
 def tell(progress):
     """On standard error: in place on a terminal, which "" gives free again, as lines elsewhere."""
     if sys.stderr.isatty():

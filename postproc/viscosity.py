@@ -38,6 +38,7 @@ def main():
     directory.mkdir(parents=True, exist_ok=True)
     study = tanktread.Study(directory=directory / "runs", jobs=arguments.jobs)
     runs = sweep.Sweep(arguments.study, study)
+    sweep.expect(all(CA in row for row in runs.rows), f"{arguments.study} varies or sets no {CA}")
     runs.make()
     runs.write(directory)
     rows = {}
@@ -46,7 +47,7 @@ def main():
             rows.setdefault(settings[CA], []).append(row)
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 7.2), sharex=True)
     for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
-        alone = intrinsic(study, arguments, ca, runs.outcomes[0])
+        alone = intrinsic(study, arguments, ca, next(one for one in runs.outcomes if one.done))
         fraction, mean, error = numpy.array(sorted(found)).T
         draw(upper, lower, color, f"Ca = {ca:g}", alone, fraction, mean, error)
         print(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in zip(fraction, mean, error)))
@@ -67,7 +68,10 @@ def averages(outcome, arguments):
         print(f"left out: {outcome.message.removeprefix('tanktread: ')}")
         return None
     series = outcome.series
-    strain = series["time"] * outcome.run.rate[0]
+    strain = outcome.run.time
+    if strain[-1] <= arguments.first:
+        print(f"left out: {outcome.directory.name} ends at strain {strain[-1]:g}, before --from {arguments.first:g}")
+        return None
     if series["contact_impulse"][-1] > 0:
         print(f"{outcome.directory.name}, φ = {series['volume_fraction'][0]:.3g}: the limiter's impulse is {series['contact_impulse'][-1]:.3g}")
     return (series["volume_fraction"][0], *average(strain, series["relative_viscosity"], arguments.first, arguments.blocks))
@@ -78,7 +82,9 @@ def intrinsic(study, arguments, ca, one):
     deck = one.run.deck
     settings = {"Membrane/capillary number": ca, "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"],
                 "Time/final time": deck["Time"]["final time"]}
-    return rheology(study.run(arguments.single, settings).run)[0][-1]
+    one = study.run(arguments.single, settings)
+    sweep.expect(one.done, f"one capsule alone at Ca = {ca:g}: {one.message}")
+    return rheology(one.run)[0][-1]
 
 
 def straight_line(x, y, error):

@@ -31,7 +31,7 @@ bool Attempts::holds(double error, const char* kind) const {
 void Attempts::reject(double part, double error) {
   const bool known = std::isfinite(error) && error > 1;
   if (known && rejected_error_ > error) {
-    const double power = std::log(rejected_error_ / error) / std::log(rejected_size_ / size_);
+    const double power = std::max(0.5, std::log(rejected_error_ / error) / std::log(rejected_size_ / size_));
     part = std::min(part, std::max(0.1, 0.9 * std::pow(error, -1 / power)));
   }
   rejected_size_ = size_, rejected_error_ = known ? error : 0;

@@ -41,9 +41,9 @@ class Attempts {
   /// Whether an attempt of this error over the tolerance is a step. Throws RunFailure where the error of a fixed step, of this `kind`, is not finite.
   bool holds(double error, const char* kind) const;
 
-  /// Gives the attempt up, which erred by `error` over the tolerance (0: not known); the next one is this part of it, or less where the error falls
-  /// more slowly with the step than `part` takes it to, as the attempt before shows: of what a refined mesh relaxes it goes with a power below 1.
-  /// Gustafsson 1994.
+  /// Gives the attempt up, which erred by `error` over the tolerance (0: not known). The next one is `part` of it. Where two attempts were given up,
+  /// their errors tell the power of the step that the error goes with, and the next one is no longer than this power says, but a tenth at least: what
+  /// a refined mesh relaxes goes with less than the first power, and not by a power below a half. Gustafsson 1994.
   void reject(double part, double error = 0);
 
   /// Ends the step at y: place, time and next step of the state, `factor` times this one, and the report. A step cut short to meet the limit says

@@ -75,7 +75,7 @@ std::string_view image(const Id& file) {
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   void* handle = nullptr;  // of a file in memory: where the pointer to its bytes is
   if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
-  return {*static_cast<const char**>(handle), static_cast<std::size_t>(size)};
+  return {reinterpret_cast<const char*>(*static_cast<unsigned char**>(handle)), static_cast<std::size_t>(size)};
 }
 
 Id open(const std::filesystem::path& path) {

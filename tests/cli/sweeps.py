@@ -80,7 +80,7 @@ def a_border_is_found_about_the_last_one_and_where_it_is_not():
     deck(DECK)
     deck("""
 deck: deck.yaml
-along: {key: Flow/shear rate, from: 0.01, to: 10, within: 1.1}
+along: {key: Flow/shear rate, from: 1e-2, to: 10, within: 1.1}
 across: {Particle/viscosity ratio: [1, 2, 3, 4, 5]}
 curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}}
 """, "phases.yaml")
@@ -95,7 +95,8 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     diagram.tumbles = tumbles
     diagram.find()
     rows = diagram.borders["one"]
-    check([row[3] for row in rows] == ["edge"] * 3 + ["fails from here", "holds to here"], rows)
+    check([row[3] for row in rows] == ["edge"] * 3 + ["treads from here", "tumbles to here"], rows)
+    check(numpy.isnan(rows[3][1]) and rows[3][2] == 0.01 and rows[4][1] == 10 and numpy.isnan(rows[4][2]), rows)
     check(all(row[1] < at[row[0]] <= row[2] < 1.11 * row[1] for row in rows[:3]), rows)
     made = [sum(key[0] == "one" and key[1] == x for key in diagram.made) for x in at]
     check(made[1] <= 6 < made[0], f"runs of each border: {made}")
@@ -122,6 +123,10 @@ def what_sharp_edges_do_is_told_from_two_roundings():
     close(step.sharp_edges(2 + 0.1**(2 * q), 2 + 0.05**(2 * q), 2), 2, 1e-14, "without rounding")
     refused = subprocess.run([SOURCE / "postproc/step.py", "deck.yaml", "--radii", "0.05", "0.1"], capture_output=True, text=True)
     check(refused.returncode == 2 and "larger one first" in refused.stderr, refused.stderr)
+    refused = subprocess.run([SOURCE / "postproc/step.py", "deck.yaml", "--radii", "0.1", "0.05", "--set", "Time"], capture_output=True, text=True)
+    check(refused.returncode == 2 and "KEY=VALUE" in refused.stderr, refused.stderr)
+    refused = subprocess.run([SOURCE / "postproc/step.py", "none.yaml", "--radii", "0.1", "0.05"], capture_output=True, text=True)
+    check(refused.returncode == 2 and "no such deck" in refused.stderr, refused.stderr)
 
 
 def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():

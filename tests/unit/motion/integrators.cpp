@@ -397,6 +397,18 @@ TEST(Integrators, AttemptsFollowTheErrorDownWhateverItsPower) {
   }
 }
 
+TEST(Integrators, AttemptsWhoseErrorHardlyFallsAreNotCutToSlivers) {
+  const TimeOptions options;
+  State state;
+  state.step = 1;
+  Attempts attempts(options, state, 100);
+  attempts.next();
+  attempts.reject(0.8, 1.21);
+  EXPECT_EQ(attempts.next(), 0.8);
+  attempts.reject(0.8, 1.2);
+  EXPECT_NEAR(attempts.next(), 0.8 * 0.9 / (1.2 * 1.2), 1e-14);
+}
+
 TEST(Integrators, StepsTowardsALimitLeaveNoSliver) {
   EXPECT_EQ(step_towards(1, 2, 5), 1);
   EXPECT_EQ(step_towards(1, 2, 0.7), 0.5);
