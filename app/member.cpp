@@ -80,9 +80,10 @@ std::vector<Member> members(const Scene& scene) {
 }
 
 void arrange(std::vector<Member>& members) {
-  std::vector<const spline::Space*> spaces;
+  std::vector<spline::Space*> spaces;
   for (const Member& member : members) spaces.push_back(&member.body->space);
-  const std::vector<spline::Block> blocks = spline::blocks(spaces);
+  spline::share_extraction(spaces);
+  const std::vector<spline::Block> blocks = spline::blocks(std::vector<const spline::Space*>(spaces.begin(), spaces.end()));
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];

@@ -44,7 +44,7 @@ void append(Group& g, const spline::Space& space, std::span<const int> elements,
     const spline::Element& element = space.elements[batch.elements[l]];
     for (int a = 0; a < static_cast<int>(element.points.size()); ++a) {
       g.points[batch.points + a * lanes + l] = element.points[a];
-      for (int b = 0; b < g.n_bernstein(); ++b) extraction[lanes * (a * g.n_bernstein() + b) + l] = element.extraction(a, b);
+      for (int b = 0; b < g.n_bernstein(); ++b) extraction[lanes * (a * g.n_bernstein() + b) + l] = (*element.extraction)(a, b);
     }
   }
   batch.extraction = kept_once(g.extraction, batch.extraction, extractions);

@@ -16,7 +16,7 @@ Basis basis(const Element& element, double s, double t, int derivatives) {
   auto combine = [&](int ds, int dt) -> Eigen::VectorXd {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) product[n * j + i] = bs[ds][i] * bt[dt][j];
-    return element.extraction * product;
+    return *element.extraction * product;
   };
   Basis b;
   b.value = combine(0, 0);
@@ -39,11 +39,11 @@ BezierPoints bezier_points(const Element& e, const Net& field) {
   if (e.degree == 3 && e.points.size() == 16) {  // of a size that the compiler knows
     Eigen::Matrix<double, 16, 3> P;
     gather(P);
-    return Eigen::Map<const Eigen::Matrix<double, 16, 16>>(e.extraction.data()).transpose().lazyProduct(P);
+    return Eigen::Map<const Eigen::Matrix<double, 16, 16>>(e.extraction->data()).transpose().lazyProduct(P);
   }
   Eigen::Matrix<double, Eigen::Dynamic, 3> P(Eigen::Index(e.points.size()), 3);
   gather(P);
-  return e.extraction.transpose().lazyProduct(P);
+  return e.extraction->transpose().lazyProduct(P);
 }
 
 }  // namespace tanktread::spline

@@ -61,7 +61,7 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
     Element e;
     e.degree = 4;
     e.points.assign(ring.begin(), ring.end());
-    e.extraction = at_corner(constrained_biquartic(), 4, corner);
+    e.extraction = std::make_shared<const Eigen::MatrixXd>(at_corner(constrained_biquartic(), 4, corner));
     out.push_back(std::move(e));
     return out;
   }
@@ -73,7 +73,7 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
     std::vector<int> used;
     for (int i = 0; i < OneRing::size; ++i)
       if ((all.row(i).array() != 0).any()) used.push_back(i);
-    e.extraction = all(used, Eigen::all);
+    e.extraction = std::make_shared<const Eigen::MatrixXd>(all(used, Eigen::all));
     for (int i : used) e.points.push_back(ring[i]);
     out.push_back(std::move(e));
   }
@@ -90,13 +90,11 @@ struct TileElements {
   bool one(int tile) const { return first[tile + 1] - first[tile] == 1; }
 };
 
-/// Those at extraordinary points complete, the others with their places and room for their functions.
+/// Those at extraordinary points complete, the others with their places.
 TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const std::vector<int> point = control_points(mesh);
   const int tiles = int(b.tiling.tiles.size());
-  std::vector<int> count(tiles, 0);  // functions of a tile
-  for (const Contribution& c : b.entries) ++count[c.tile];
   // The averaged square keeps its side, 2^-max(levels, 4) of a base element, however often the rings around it are refined.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
   std::map<std::pair<int, int>, std::vector<Element>> patterns;  // by corner and spacing, with ring numbers for points
@@ -108,10 +106,7 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
     const Rectangle& r = b.tiling.tiles[t];
     out.first.push_back(int(out.all.size()));
     if (b.irregular[t] < 0) {
-      Element e;
-      e.points.reserve(count[t]);
-      e.extraction.resize(count[t], 16);
-      out.all.push_back(std::move(e));
+      out.all.emplace_back();
     } else {
       const auto ring = ring_of(l, b, point, t);
       auto& pattern = patterns[{b.irregular[t], r.width}];
@@ -158,10 +153,15 @@ Space space(const TMesh& mesh, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const TileFunctions b = tile_functions(mesh);
   TileElements elements = laid_out(mesh, b, rule);
+  std::vector<int> count(b.tiling.tiles.size(), 0);  // functions of a tile
+  for (const Contribution& c : b.entries) ++count[c.tile];
+  std::vector<std::shared_ptr<Eigen::MatrixXd>> extraction(count.size());
+  for (std::size_t t = 0; t < count.size(); ++t)
+    if (b.irregular[t] < 0) elements.all[elements.first[t]].extraction = extraction[t] = std::make_shared<Eigen::MatrixXd>(count[t], 16);
   for (const Contribution& c : b.entries) {
-    Element& e = elements.all[elements.first[c.tile]];
-    e.extraction.row(Eigen::Index(e.points.size())) = Eigen::Map<const Eigen::Matrix<double, 1, 16>>(c.row.data());
-    e.points.push_back(c.anchor);
+    std::vector<int>& points = elements.all[elements.first[c.tile]].points;
+    extraction[c.tile]->row(Eigen::Index(points.size())) = Eigen::Map<const Eigen::Matrix<double, 1, 16>>(c.row.data());
+    points.push_back(c.anchor);
   }
   Space out;
   out.n_points = int(b.anchor.size());

@@ -88,15 +88,15 @@ Element read_element(Reader& in, int n_points) {
       in.fail("node " + std::to_string(e.points.back()) + " does not exist; there are 0 to " + std::to_string(n_points - 1) + ".");
   }
   const int n = (ps + 1) * (ps + 1);
-  e.extraction.resize(functions, n);
+  Eigen::MatrixXd extraction(functions, n);
   for (int i = 0; i < functions; ++i) {
     in.need("coefficients");
-    for (int b = 0; b < n; ++b) e.extraction(i, b) = in.word<double>("coefficient " + std::to_string(b + 1) + " of " + std::to_string(n));
+    for (int b = 0; b < n; ++b) extraction(i, b) = in.word<double>("coefficient " + std::to_string(b + 1) + " of " + std::to_string(n));
   }
-  const Eigen::RowVectorXd sum = e.extraction.colwise().sum();
+  const Eigen::RowVectorXd sum = extraction.colwise().sum();
   if (!((sum.array() - 1).abs().maxCoeff() < 1e-6))
     in.fail("the functions of this element do not sum to 1, so it is not a partition of unity.");
-  e.extraction = e.extraction.array().rowwise() / sum.array();
+  e.extraction = std::make_shared<const Eigen::MatrixXd>(extraction.array().rowwise() / sum.array());
   return e;
 }
 
@@ -285,8 +285,8 @@ void write_iga(const std::filesystem::path& file, const Space& space, const Net&
     out << "belem " << e.points.size() << " " << e.degree << " " << e.degree << "\n";
     for (std::size_t i = 0; i < e.points.size(); ++i) out << (i ? " " : "") << e.points[i];
     out << "\n";
-    for (Eigen::Index i = 0; i < e.extraction.rows(); ++i)
-      for (Eigen::Index b = 0; b < e.extraction.cols(); ++b) out << e.extraction(i, b) << (b + 1 < e.extraction.cols() ? " " : "\n");
+    for (Eigen::Index i = 0; i < e.extraction->rows(); ++i)
+      for (Eigen::Index b = 0; b < e.extraction->cols(); ++b) out << (*e.extraction)(i, b) << (b + 1 < e.extraction->cols() ? " " : "\n");
   }
   if (!out.flush()) throw UserError("Surface file " + file.string() + " cannot be written.");
 }

@@ -158,15 +158,15 @@ class Transform {
   void add_pieces(const Element& e, bool ahead, std::vector<Element>& out) const {
     const auto order = seen_from_base(ahead);
     for (const PolePiece& piece : pieces_) {
-      Eigen::MatrixXd turned(e.extraction.rows(), 16);
-      for (int b = 0; b < 16; ++b) turned.col(b) = e.extraction.col(order[b]);
+      Eigen::MatrixXd turned(e.extraction->rows(), 16);
+      for (int b = 0; b < 16; ++b) turned.col(b) = e.extraction->col(order[b]);
       turned = (turned * piece.conversion.transpose()).eval();
       Element part = e;
       part.points.clear();
       std::vector<Eigen::Index> used;
       for (Eigen::Index a = 0; a < turned.rows(); ++a)
         if (turned.row(a).cwiseAbs().maxCoeff() > 1e-13) used.push_back(a), part.points.push_back(e.points[a]);
-      part.extraction = turned(used, Eigen::all);
+      part.extraction = std::make_shared<const Eigen::MatrixXd>(turned(used, Eigen::all));
       part.size[0] /= double(pieces_.size());
       out.push_back(std::move(part));
     }
@@ -226,11 +226,12 @@ std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, con
   for (std::size_t t = 0; t < out.size(); ++t) {
     const Rectangle& r = f.tiling.tiles[t];
     Element& e = out[t];
-    e.extraction.resize(Eigen::Index(functions[t].size()), 16);
+    Eigen::MatrixXd extraction(functions[t].size(), 16);
     for (const auto& [point, row] : functions[t]) {
-      e.extraction.row(Eigen::Index(e.points.size())) = row;
+      extraction.row(Eigen::Index(e.points.size())) = row;
       e.points.push_back(point);
     }
+    e.extraction = std::make_shared<const Eigen::MatrixXd>(std::move(extraction));
     e.origin = {double(r.x) / l.units, l.height(r.y) / height};
     e.size = {double(r.width) / l.units, r.height / height};
   }

@@ -2,6 +2,7 @@
 // The one thing that everything downstream of the spline room sees: a list of Bezier elements and the collocation points.
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ namespace tanktread::spline {
 struct Element {
   int degree = 3;              ///< p, the same in s and t: 3, or 4 around an extraordinary point under `g1`; 2 to 6 from a file
   std::vector<int> points;     ///< control-point ids, m of them (16 on a regular element)
-  Eigen::MatrixXd extraction;  ///< shape (m, (p + 1)^2); every column sums to 1
+  /// Shape (m, (p + 1)^2); every column sums to 1. Elements that are alike, as in copies of a space, may share one.
+  std::shared_ptr<const Eigen::MatrixXd> extraction;
   int face = 0;                ///< placement in the T-mesh: macro face, lower left corner and size, in sides of the face
   std::array<double, 2> origin{0, 0}, size{1, 1};
 };
@@ -55,6 +57,9 @@ std::vector<Block> blocks(std::span<const Space* const> spaces);
 
 /// The space of all of them: Gamma = Gamma_1 + Gamma_2 + …, each as it was.
 Space stacked(std::span<const Space* const> spaces);
+
+/// From now on extraction matrices that are equal to the last bit are one matrix, within each of the spaces and across them.
+void share_extraction(std::span<Space* const> spaces);
 
 /// The block that is the whole of one space.
 Block whole(const Space& space);

@@ -144,8 +144,8 @@ Transfer::State::State(const Space& old_space, const Space& new_space)
       inside = inside && low >= -margin && low + e.size[d] / c.size[d] <= 1 + margin;
     }
     straddling += !inside;
-    alike.push_back(e.degree == c.degree && e.origin == c.origin && e.size == c.size && e.extraction.rows() == c.extraction.rows() &&
-                    e.extraction == c.extraction);
+    alike.push_back(e.degree == c.degree && e.origin == c.origin && e.size == c.size && e.extraction->rows() == c.extraction->rows() &&
+                    *e.extraction == *c.extraction);
     if (alike.back())
       for (std::size_t i = 0; i < e.points.size(); ++i) copied[e.points[i]] = c.points[i];
   }

@@ -28,12 +28,12 @@ std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {
     const double each = e.size[0] * e.size[1];
-    for (std::size_t a = 0; a < e.points.size(); ++a) area[e.points[a]] += each * e.extraction.row(static_cast<Eigen::Index>(a)).mean();
+    for (std::size_t a = 0; a < e.points.size(); ++a) area[e.points[a]] += each * e.extraction->row(static_cast<Eigen::Index>(a)).mean();
   }
   std::vector<double> out;
   for (const spline::Element& e : space.elements) {
     double around = 0;
-    for (std::size_t a = 0; a < e.points.size(); ++a) around += area[e.points[a]] * e.extraction.row(static_cast<Eigen::Index>(a)).mean();
+    for (std::size_t a = 0; a < e.points.size(); ++a) around += area[e.points[a]] * e.extraction->row(static_cast<Eigen::Index>(a)).mean();
     out.push_back(std::sqrt(e.size[0] * e.size[1] / around));
   }
   return out;

@@ -41,7 +41,7 @@ Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
     const int m = static_cast<int>(element.points.size());
     const std::size_t first = extraction_.size();
     for (int a = 0; a < m; ++a)
-      for (int b = 0; b < found->n_bernstein; ++b) extraction_.push_back(element.extraction(a, b));
+      for (int b = 0; b < found->n_bernstein; ++b) extraction_.push_back((*element.extraction)(a, b));
     panels_.push_back({&*found, m, points_.size(), kept_once(extraction_, first, extractions), bezier_size_, n_nodes_});
     points_.insert(points_.end(), element.points.begin(), element.points.end());
     n_nodes_ += found->n_nodes;

@@ -35,7 +35,7 @@ std::vector<Block> blocks_by_degree(const spline::Space& space) {
 BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), blocks_(blocks_by_degree(space)) {
   Tables tables;
   for (const spline::Element& element : space.elements) {
-    const Eigen::MatrixXd& c = element.extraction;
+    const Eigen::MatrixXd& c = *element.extraction;
     const std::size_t first = by_bezier_.size();
     by_bezier_.insert(by_bezier_.end(), c.data(), c.data() + c.size());
     const std::size_t operation = kept_once(by_bezier_, first, tables);

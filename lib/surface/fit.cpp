@@ -34,7 +34,7 @@ LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
   std::vector<spline::LocalMatrix> local;
   const Eigen::MatrixXd* last = nullptr;
   for (const spline::Element& element : space.elements) {
-    const Eigen::MatrixXd& c = element.extraction;
+    const Eigen::MatrixXd& c = *element.extraction;
     const Table& table = tables_.at(element.degree);
     if (!last || last->rows() != c.rows() || last->cols() != c.cols() || *last != c)
       values.push_back(c * table.weighted * table.value * c.transpose());

@@ -116,7 +116,9 @@ class Search {
         if ((points_.all()[to.points[b]] - there).norm() > exact * size_) return false;
         for (int k = 0; k < map_.n_bezier(e); ++k) {
           const int turned = turn.bernstein(k, map_.degree(e));
-          if (std::abs(from.extraction(static_cast<Eigen::Index>(a), k) - to.extraction(static_cast<Eigen::Index>(b), turned)) > exact) return false;
+          const double of_one = (*from.extraction)(static_cast<Eigen::Index>(a), k);
+          const double of_other = (*to.extraction)(static_cast<Eigen::Index>(b), turned);
+          if (std::abs(of_one - of_other) > exact) return false;
         }
         return true;
       };

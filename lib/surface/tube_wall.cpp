@@ -111,14 +111,15 @@ spline::Space product(const Line& along, const Line& around) {
     for (int k = 0; k < m; ++k) {
       const Line::Piece &s = along.pieces[i], &t = around.pieces[k];
       spline::Element element;
-      element.extraction.resize(16, 16);
+      Eigen::MatrixXd extraction(16, 16);
       element.origin = {static_cast<double>(i), static_cast<double>(k)};
       for (int b = 0; b < 4; ++b)
         for (int a = 0; a < 4; ++a) {
           element.points.push_back(s.functions[a] * around.n + t.functions[b]);
           for (int q = 0; q < 4; ++q)
-            for (int p = 0; p < 4; ++p) element.extraction(4 * b + a, 4 * q + p) = s.extraction(a, p) * t.extraction(b, q);
+            for (int p = 0; p < 4; ++p) extraction(4 * b + a, 4 * q + p) = s.extraction(a, p) * t.extraction(b, q);
         }
+      element.extraction = std::make_shared<const Eigen::MatrixXd>(std::move(extraction));
       space.elements.push_back(std::move(element));
     }
   for (const auto& in_s : along.sites)
@@ -128,6 +129,7 @@ spline::Space product(const Line& along, const Line& around) {
         for (const auto& [k, t] : in_t) sites.push_back({i * m + k, s, t});
       space.collocation.push_back(std::move(sites));
     }
+  spline::share_extraction(std::array{&space});
   return space;
 }
 

@@ -31,7 +31,7 @@ class Casteljau {
   Casteljau(const spline::Element& element, const Net& net) : n_(element.degree + 1) {
     Net own(element.points.size(), 3);
     for (std::size_t a = 0; a < element.points.size(); ++a) own.row(a) = net.row(element.points[a]);
-    points_ = element.extraction.transpose() * own;
+    points_ = element.extraction->transpose() * own;
   }
 
   std::array<Vec3, 3> operator()(double s, double t) const {  // x, x_,s, x_,t

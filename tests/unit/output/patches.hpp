@@ -30,7 +30,7 @@ inline void add_patch(spline::Space& space, Net& net, int p, const Map& map) {
     }
   spline::Element element;
   element.degree = p;
-  element.extraction = Eigen::MatrixXd::Identity(n * n, n * n);
+  element.extraction = std::make_shared<const Eigen::MatrixXd>(Eigen::MatrixXd::Identity(n * n, n * n));
   for (int b = 0; b < n * n; ++b) element.points.push_back(space.n_points + b);
   space.elements.push_back(element);
   space.n_points += n * n;

@@ -67,7 +67,7 @@ TEST(Coarsening, HalfTheSurfaceLeavesAValidMesh) {
       EXPECT_EQ(s.crossings + s.overlaps + s.broken_zones, 0);
       const Space sp = space(mesh, rule);
       EXPECT_EQ(wrong_counts(mesh, sp), 0);
-      for (const Element& e : sp.elements) EXPECT_LT((e.extraction.colwise().sum().array() - 1).abs().maxCoeff(), 1e-13);
+      for (const Element& e : sp.elements) EXPECT_LT((e.extraction->colwise().sum().array() - 1).abs().maxCoeff(), 1e-13);
     }
     EXPECT_LT(anchors(mesh).size(), points);
   }

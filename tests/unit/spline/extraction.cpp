@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "base/types.hpp"
 #include "samples.hpp"
@@ -23,11 +26,29 @@ TEST(Extraction, EveryRegularElementHasSixteenFunctionsThatSumToOne) {
     for (const Element& e : s.elements) {
       regular += e.degree == 3;
       EXPECT_EQ(e.points.size(), e.degree == 3 ? 16u : 19u);
-      EXPECT_EQ(e.extraction.rows(), Eigen::Index(e.points.size()));
-      EXPECT_LT((e.extraction.colwise().sum().array() - 1).abs().maxCoeff(), 1e-14);
+      EXPECT_EQ(e.extraction->rows(), Eigen::Index(e.points.size()));
+      EXPECT_LT((e.extraction->colwise().sum().array() - 1).abs().maxCoeff(), 1e-14);
     }
     EXPECT_EQ(regular, 6 * n * n - 24);
   }
+}
+
+TEST(Extraction, EqualMatricesAreSharedWithinSpacesAndAcrossThem) {
+  const Space before = space(cube(4), ExtraordinaryRule::g1), finer = space(cube(6), ExtraordinaryRule::g1);
+  Space one = before, copy = space(cube(4), ExtraordinaryRule::g1), other = finer;
+  share_extraction(std::array{&one, &copy, &other});
+  const auto distinct = [](const Space& s) {
+    std::set<const Eigen::MatrixXd*> all;
+    for (const Element& e : s.elements) all.insert(e.extraction.get());
+    return all;
+  };
+  EXPECT_LT(distinct(one).size(), one.elements.size());
+  EXPECT_EQ(distinct(one), distinct(copy));
+  EXPECT_NE(distinct(one), distinct(other));
+  for (const auto& [shared, own] : {std::pair{&one, &before}, {&copy, &before}, {&other, &finer}})
+    for (std::size_t k = 0; k < own->elements.size(); ++k) EXPECT_EQ(*shared->elements[k].extraction, *own->elements[k].extraction);
+  const Space* const both[] = {&one, &copy};
+  EXPECT_EQ(distinct(stacked(both)), distinct(one));
 }
 
 TEST(Extraction, LevelsOfTheLatticeThatAreNotUsedChangeNothing) {
@@ -50,7 +71,7 @@ TEST(Extraction, IsTheAveragingFormOnAUniformMesh) {
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
     const Element& e = s.elements[k];
     if (e.degree != 3) continue;
-    const Eigen::MatrixXd Q = e.extraction.transpose() * net_of(e, net);
+    const Eigen::MatrixXd Q = e.extraction->transpose() * net_of(e, net);
     const auto c = corners(*mesh.lattice, tiles.tiles[k]);
     const int at[4] = {5, 6, 10, 9};  // inner Bezier points in the order of the corners
     for (int i = 0; i < 4; ++i) {

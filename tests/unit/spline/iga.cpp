@@ -51,7 +51,7 @@ TEST(Iga, WhatIsWrittenIsReadBack) {
       for (std::size_t k = 0; k < s.elements.size(); ++k) {
         EXPECT_EQ(read.space.elements[k].degree, s.elements[k].degree);
         EXPECT_EQ(read.space.elements[k].points, s.elements[k].points);
-        EXPECT_LT((read.space.elements[k].extraction - s.elements[k].extraction).cwiseAbs().maxCoeff(), 1e-15);
+        EXPECT_LT((*read.space.elements[k].extraction - *s.elements[k].extraction).cwiseAbs().maxCoeff(), 1e-15);
       }
     }
 }
@@ -143,10 +143,10 @@ TEST(Iga, EveryFaultGetsOneSentence) {
 /// An element whose s runs backwards: its functions the same, its Bernstein columns reversed in every row.
 Element turned_over(Element e) {
   const int n = e.degree + 1;
-  Eigen::MatrixXd c = e.extraction;
+  Eigen::MatrixXd c = *e.extraction;
   for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) c.col(n * j + i) = e.extraction.col(n * j + e.degree - i);
-  e.extraction = c;
+    for (int i = 0; i < n; ++i) c.col(n * j + i) = e.extraction->col(n * j + e.degree - i);
+  e.extraction = std::make_shared<const Eigen::MatrixXd>(c);
   return e;
 }
 

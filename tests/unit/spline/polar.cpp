@@ -33,10 +33,10 @@ TEST(Polar, FunctionsSumToOneAndUseEveryControlPoint) {
     for (const Element& e : s.elements) {
       used.insert(e.points.begin(), e.points.end());
       EXPECT_EQ(e.degree, 3);
-      EXPECT_EQ(e.extraction.rows(), Eigen::Index(e.points.size()));
-      EXPECT_LT((e.extraction.colwise().sum().array() - 1).abs().maxCoeff(), 1e-14);
+      EXPECT_EQ(e.extraction->rows(), Eigen::Index(e.points.size()));
+      EXPECT_LT((e.extraction->colwise().sum().array() - 1).abs().maxCoeff(), 1e-14);
       if (rule != PoleRule::bezier_transform) {  // (P-A.1) has negative entries
-        EXPECT_GE(e.extraction.minCoeff(), 0);
+        EXPECT_GE(e.extraction->minCoeff(), 0);
       }
       area += e.size[0] * e.size[1];
     }

@@ -64,7 +64,7 @@ TEST(PolarRefinement, TheTransformReplacesElementsAtPolesOnly) {
   const Net net = random_net(plain.n_points, 3);
   for (const auto& sites : transformed.collocation)
     for (const Site& site : sites) EXPECT_LT((value_at(transformed, net, site) - value_at(transformed, net, sites[0])).norm(), 1e-13);
-  for (const Element& e : transformed.elements) EXPECT_LT((e.extraction.colwise().sum().array() - 1).abs().maxCoeff(), 1e-13);
+  for (const Element& e : transformed.elements) EXPECT_LT((e.extraction->colwise().sum().array() - 1).abs().maxCoeff(), 1e-13);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& options, Fin
     found.straddling += transfer.straddling();
     found.wrong_counts += wrong_counts(mesh, *next, options.per_pole);
     for (const Element& e : next->elements)
-      found.unity = std::max(found.unity, (e.extraction.colwise().sum().array() - 1).abs().maxCoeff());
+      found.unity = std::max(found.unity, (e.extraction->colwise().sum().array() - 1).abs().maxCoeff());
     ++found.steps;
     now = std::move(next);
   }

@@ -34,7 +34,7 @@ TEST(BezierPoints, MapAndDefinitionAgree) {
     map.points(e, net, mapped.data());
     Net local(element.points.size(), 3);
     for (std::size_t a = 0; a < element.points.size(); ++a) local.row(a) = net.row(element.points[a]);
-    EXPECT_LT((mapped - element.extraction.transpose() * local).cwiseAbs().maxCoeff(), 1e-14);  // sums of 19 terms of order one
+    EXPECT_LT((mapped - element.extraction->transpose() * local).cwiseAbs().maxCoeff(), 1e-14);  // sums of 19 terms of order one
   }
 }
 
