@@ -323,28 +323,25 @@ class Deforming : public ParticleSystem {
 
   /// `velocity`: of the fluids, or empty.
   std::vector<output::Field> fields(const output::Nodes& nodes, const Net& x, const Net& load, const Net& velocity) const {
-    const std::vector<surface::Jet> before = nodes.jets(body().unstressed), now = nodes.jets(x);
-    const auto n = static_cast<Eigen::Index>(now.size());
+    const auto n = static_cast<Eigen::Index>(nodes.mesh().sites.size());
     Net traction = nodes.values(load);
     std::vector<output::Field> fields{{"load", traction}};
-    if (capsule_->measure() == stokes::Measure::reference)  // a load per unstressed area
-      for (Eigen::Index i = 0; i < n; ++i)
-        traction.row(i) *= surface::jacobian(before[static_cast<size_t>(i)]) / surface::jacobian(now[static_cast<size_t>(i)]);
-    fields.push_back({"traction", traction});
-    fields.push_back({"displacement", nodes.values(x - body().unstressed)});
-    if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity)});
+    const bool per_unstressed_area = capsule_->measure() == stokes::Measure::reference;
     Eigen::MatrixX2d tensions(n, 2);
     Eigen::VectorXd curvature(n), particle(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto k = static_cast<size_t>(i);
-      const std::size_t p = particle_of(nodes.mesh().sites[k].element);
+    nodes.each_node(body().unstressed, x, [&](Eigen::Index i, const surface::Jet& before, const surface::Jet& now) {
+      if (per_unstressed_area) traction.row(i) *= surface::jacobian(before) / surface::jacobian(now);
+      const std::size_t p = particle_of(nodes.mesh().sites[static_cast<std::size_t>(i)].element);
       if (members_[p].scene.particle.rigid())
         tensions.row(i).setZero();
       else
-        tensions.row(i) = membrane::tensions(members_[p].body->law, std::span(&before[k], 1), std::span(&now[k], 1));
-      curvature[i] = surface::mean_curvature(now[k]);
+        tensions.row(i) = membrane::tensions(members_[p].body->law, std::span(&before, 1), std::span(&now, 1));
+      curvature[i] = surface::mean_curvature(now);
       particle[i] = static_cast<double>(p + 1);
-    }
+    });
+    fields.push_back({"traction", traction});
+    fields.push_back({"displacement", nodes.values(x - body().unstressed)});
+    if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity)});
     fields.push_back({"smallest tension", tensions.col(0)});
     fields.push_back({"largest tension", tensions.col(1)});
     fields.push_back({"mean curvature", curvature});

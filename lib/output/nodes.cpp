@@ -13,7 +13,6 @@
 namespace tanktread::output {
 namespace {
 
-constexpr int most = (spline::max_degree + 1) * (spline::max_degree + 1);
 constexpr int n_parts = 6;  // of a jet
 
 /// What each Bezier point of an element adds to the jets at the nodes of its cell. Shape (n, 6, n): point, part of the jet, node.
@@ -59,22 +58,30 @@ Nodes::Nodes(surface::BezierMap map, LagrangeMesh mesh) : map_(std::move(map)), 
   for (const surface::Block& block : map_.blocks()) tables_[block.degree] = jet_table(block.degree);
 }
 
+/// Those at the nodes of its cell; the element's Bezier points.
+Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>& jets) const {
+  const int n = map_.n_bezier(element);
+  Points points;
+  double sums[n_parts * std::tuple_size_v<Points>];
+  map_.points(element, net, points.data());
+  surface::three_sums(n_parts * n, n, tables_.at(map_.degree(element)).data(), points.data(), sums);
+  const auto part = [&](int derivative, int k) {
+    const double* at = sums + n * derivative + k;
+    return Vec3(at[0], at[n_parts * n], at[2 * n_parts * n]);
+  };
+  jets.clear();
+  for (int k = 0; k < n; ++k) jets.push_back({part(0, k), part(1, k), part(2, k), part(3, k), part(4, k), part(5, k)});
+  return points;
+}
+
 /// Calls use(patch, nodes, jets) for every element, the last first: what is set again is from the first element that has the node.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
-  double points[3 * most], sums[3 * n_parts * most];
-  std::vector<surface::Jet> jets;
+  std::vector<surface::Jet> here;
   for (int e = map_.n_elements(); e-- > 0;) {
-    const int n = map_.n_bezier(e);
-    map_.points(e, net, points);
-    surface::three_sums(n_parts * n, n, tables_.at(map_.degree(e)).data(), points, sums);
-    const auto part = [&](int derivative, int k) {
-      const double* at = sums + n * derivative + k;
-      return Vec3(at[0], at[n_parts * n], at[2 * n_parts * n]);
-    };
-    jets.clear();
-    for (int k = 0; k < n; ++k) jets.push_back({part(0, k), part(1, k), part(2, k), part(3, k), part(4, k), part(5, k)});
-    use(surface::Patch{map_.degree(e), points}, std::span(mesh_.connectivity).subspan(static_cast<std::size_t>(mesh_.offsets[e]), jets.size()), jets);
+    const Points points = jets(e, net, here);
+    use(surface::Patch{map_.degree(e), points.data()}, std::span(mesh_.connectivity).subspan(static_cast<std::size_t>(mesh_.offsets[e]), here.size()),
+        here);
   }
 }
 
@@ -82,14 +89,6 @@ Net Nodes::values(const Net& control_values) const {
   Net result(mesh_.sites.size(), 3);
   each_cell(control_values, [&](const surface::Patch&, std::span<const std::int64_t> nodes, const std::vector<surface::Jet>& here) {
     for (std::size_t k = 0; k < nodes.size(); ++k) result.row(nodes[k]) = here[k].x;
-  });
-  return result;
-}
-
-std::vector<surface::Jet> Nodes::jets(const Net& net) const {
-  std::vector<surface::Jet> result(mesh_.sites.size());
-  each_cell(net, [&](const surface::Patch&, std::span<const std::int64_t> nodes, const std::vector<surface::Jet>& here) {
-    for (std::size_t k = 0; k < nodes.size(); ++k) result[static_cast<std::size_t>(nodes[k])] = here[k];
   });
   return result;
 }
