@@ -112,7 +112,7 @@ int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts)
   return number;
 }
 
-/// The box around the points of a leaf, or around the nodes of both children, and its own nodes.
+/// The box around the points of a leaf, or around the nodes of both children or the points of those that are bare, and its own nodes.
 void Clusters::enclose(Cluster& cluster) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const auto take = [&](const std::vector<double>(&at)[3], int first, int n) {
@@ -127,7 +127,10 @@ void Clusters::enclose(Cluster& cluster) {
   if (cluster.leaf())
     take(point_, cluster.first, cluster.n_points());
   else
-    for (const int child : cluster.child) take(node_, clusters_[child].first_node, clusters_[child].n_nodes());
+    for (const int child : cluster.child) {
+      const Cluster& part = clusters_[child];
+      part.bare ? take(point_, part.first, part.n_points()) : take(node_, part.first_node, part.n_nodes());
+    }
   double longest = 0, square = 0;
   for (int d = 0; d < 3; ++d) {
     cluster.half[d] = (high[d] - low[d]) / 2;
@@ -141,7 +144,10 @@ void Clusters::enclose(Cluster& cluster) {
   cluster.reach = (rho + 1 / rho) / 2 * longest;
   for (int d = 0; d < 3; ++d)
     cluster.order[d] = cluster.half[d] > 1e-12 * longest ? std::clamp(order_for(tolerance_, cluster.reach / cluster.half[d]), 1, most) : 1;
+  const auto quanta = [this](int n) { return (n + quantum_ - 1) / quantum_; };
+  cluster.bare = quanta(cluster.n_points()) <= quanta(cluster.n_nodes());
   cluster.first_node = n_nodes(), cluster.first_block = n_blocks_;
+  if (cluster.bare) return;
   const int n = cluster.n_nodes(), all = cluster.first_node + n;
   n_blocks_ += (n + far_block - 1) / far_block;
   for (auto& component : node_) component.resize(all);

@@ -16,6 +16,7 @@ struct Cluster : ChebyshevBox {
   int first_node = 0;            ///< of its Chebyshev nodes among those of all clusters
   int first_block = 0;           ///< the same in blocks of far_block
   double radius = 0, reach = 0;  ///< half the diagonal; distance from the centre beyond which the nodes serve
+  bool bare = false;             ///< without nodes, for its points are no more; what is above it then deals with its points
 
   bool leaf() const { return child[0] < 0; }
   int n_points() const { return last - first; }
@@ -31,7 +32,8 @@ struct Cluster : ChebyshevBox {
 /// rho = z + sqrt(z^2 - 1), cf. (2.9): n along the longest axis follows from the tolerance, reach = z a from n, and the other n from reach.
 class Clusters {
  public:
-  /// Leaves hold `leaf` points at most (or one group); both halves of a cluster begin at a multiple of `quantum` groups.
+  /// Leaves hold `leaf` points at most (or one group); both halves of a cluster begin at a multiple of `quantum` groups. Points and nodes cost as
+  /// much as multiples of it.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
   /// Builds the tree. Group g holds the points starts[g] .. starts[g + 1] - 1. A pure function of the places.

@@ -62,8 +62,9 @@ void TreeSum::place(const double* x, const double* y, const double* z, std::span
   fill_blocks(n, tree.point(0), tree.point(1), tree.point(2), target_at_.data());
   node_at_.resize(static_cast<std::size_t>(3) * far_block * tree.n_blocks());
   for (const Cluster& c : tree.all())
-    fill_blocks(c.n_nodes(), tree.node(0) + c.first_node, tree.node(1) + c.first_node, tree.node(2) + c.first_node,
-                &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
+    if (!c.bare)
+      fill_blocks(c.n_nodes(), tree.node(0) + c.first_node, tree.node(1) + c.first_node, tree.node(2) + c.first_node,
+                  &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
 
   targets_ = tree.all();
   n_trees_ = 1;
@@ -126,7 +127,7 @@ void TreeSum::ask() {
     if (all[c].leaf())
       ask_points(all[c]);
     else
-      for (const int child : all[c].child) in_use_[child] = 1;
+      for (const int child : all[c].child) all[child].bare ? ask_points(all[child]) : void(in_use_[child] = 1);
   }
 }
 
@@ -163,7 +164,7 @@ Charges TreeSum::nodes() const {
           {node_q_[0].data(), node_q_[1].data(), node_q_[2].data(), node_q_[3].data(), node_q_[4].data(), node_q_[5].data()}};
 }
 
-/// What is carried, in the order of the tree, and at the Chebyshev nodes of all clusters in use, from the leaves up.
+/// What is carried, in the order of the tree, and at the Chebyshev nodes of all clusters in use, from the points up.
 void TreeSum::collect(const std::array<const double*, 6>& carried) {
   for (int c = 0; c < in_; ++c) {
     q_[c].resize(sources_.order().size());
@@ -183,7 +184,8 @@ void TreeSum::collect(const std::array<const double*, 6>& carried) {
     if (c->leaf())
       take(*c, points.part(c->first, c->n_points()));
     else
-      for (const int child : c->child) take(*c, nodes.part(all[child].first_node, all[child].n_nodes()));
+      for (const int child : c->child)
+        take(*c, all[child].bare ? points.part(all[child].first, all[child].n_points()) : nodes.part(all[child].first_node, all[child].n_nodes()));
   }
 }
 
@@ -205,7 +207,7 @@ void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];
   const bool source_far = source.serves(target, -beyond), target_far = target.serves(source, beyond);
-  const bool many_targets = blocks_of(target.n_points()) > blocks_of(target.n_nodes()), many_nodes = source.n_points() > source.n_nodes();
+  const bool many_targets = !target.bare, many_nodes = !source.bare;
   if ((source_far || !many_nodes) && (target_far || !many_targets)) return note(target, many_targets, source, many_nodes, image);
   if (target.leaf() && source.leaf()) return note(target, false, source, false, image);
   const bool source_to_blame = many_nodes && !source_far, target_to_blame = many_targets && !target_far;
@@ -247,7 +249,7 @@ void TreeSum::add(const Pair& pair) {
   interactions_ += static_cast<long long>(n) * from.n;
 }
 
-/// Values at Chebyshev nodes handed to those of the children, and by leaves to their targets.
+/// Values at Chebyshev nodes handed to those of the children, and by leaves and to bare children to their targets.
 void TreeSum::hand_down() {
   const std::vector<Cluster>& all = targets_;
   for (std::size_t t = 0; t < all.size(); ++t) {
@@ -257,12 +259,17 @@ void TreeSum::hand_down() {
       const std::size_t first = static_cast<std::size_t>(far_block) * block;
       interpolate(out_, all[t], from, blocks_of(n), &at[3 * first], &u[out_ * first]);
     };
+    const auto give_points = [&](const Cluster& c) { give(c.n_points(), c.first / far_block, target_at_, target_u_); };
     if (all[t].leaf()) {
-      give(all[t].n_points(), all[t].first / far_block, target_at_, target_u_);
+      give_points(all[t]);
       continue;
     }
     for (const int child : all[t].child) {
       if (!wanted_[child]) continue;
+      if (all[child].bare) {
+        give_points(all[child]);
+        continue;
+      }
       give(all[child].n_nodes(), all[child].first_block, node_at_, node_u_);
       has_nodes_[child] = 1;
     }

@@ -85,6 +85,21 @@ TEST(TreeSum, KeepsItsToleranceInACubeAndInATiltedSlab) {
   }
 }
 
+TEST(Clusters, HaveNodesOnlyWhereTheseAreFewerThanTheirPoints) {
+  const Cloud cloud(9000, 0, 1);
+  Clusters tree(1e-5, 64, 1);
+  tree.place(cloud.x[0].data(), cloud.x[1].data(), cloud.x[2].data(), cloud.starts);
+  int nodes = 0, bare = 0;
+  for (const Cluster& c : tree.all()) {
+    EXPECT_EQ(c.bare, c.n_points() <= c.n_nodes());
+    bare += c.bare;
+    if (!c.bare) nodes += c.n_nodes();
+  }
+  EXPECT_EQ(nodes, tree.n_nodes());
+  EXPECT_GT(bare, 0);
+  EXPECT_GT(nodes, 0);
+}
+
 TEST(TreeSum, RowsDoNotDependOnWhichOthersAreWanted) {
   const Cloud cloud(5000, 1000, 0.05);
   TreeSum tree(1e-5), other(1e-5);
