@@ -1,6 +1,7 @@
 #pragma once
 // Nonlinear systems by NOX, on short replicated vectors.
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -26,7 +27,9 @@ class FixedPoint {
  public:
   using Map = std::function<Net(const Net&)>;
   using Norm = std::function<double(const Net&)>;
-  static constexpr int deep = 20;  ///< iterates combined for a shape at rest: near a fold, and where waves go round, four do not converge
+  /// Iterates combined for a shape of so many numbers at rest: near a fold, and where waves go round, four do not converge, and on fine meshes not
+  /// twenty; on coarse ones forty are dependent.
+  static int deep(Eigen::Index size) { return std::clamp(static_cast<int>(size / 64), 20, 40); }
 
   /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or `newton-krylov` without a matrix: products with dg/dx by differences of g, Belos'
   /// solver `linear` with its preconditioner, own meaning none. `list` goes to NOX as it is, after our defaults; `depth`: of the iterates that

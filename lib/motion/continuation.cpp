@@ -56,7 +56,7 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
 
 /// Where the branch meets the plane through `predicted` with this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
-  constexpr int most_rounds = 8, most_iterations = 40;
+  constexpr int most_rounds = 8, most_iterations = 80;
   constexpr double far = 4;  // from the predicted place, in steps
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
@@ -86,7 +86,7 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     };
     Net joined = Net::Zero(from.x.rows() + 1, 3);
     joined.topRows(from.x.rows()) = from.x;
-    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady), coupling::FixedPoint::deep);
+    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady), coupling::FixedPoint::deep(joined.size()));
     const int most = std::min(steady_.iterations, most_iterations);
     const coupling::NonlinearReport report = solver.solve(corrected, norm, steady_.tolerance, most, joined);
     if (!report.converged && !(least < noise * steady_.tolerance)) return {};
@@ -215,7 +215,8 @@ void Branch::begin() {
 void Branch::advance() {
   ++count_;
   if (last_.size() < 2) return begin();
-  step_ = std::min({step_ * (last_.back().iterations < 25 ? 1.5 : 0.7), options_.largest_change * std::numbers::sqrt2});
+  const int iterations = last_.back().iterations;
+  step_ = std::min(step_ * (iterations < 25 ? 1.5 : iterations < 45 ? 1 : 0.7), options_.largest_change * std::numbers::sqrt2);
   auto solved = stepped();
   if (!solved)
     throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));

@@ -104,7 +104,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
   const coupling::FixedPoint::Norm left = [&](const Net& r) { return dynamics.norm(equations.precondition(best, r)); };  // correction that r asks for
-  const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), coupling::FixedPoint::deep);
+  const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), coupling::FixedPoint::deep(x.size()));
   const coupling::FixedPoint::Norm none;
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, bare ? left : none);
   x = std::move(best);
