@@ -1,7 +1,6 @@
 #include "app/drift.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <unsupported/Eigen/MatrixFunctions>
+#include "base/small_matrices.hpp"
 
 namespace tanktread {
 
@@ -12,7 +11,7 @@ bool holds_centre(const Scene& scene) {
   const stokes::AmbientFlow flow(scene.flow);
   const Vec3& center = scene.particle.shape.center;
   if (!flow.velocity(center).isZero(0)) return false;
-  return flow.gradient(center).eigenvalues().real().maxCoeff() > 1e-9 * flow.rate();
+  return largest_growth_rate(flow.gradient(center)) > 1e-9 * flow.rate();
 }
 
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
@@ -21,8 +20,7 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
   state.x.rowwise() -= off.transpose();
   for (Net& slope : state.history) slope.rowwise() -= carried.transpose();
   for (motion::Place& earlier : state.places) {
-    const Mat3 back = gradient * (earlier.time - state.time);
-    earlier.x.rowwise() -= (back.exp() * off).transpose();
+    earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
   }
 }
 

@@ -6,9 +6,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
+#include "base/small_matrices.hpp"
 #include "coupling/collocation.hpp"
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
@@ -125,11 +124,7 @@ RigidMotion shared_motion(const Moving& drop) {
 
 /// The rotation that takes one net about its mean nearest to another.
 Mat3 rotation_between(const Net& from, const Net& to) {
-  const Mat3 moments = (to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean());
-  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-  Vec3 senses(1, 1, std::copysign(1.0, rotation.determinant()));
-  return svd.matrixU() * senses.asDiagonal() * svd.matrixV().transpose();
+  return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
 }
 }  // namespace
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
+#include "base/small_matrices.hpp"
 #include "membrane/mass.hpp"
 #include "surface/geometry.hpp"
 
@@ -54,17 +54,12 @@ bool RigidParticles::prescribed() const {
   return std::ranges::any_of(bodies_, [](const Body& body) { return body.rigid.prescribed; });
 }
 
-/// The rotation by the singular vectors of sum y r^T (Kabsch 1976).
 void RigidParticles::place(Net& x) {
   if (!x.allFinite()) return;
   for (Body& body : bodies_) {
     auto rows = body.block.rows(x);
     const Eigen::RowVector3d mean = rows.colwise().mean(), rest_mean = body.rest.colwise().mean();
-    const Mat3 product = (rows.rowwise() - mean).transpose() * (body.rest.rowwise() - rest_mean);
-    const Eigen::JacobiSVD<Mat3> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 right = svd.matrixV().transpose();
-    if ((svd.matrixU() * right).determinant() < 0) right.row(2) *= -1;
-    body.turn = svd.matrixU() * right;
+    body.turn = nearest_rotation((rows.rowwise() - mean).transpose() * (body.rest.rowwise() - rest_mean));
     body.centre = (mean - rest_mean * body.turn.transpose()).transpose();
     rows = (body.rest * body.turn.transpose()).rowwise() + body.centre.transpose();
   }

@@ -2,9 +2,8 @@
 
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "base/errors.hpp"
+#include "base/small_matrices.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::stokes {
@@ -76,7 +75,7 @@ void FlowOptions::check() const {
 
 double FlowOptions::rate() const {
   if (type == "quiescent" || type == "uniform" || type == "duct") return 0.0;
-  if (type == "linear") return Eigen::JacobiSVD<Mat3>(gradient.value()).singularValues()[0];
+  if (type == "linear") return largest_stretch(gradient.value());
   if (type == "parabolic") return *maximum_velocity / half_width.value();
   return shear_rate;
 }

@@ -1,8 +1,8 @@
 #include "app/drift.hpp"
 
 #include <gtest/gtest.h>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "base/small_matrices.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
 
@@ -66,10 +66,7 @@ TEST(Drift, PuttingTheCentroidBackTakesEarlierPlacesAlong) {
   motion::State state;
   state.time = 2;
   state.x = surface::initial_shape(space, mesh, {}).rowwise() + center.transpose();
-  const auto at = [&](double time) {
-    const Mat3 moved = l * (time - state.time);
-    return Net(state.x * moved.exp().transpose());
-  };
+  const auto at = [&](double time) { return Net(state.x * exponential(l * (time - state.time)).transpose()); };
   for (const double time : {1.9, 1.7, 1.6}) state.places.push_back({time, at(time)});
   const Net direction = state.direction = Net::Random(state.x.rows(), 3);
   hold_centre(flow, geometry, Vec3::Zero(), state);
