@@ -229,6 +229,7 @@ class Deforming : public ParticleSystem {
     Moment now = tanktread::moment(member.scene, body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
+    now.energy += capsule_->whole_membrane_energy(state.x, p);
     if (members_[p].scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
     now.intrinsic_viscosity = intrinsic_viscosity(body, scene_.flow.viscosity, now);
     add_treading(member.scene, body, geometry(member), x, member.own(v), now);

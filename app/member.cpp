@@ -26,7 +26,7 @@ Eigen::MatrixXd numbers_of(const auto& values) {
   return numbers;
 }
 
-/// Whether they are the same in all that values and derivatives of a field are made of.
+/// Whether they are the same in all that values and derivatives of a field are made of; equal extraction matrices are one (spline::share_extraction).
 bool same(const spline::Space& a, const spline::Space& b) {
   return a.n_points == b.n_points && std::ranges::equal(a.elements, b.elements, [](const spline::Element& one, const spline::Element& other) {
     return one.degree == other.degree && one.points == other.points && one.extraction == other.extraction;
@@ -138,6 +138,11 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.space = &body.space;
     particle.viscosity_ratio = own.particle.viscosity_ratio;
     particle.material = material(own, body);
+    if (!own.particle.rigid()) {
+      particle.global_area_modulus = own.membrane.global_area_dilatation * body.modulus;
+      particle.leaf_modulus = own.membrane.leaf_modulus * own.membrane.bending(body.modulus, body.radius);
+      particle.leaf_difference = own.membrane.leaf_difference;
+    }
     particle.radius = body.radius;
     particle.body_force = own.body_force();
     particle.patch_forces = patch_forces(own, body);

@@ -7,9 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include "base/formatted.hpp"
+#include "base/small_matrices.hpp"
 #include "coupling/block_system.hpp"
 #include "coupling/collocation.hpp"
 #include "coupling/label_rotations.hpp"
@@ -94,6 +93,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
     if (area_->empty()) area_.reset();
   }
+  if (WholeMembrane::needed(particles())) whole_.emplace(space, unstressed, particles());
   if (parameters_.repulsion) repulsion_.emplace(space, unstressed, *parameters_.repulsion);
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
@@ -156,7 +156,7 @@ void Capsule::at(double time, double start) {
 
 /// dH/dt = L H. Whether the cell is another one then.
 bool Capsule::deform_cell(double time) {
-  const stokes::PeriodicCell now(Mat3((time * flow_.gradient(Vec3::Zero())).exp()) * parameters_.cell->vectors(), parameters_.cell->n());
+  const stokes::PeriodicCell now(exponential(time * flow_.gradient(Vec3::Zero())) * parameters_.cell->vectors(), parameters_.cell->n());
   if (cell_ && *cell_ == now) return false;
   cell_ = now;
   layer_.repeat(now);
@@ -231,12 +231,24 @@ const Net& Capsule::energy_gradient(const Net& x) {
   if (repulsion_) repulsion_->add_load(x, own_elements_, gradient_);
   add_weight(x, gradient_);
   replicate_sums(gradient_);
+  add_whole_membrane_load(x, gradient_);
   for (const Particle& particle : particles())
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
   if (pressed_.size() > 0) gradient_ -= pressed_;
   gradient_at_ = x;
   return gradient_;
 }
+
+/// They are kept until another shape is asked about.
+const std::vector<Net>& Capsule::whole_gradients(const Net& x) {
+  if (same(x, whole_at_)) return whole_gradients_;
+  whole_gradients_ = whole_->gradients(x, own_elements_);
+  for (Net& gradient : whole_gradients_) replicate_sums(gradient);
+  whole_at_ = x;
+  return whole_gradients_;
+}
+
+double Capsule::whole_membrane_energy(const Net& x, std::size_t p) { return whole_ ? whole_->energy(x, whole_gradients(x), p) : 0; }
 
 /// What was evaluated without it does not stand.
 void Capsule::press(Net work) {

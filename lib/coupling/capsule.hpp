@@ -24,6 +24,7 @@
 #include "coupling/tube.hpp"
 #include "coupling/velocity_projection.hpp"
 #include "coupling/wall_repulsion.hpp"
+#include "coupling/whole_membrane.hpp"
 #include "membrane/area_constraint.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
@@ -160,6 +161,14 @@ class Capsule : public Dynamics {
   /// v.C v of particle p: the power that its membrane's viscosity (3.10) turns into heat at x, where its material points move by v. Collective.
   double membrane_dissipation(const Net& x, const Net& v, std::size_t p = 0);
 
+  /// The energy of what the membrane of particle p resists as a whole, at x (3.26), (3.27). Collective.
+  double whole_membrane_energy(const Net& x, std::size_t p);
+
+  /// Adds its gradient, of all particles, to d. Collective.
+  void add_whole_membrane_load(const Net& x, Net& d) {
+    if (whole_) whole_->add_load(x, whole_gradients(x), d);
+  }
+
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(const Net& x) const;  ///< of all volumes together
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
@@ -207,6 +216,7 @@ class Capsule : public Dynamics {
   const Net& energy_gradient(const Net& x);
   void add_weight(const Net& x, Net& gradient) const;
   bool pulled(const Particle& particle) const { return particle.patch_forces.rows() > 0; }
+  const std::vector<Net>& whole_gradients(const Net& x);
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta);
@@ -245,6 +255,7 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // where a membrane has points of its own for its area
+  std::optional<WholeMembrane> whole_;  // where a membrane resists something as a whole
   std::optional<WallRepulsion> repulsion_;
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
   std::optional<VelocityProjection> projection_;  // where velocities are not collocated
@@ -278,6 +289,8 @@ class Capsule : public Dynamics {
   };
   Latest latest_;  // evaluation
   Net gradient_at_, gradient_;  // x and dE/dx there
+  Net whole_at_;  // x, and the gradients there
+  std::vector<Net> whole_gradients_;
   Net pressed_;  // of what deforms; of no rows: nothing
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle

@@ -55,6 +55,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++work_.tangents;
   tangent_.update(x, own_elements_);
+  if (whole_) whole_->update(x, whole_gradients(x), own_elements_);
   if (repulsion_) repulsion_->update(x, own_elements_);
   if (viscous_) linearised_viscous_->update(x, own_elements_);
   if (area_) area_->place(x);
@@ -111,8 +112,10 @@ Net Capsule::inflation(const Net& c) {
 Net Capsule::energy_part(const Net& delta) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
+  if (whole_) whole_->add_turning(delta, h);
   if (repulsion_) repulsion_->add_tangent(delta, h);
   replicate_sums(h);
+  if (whole_) whole_->add_stretching(delta, h);
   const Net f = solved(mass_.reference(), std::move(h));
   Net u = frozen_single_layer(f);
   if (by_sites()) {

@@ -27,6 +27,9 @@ struct Particle {
   double viscosity_ratio = 1;                 ///< lambda
   double radius = 1;                          ///< R_C
   membrane::Material material;
+  double global_area_modulus = 0;             ///< K of its whole area (3.26), force/length
+  double leaf_modulus = 0;                    ///< kbar of the difference between its leaves' areas (3.27), force x length
+  std::optional<double> leaf_difference;      ///< without stress, over that of a sphere of its area; if not given, the unstressed surface's
   std::string interface_motion = "material";  ///< of the control points of a drop
   double interface_speed = 0;                 ///< of its relaxing motion, length/time
   std::optional<double> kept_volume;          ///< V0 to be kept, where it is not that of the initial net: on another mesh

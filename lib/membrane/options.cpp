@@ -71,6 +71,9 @@ void Options::declare(deck::Section& section) {
   section.key("area points", area_order, deck::between(0, 8), "1",
               "of the laws `Skalak` and `Evans-Skalak`: Gauss points a direction of an element at which their resistance to a change of area is "
               "integrated; 1 for C of 50 and more, whose area no mesh can keep at 16 points an element without locking; 0: as the rest of the law");
+  section.key("global area dilatation", global_area_dilatation, deck::not_negative(), "1",
+              "K/G_s of a resistance to a change of the whole area, K (A - A0)^2/(2 A0), A0 the unstressed surface's (3.26), beside what the law "
+              "resists in each place; K over the surface tension for a drop, with bending a vesicle; 0: none");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
               "m of the law `Mooney-Rivlin`: 1 is the neo-Hookean one; what is left of 1 hardens");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
@@ -99,6 +102,11 @@ void Options::declare(deck::Section& section) {
   section.key("spontaneous curvature", spontaneous_curvature, deck::any(), "1/length",
               "c0 of Helfrich's energy (3.8), where the bending reference is `flat`: a sum of principal curvatures, positive where the surface is "
               "bulged outwards; 0 if not given");
+  section.key("area difference modulus", leaf_modulus, deck::not_negative(), "1",
+              "kbar/E_b of area-difference elasticity (3.27): the two leaves of a bilayer slide on each other, but keep the number of their "
+              "molecules; 0: none");
+  section.key("area difference", leaf_difference, deck::positive(), "1",
+              "of the leaves, without stress, over that of a sphere of the unstressed surface's area; if not given, that surface's own");
   section.key("shear viscosity", shear_viscosity, deck::not_negative(), "viscosity x length",
               "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
   section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
@@ -129,6 +137,8 @@ void Options::check() const {
     throw UserError("Membrane/area points belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
   if (area_order > 0 && load == "strong")
     throw UserError("Membrane/area points and Membrane/load `strong` contradict each other: nothing is integrated there.");
+  if (global_area_dilatation > 0 && load == "strong")
+    throw UserError("Membrane/global area dilatation and Membrane/load `strong` contradict each other: it acts by virtual work.");
   if (neo_hookean_share && law != "Mooney-Rivlin")
     throw UserError("Membrane/neo-Hookean share belongs to Membrane/law `Mooney-Rivlin`, but Membrane/law is `" + law + "`.");
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
@@ -141,6 +151,9 @@ void Options::check() const {
     throw UserError("Membrane/spontaneous curvature and Membrane/bending reference `unstressed` contradict each other: one says the curvature.");
   if (spontaneous_curvature && bending(1, 1) == 0)
     throw UserError("Membrane/spontaneous curvature needs Membrane/bending modulus or Membrane/bending number.");
+  if (leaf_modulus > 0 && bending(1, 1) == 0)
+    throw UserError("Membrane/area difference modulus needs Membrane/bending modulus or Membrane/bending number.");
+  if (leaf_difference && leaf_modulus == 0) throw UserError("Membrane/area difference needs Membrane/area difference modulus.");
   forces.check();
   if (relaxation_time && !viscous())
     throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");

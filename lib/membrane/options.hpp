@@ -26,6 +26,9 @@ struct Options {
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
   std::optional<double> area_dilatation;   ///< C of Skalak, Evans-Skalak; set for these laws, 1 if not given, empty otherwise
+  double global_area_dilatation = 0;        ///< K/G_s of the whole area (3.26)
+  double leaf_modulus = 0;                  ///< kbar/E_b of the difference between the leaves' areas (3.27)
+  std::optional<double> leaf_difference;    ///< without stress, over that of a sphere
   std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin; given for this law alone
   std::optional<std::string> energy;        ///< Psi/G_s of the law `expression`, a text in I1, I2 and J; given for this law alone
   std::map<std::string, double> constants;  ///< of that text

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# Membranes that nearly keep their area: what a resistance a thousand times as large costs, schemes, ranks.
+# Membranes that nearly keep their area, in each place or as a whole: what a resistance a thousand times as large costs, ranks, symmetry.
 from harness import check, deck, main, run, series
 
 DECK = """
@@ -30,6 +30,43 @@ def two_processes_do_what_one_does():
         run(deck(DECK), *words, "--output", f"on_{ranks}", "--quiet", ranks=ranks)
     one, two = (series(f"on_{ranks}", "taylor_inertia") for ranks in (1, 2))
     check(abs(one - two).max() < 1e-9, f"D differs by {abs(one - two).max()}")
+
+
+WHOLE = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particle: {shape: ellipsoid, semi-axes: [1.0, 1.0, 0.5]}
+  Membrane: {law: neo-Hookean, capillary number: 0.3}
+  Surface: {elements per side: 4}
+  Time: {final time: 1.0, tolerance: 1e-5}
+  Output: {interval: 1.0, power balance: true}
+"""
+
+
+def a_whole_area_is_kept_the_better_the_more_it_resists():
+    """The tension that keeps it tends to a limit, so that what is left of the change falls like 1/K; what is stored is no force's from outside."""
+    path, words = deck(WHOLE), ["--set", "Membrane/global area dilatation"]
+    changes, counts = [], []
+    for k in 0, 100, 1000:
+        run(path, words[0], f"{words[1]}={k}", "--output", f"k_{k}", "--quiet")
+        area = series(f"k_{k}", "area")
+        changes.append(area[-1] / area[0] - 1)
+        counts.append(series(f"k_{k}", "evaluations")[-1])
+        flow, forces = series(f"k_{k}", "flow_power"), series(f"k_{k}", "force_power")
+        check(abs(forces).max() < 1e-6 * abs(flow).max(), f"forces have the power {abs(forces).max()} of {abs(flow).max()}")
+    check(changes[0] > 0.02 and abs(10 * changes[2] / changes[1] - 1) < 0.05, f"changes of the area {changes}")
+    check(changes[2] < 0.02 * changes[0], f"changes of the area {changes}")
+    check(counts[2] <= 2 * counts[0], f"evaluations {counts}")
+
+
+def a_whole_area_is_one_with_symmetry_and_on_two_processes():
+    words = ["--set", "Membrane/global area dilatation=100", "--set", "Time/fixed step=0.05", "--set", "Time/final time=0.2", "--set", "Solvers/tolerance=1e-12",
+             "--set", "Quadrature/far precision=double"]
+    found = []
+    for ranks, symmetry in ((1, "auto"), (1, "none"), (2, "none")):
+        run(deck(WHOLE), *words, "--set", f"Symmetry/use={symmetry}", "--output", f"whole_{ranks}_{symmetry}", "--quiet", ranks=ranks)
+        found.append([series(f"whole_{ranks}_{symmetry}", name)[-1] for name in ("taylor_inertia", "energy", "area")])
+    check(max(abs(a / b - 1) for one in found[1:] for a, b in zip(found[0], one)) < 1e-9, found)
 
 
 main()
