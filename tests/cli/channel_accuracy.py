@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+# label: long
+# Channels to the digits that inputs/ACCURACY.md promises: the empty constriction, a slender one, what is straight or nearly so, what passes a
+# mirrored channel that was meshed anew.
+import pathlib
+
+import h5py
+import numpy
+
+from harness import check, close, deck, main, run, series
+
+EMPTY = 159.429662  # extra pressure drop of the round constriction, own axisymmetric solution
+
+PASSES = """
+Tanktread:
+  Flow: {{type: duct}}
+  {wall}
+  Particle: {{radius: {radius}, center: {center}, viscosity ratio: 5}}
+  Membrane: {{law: neo-Hookean, capillary number: 0.1}}
+  Surface: {{elements per side: 4}}
+  Quadrature: {{tolerance: {tolerance}}}
+  Time: {{scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}}
+  Output: {{interval: 1.0e-6}}
+"""
+OF_PASSAGE = "velocity_x1", "velocity_x2", "disturbed_pressure_drop", "channel_pressure_drop"
+
+
+def _empty(name, *lines, half_length=2.0, depth=0.5, ends=4.0):
+    """Extra pressure drop; flow rates through ten sections over that at the inlet. A held sphere far from the change does nothing to either."""
+    reach = half_length + ends
+    scene = f"""
+Tanktread:
+  Flow: {{type: duct}}
+  Channel: {{section: circle, profile: constriction, half length: {half_length}, depth: {depth}, start: {-reach}, end: {reach}}}
+  Particle: {{radius: 0.4, center: [{2.2 - reach}, 0, 0], motion: prescribed}}
+  Surface: {{elements per side: 3}}
+"""
+    run(deck(scene), *[word for line in lines for word in ("--set", line)], "--output", name, "--quiet")
+    with h5py.File(f"{name}/channel.h5") as file:
+        return series(name, "channel_extra_pressure_drop")[0], file["flow_rate"][:] / numpy.pi
+
+
+def the_empty_constriction_costs_what_is_known():
+    extra, rates = _empty("default")
+    close(extra, EMPTY, 1e-5 * EMPTY, "extra pressure drop on the default wall")
+    check(numpy.ptp(rates) < 1e-5, f"flow rates on the default wall: {rates - 1}")
+    extra, rates = _empty("finer", "Channel/azimuthal elements=32", "Quadrature/tolerance=1e-7")
+    close(extra, EMPTY, 1e-6 * EMPTY, "extra pressure drop on a finer wall")
+    check(len(rates) == 10 and numpy.abs(rates - 1).max() < 1e-6, f"flow rates: {rates - 1}")
+
+
+def a_slender_constriction_costs_what_lubrication_says():
+    """What lubrication leaves out falls with the square of the slenderness."""
+    x = (numpy.arange(4000) + 0.5) / 4000
+    mean = numpy.mean((1 - 0.1 * (1 + numpy.cos(numpy.pi * x))) ** -4.0 - 1)  # of R^-4 over the half length
+    off = [_empty(f"length {w}", "Channel/azimuthal elements=16", half_length=w, depth=0.2)[0] / (16 * w * mean) - 1 for w in (4.0, 8.0, 16.0)]
+    powers = numpy.diff(numpy.log(numpy.abs(off))) / numpy.log(0.5)
+    check(abs(off[2]) < 2e-3 and numpy.abs(powers - 2).max() < 0.1, f"{off} off, powers {powers}")
+
+
+def _passes(name, wall, center, radius=0.5, tolerance=1e-7):
+    run(deck(PASSES.format(wall=wall, center=center, radius=radius, tolerance=tolerance)), "--output", name, "--quiet")
+    return numpy.array([series(name, one)[0] if one in OF_PASSAGE[:3] or not wall.startswith("Tube") else numpy.nan for one in OF_PASSAGE])
+
+
+def what_is_straight_does_as_the_tube_does():
+    tube = _passes("tube", "Tube: {azimuthal elements: 28, axial elements: 48}", "[0, 0, 0]")
+    wall = "start: -3.3, end: 3.3, azimuthal elements: 24, axial elements: 48}"
+    along = "Channel: {profile: straight, "
+    bent = f"bend radius: 1.0e4, bend start: -1.5, bend angle: {3e-4 * 180 / numpy.pi!r}, "  # drift across is as the bend, the rest as its square
+    for name, channel in ("straight", along + wall), ("bent", along + bent + wall):
+        velocity, across, drop, _ = _passes(name, channel, "[0, 0, 0]")
+        check(abs(velocity / tube[0] - 1) < 1e-6 and abs(drop / tube[2] - 1) < 1e-5, f"{name}: {velocity}, {drop}; the tube: {tube}")
+        check(abs(across) < 5e-4, f"{name}: {across} across")
+
+
+def _mirrored(name, walls, centers, along, radius):
+    """On default walls and on finer ones: velocities along and across over that along, the pressure drop of the channel with what passes it."""
+    for mesh, elements, bounds in (("default", ("", ", axial elements: 80"), (3e-5, 1e-4)),
+                                   ("finer", (", axial elements: 90", ", azimuthal elements: 28, axial elements: 100"), (1e-5, 1e-6))):
+        one, other = (numpy.abs(_passes(f"{name} {mesh} {k}", f"Channel: {{{walls[k]}{elements[k]}}}", centers[k], radius, 1e-6)) for k in (0, 1))
+        other[:2] = other[:2] if along else other[1::-1]
+        check(numpy.abs(one[:2] - other[:2]).max() < bounds[0] * one[0], f"{name}, {mesh}: velocities {one[:2]} and {other[:2]}")
+        for k in 3, slice(2, 4):
+            check(abs(one[k].sum() / other[k].sum() - 1) < bounds[1], f"{name}, {mesh}: pressure drops {one[2:]} and {other[2:]}")
+
+
+def a_quarter_bend_is_as_its_mirror_image():
+    length = numpy.pi
+    bend = f"profile: straight, bend radius: 2.0, bend start: 0.0, start: -3.0, end: {length + 3!r}"
+    _mirrored("bend", (bend, bend), ("[-0.5, 0.2, 0]", "[1.8, 2.5, 0]"), False, 0.4)
+
+
+def a_constriction_without_symmetry_is_as_its_mirror_image():
+    t = numpy.linspace(-1, 1, 41)
+    s, f = 1.5 * (t - 0.25 * (1 - t * t)), 1 - 0.15 * (1 + numpy.cos(numpy.pi * t))
+    for name, rows in ("fore", zip(s, f)), ("back", zip(-s[::-1], f[::-1])):
+        pathlib.Path(f"{name}.csv").write_text("s,f\n" + "".join(f"{float(a)!r},{float(b)!r}\n" for a, b in rows))
+    _mirrored("constriction", [f"profile: file, points: {name}.csv" for name in ("fore", "back")], ("[-0.5, 0.15, 0]", "[0.5, 0.15, 0]"), True, 0.3)
+
+
+main()
