@@ -1,18 +1,24 @@
 #!/usr/bin/python3
-"""A phase diagram of a particle in shear: below which value of a key it tumbles and above which its membrane treads, by bisection, over another key.
+"""A phase diagram of a particle: below which value of a key it moves in one way and above which in another, by bisection, over another key.
 
     phases.py inputs/studies/red_cell_phases.yaml              # results/phases/borders.csv, runs.csv and phases.png
+    phases.py inputs/studies/red_cell_capillary.yaml --output results/capillary
 
-A study is a small YAML file: `deck`; `set`, keys of all runs; `along`, the key that is bisected: {key, from, to, within: a factor, to which a border
-is found}; `across`, {another key: its values}; `curves`, {name: keys}, where a list as long as that of `across` goes with it, and `across` may have other
-values; `begin`, the share of a run that is not looked at (0.4); `literature`, {name: rows of a value across, the lowest and the highest one along}.
+A study is a small YAML file: `deck`; `motion`, `shear` or `capillary`; `set`, keys of all runs; `along`, the key that is bisected: {key, from, to, within:
+a factor, to which a border is found}; `across`, {another key: its values}; `curves`, {name: keys}, where a list as long as that of `across` goes with it, and
+`across` may have other values; `begin`, the share of a run that is not looked at (0.4); `literature`, {name: rows of a value across, the lowest and the
+highest one along}.
 
-The shape is followed by `inclination`, the membrane by `phase`: a run tumbles where its shape turns by a right angle or more after `begin`, whether its
-membrane goes around on it (then it does both in turn) or not, and treads where only its membrane goes half around. One that does neither is told and ends its
-border. The particle starts as the deck says; where both motions are stable, a border is that of this start. A run that is there is not made again.
+In shear the shape is followed by `inclination`, the membrane by `phase`: a run tumbles where its shape turns by a right angle or more after `begin`, whether
+its membrane goes around on it (then it does both in turn) or not, and treads where only its membrane goes half around. One that does neither is told and ends
+its border. In a capillary a cell is askew by sqrt(d^2 + D^2 sin^2 2i), d the distance of its centroid from the axis over R_C, D its Taylor parameter, i its
+inclination, which is 0 of shapes that are symmetric about the axis: after `begin` a run slips where that is beyond 0.1, or in its last third 0.9 of what it was
+in its first or more, and beyond 0.005; it is a parachute otherwise. The particle starts as the deck says; where both motions are stable, a border is that of
+this start. A run that is there is not made again.
 """
 
 import argparse
+import collections
 import pathlib
 
 import needs  # before what it looks for
@@ -24,19 +30,40 @@ import sweep
 from style import plt
 
 NEAR = 1.5  # factor about the last border between which the next one is looked for first
-KEYS = {"deck", "set", "along", "across", "curves", "begin", "literature"}
+KEYS = {"deck", "motion", "set", "along", "across", "curves", "begin", "literature"}
 SWING = 0.5  # half turns that a shape makes at least which tumbles; one whose membrane treads swings by less
 HALF = 180  # degrees: a shape, or its membrane, looks as before
+ASKEW, STRAIGHT = 0.1, 0.005  # of a cell that has left the axis or turned away from it; what its mesh may leave
+FADES = 0.9  # a cell that comes back to the axis is less than so many times as askew as before
+
+# Two motions, the one below the border first, by the names that `tell` gives to them; what it measures, and of which series.
+Kind = collections.namedtuple("Kind", "below above tell measures series")
 
 
-def motion(time, inclination, phase, begin):
+def in_shear(series, begin):
     """`tumbles`, `both`, `treads` or None; half turns of the shape backwards, and of the membrane on it, after the share `begin` of the time."""
-    turned = -numpy.unwrap(inclination, period=HALF)  # of the sense of the phase
+    time, phase = series["time"], series["phase"]
+    turned = -numpy.unwrap(series["inclination"], period=HALF)  # of the sense of the phase
     late = time >= time[0] + begin * (time[-1] - time[0])
     over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
     if over >= SWING:
         return ("both" if around >= 1 else "tumbles"), over, around
     return ("treads" if around >= 1 else None), over, around
+
+
+def in_capillary(series, begin):
+    """`slips` or `parachute`; by how much the cell is askew in the first third of what comes after `begin`, and in the last one."""
+    time = series["time"]
+    away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
+    askew = numpy.hypot(away, series["taylor_inertia"] * numpy.sin(2 * numpy.radians(series["inclination"])))
+    thirds = time[0] + (time[-1] - time[0]) * numpy.linspace(begin, 1, 301)
+    first, middle, last = (values.max() for values in numpy.array_split(numpy.interp(thirds, time, askew), 3))
+    return ("slips" if max(first, middle, last) > ASKEW or last > max(FADES * first, STRAIGHT) else "parachute"), first, last
+
+
+MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane"), ("inclination", "phase")),
+           "capillary": Kind(("slips",), "parachute", in_capillary, ("askew before", "at the end"),
+                             ("centroid_x2", "centroid_x3", "volume", "taylor_inertia", "inclination"))}
 
 
 class Diagram:
@@ -45,6 +72,10 @@ class Diagram:
     def __init__(self, path, runs):
         text = sweep.yaml_of(path, KEYS)
         self.runs, self.decks, self.fixed = runs, sweep.decks_of(text, path), text.get("set") or {}
+        kind = text.get("motion", "shear")
+        sweep.expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
+        self.kind = MOTIONS[kind]
+        self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"  # there is no border in the range
         self.along, across, curves = (text.get(name) or {} for name in ("along", "across", "curves"))
         sweep.expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
         self.along |= {name: sweep.number(self.along[name], f"{path}: along, {name}") for name in ("from", "to", "within")}
@@ -64,33 +95,35 @@ class Diagram:
             sweep.expect(len(given) == len(values), f"{name}: {key} has {len(given)} values where {self.across} has {len(values)}")
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
-    def tumbles(self, name, row, value):
+    def holds(self, name, row, value):
+        """Whether its motion is that below the border."""
         key = name, row[self.across], value
         if key not in self.made:
             self.made[key] = self.motion_at(name, row, value)
         said = self.made[key][0]
-        sweep.expect(said in ("tumbles", "both", "treads"), "it neither tumbles nor treads: it needs a later Time/final time" if said == "neither" else said)
-        return said != "treads"
+        sweep.expect(said in (*self.kind.below, self.kind.above),
+                     f"it neither {self.kind.below[0]} nor {self.kind.above}: it needs a later Time/final time" if said == "neither" else said)
+        return said != self.kind.above
 
     def motion_at(self, name, row, value):
-        """Of one run: its motion, or why there is none, half turns of the shape and of the membrane, processor seconds and directory."""
+        """Of one run: its motion, or why there is none, the two measures of it, processor seconds and directory."""
         outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
-        said, over, around = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
+        said, *measures = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
         if outcome.done:
-            outcome.run.require("inclination", "phase")
-            series = outcome.series
-            said, over, around = motion(series["time"], series["inclination"], series["phase"], self.begin)
+            outcome.run.require(*self.kind.series)
+            said, *measures = self.kind.tell(outcome.series, self.begin)
         said = said or "neither"
-        print(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} (half turns: shape {over:.2f}, "
-              f"membrane {around:.2f}; {outcome.processor_seconds:.0f} processor seconds)", flush=True)
-        return said, over, around, outcome.processor_seconds, outcome.directory.name
+        told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))
+        print(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} ({told}; "
+              f"{outcome.processor_seconds:.0f} processor seconds)", flush=True)
+        return said, *measures, outcome.processor_seconds, outcome.directory.name
 
     def border(self, name, row, last):
         """Looked for about the last one, and where it is not there, or there is none, in what is left of the range."""
         low, high, factor = self.along["from"], self.along["to"], self.along["within"]
 
         def holds(value):
-            return self.tumbles(name, row, value)
+            return self.holds(name, row, value)
 
         if last:
             found, how = study.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
@@ -106,16 +139,16 @@ class Diagram:
                 low, how = self.border(name, row, last)
             except sweep.Mistake as mistake:
                 low, how = numpy.nan, str(mistake)
-            above = [key[2] for key, run in self.made.items() if key[:2] == (name, row[self.across]) and key[2] > low and run[0] == "treads"]
-            low, high, how = {"fails from here": (numpy.nan, low, "treads from here"), "holds to here": (low, numpy.nan, "tumbles to here")}.get(
+            above = [key[2] for key, run in self.made.items() if key[:2] == (name, row[self.across]) and key[2] > low and run[0] == self.kind.above]
+            low, high, how = {"fails from here": (numpy.nan, low, self.from_here), "holds to here": (low, numpy.nan, self.to_here)}.get(
                 how, (low, min(above, default=numpy.nan), how))
             self.borders[name].append((row[self.across], low, high, how))
             last = low if how == "edge" else last
 
     def write(self, directory):
-        study.write_table(directory / "borders.csv", ["curve", self.across, "tumbles at", "treads at", "how"],
+        study.write_table(directory / "borders.csv", ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"],
                           [(name, *row) for name, rows in self.borders.items() for row in rows])
-        study.write_table(directory / "runs.csv", ["curve", self.across, self.along["key"], "motion", "half turns of the shape", "of the membrane",
+        study.write_table(directory / "runs.csv", ["curve", self.across, self.along["key"], "motion", *self.kind.measures,
                                                    "processor seconds", "directory"], [(*key, *run) for key, run in self.made.items()])
 
     def draw(self, output):
@@ -126,7 +159,7 @@ class Diagram:
                 middle = numpy.sqrt(edges[:, 1] * edges[:, 2])
                 bars = [middle - edges[:, 1], edges[:, 2] - middle]
                 axes.errorbar(edges[:, 0], middle, bars, fmt="o-", color=color, markersize=3.5, capsize=2, label=name)
-            for how, at, mark in ("treads from here", 2, "v"), ("tumbles to here", 1, "^"):  # there is no border in the range
+            for how, at, mark in (self.from_here, 2, "v"), (self.to_here, 1, "^"):
                 there = [(row[0], row[at]) for row in rows if row[3] == how]
                 label = None if len(edges) else name + (", below" if mark == "v" else ", above")
                 axes.plot(*numpy.array(there).reshape(-1, 2).T, mark, color=color, markersize=6, label=label if there else None)
@@ -135,8 +168,8 @@ class Diagram:
             middle = numpy.sqrt(low * high)
             axes.errorbar(x, middle, [middle - low, high - middle], fmt=mark, color=style.FAINT, markersize=4, linewidth=0.8, capsize=2, label=name)
         axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
-        axes.text(0.02, 0.98, "treads", transform=axes.transAxes, va="top", color=style.FAINT)
-        axes.text(0.98, 0.02, "tumbles", transform=axes.transAxes, ha="right", color=style.FAINT)
+        axes.text(0.02, 0.98, self.kind.above, transform=axes.transAxes, va="top", color=style.FAINT)
+        axes.text(0.98, 0.02, self.kind.below[0], transform=axes.transAxes, ha="right", color=style.FAINT)
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
         style.save(figure, output)
 

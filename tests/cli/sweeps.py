@@ -64,7 +64,7 @@ def tumbling_is_told_from_treading_by_shape_and_membrane():
     swung = 20 * numpy.sin(t)
 
     def told(inclination, phase):
-        return phases.motion(t, (inclination + 90) % 180 - 90, phase, 0.4)[0]
+        return phases.in_shear({"time": t, "inclination": (inclination + 90) % 180 - 90, "phase": phase}, 0.4)[0]
 
     check(told(-shape, shape + swung) == "tumbles", "its membrane swings on it")
     check(told(20 + swung, shape) == "treads", "its shape swings")
@@ -73,6 +73,29 @@ def tumbling_is_told_from_treading_by_shape_and_membrane():
     check(told(20 + swung, swung) is None, "nothing went around")
     check(told(-numpy.maximum(shape, 200), numpy.maximum(shape, 200) + swung) == "tumbles", "late")
     check(told(-numpy.minimum(shape, 200), shape) == "treads", "it has stopped tumbling")
+
+
+def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
+    import phases
+    t = numpy.linspace(0, 160, 81)
+    fading, growing = numpy.exp(-0.02 * t), numpy.exp(0.02 * t)
+
+    def told(offset, tilt, prolate=False, swollen=1.0):
+        series = {"time": t, "centroid_x2": 0 * t, "centroid_x3": offset * swollen + 0 * t, "volume": 4 / 3 * numpy.pi * swollen**3 + 0 * t,
+                  "taylor_inertia": 0.3 + 0 * t, "inclination": tilt + (0 if prolate else 90) - (0 if prolate else 180) * (tilt > 0)}
+        return phases.in_capillary(series, 0.4)
+
+    check(told(-0.03 * fading, 2 * fading)[0] == "parachute", "it comes back to the axis")
+    check(told(0, -2 * fading)[0] == told(0, 2 * fading, True)[0] == "parachute", "longer across the tube, and along it")
+    check(told(0.002 * growing, 0.1 * growing)[0] == "slips", "it leaves the axis")
+    check(told(0 * t, 0.1 * growing)[0] == told(0.002 * growing, 0 * t, True)[0] == "slips", "it turns away from it; it only leaves it")
+    check(told(0.03 * (1 + numpy.sin(t)), 0 * t)[0] == "slips", "it swings about it")
+    check(told(0.2, 20 + 0 * t)[0] == told(0.2, 20 * fading, swollen=3)[0] == "slips", "it stays beside it, in any unit of length")
+    check(told(0.003 * (1 + numpy.sin(t) / 2), 0 * t)[0] == "parachute", "that is its mesh")
+    check(told(0.15 * numpy.exp(-((t - 90) / 20)**2), 0 * t)[0] == "slips", "it turned over in between")
+    check(told(2 * fading**4, 60 * fading**4)[0] == "parachute", "a start that is far from it is not looked at")
+    for askew, after in zip(told(0.03 * fading, 0 * t)[1:], (64, 128)):
+        close(askew, 0.03 * numpy.exp(-0.02 * after), 2e-4, "the largest one in the first and the last third of the rest")
 
 
 def a_border_is_found_about_the_last_one_and_where_it_is_not():
@@ -87,12 +110,12 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     diagram = phases.Diagram("phases.yaml", None)
     at = {1: 0.3, 2: 0.33, 3: 2.0, 4: 0.001, 5: 100.0}
 
-    def tumbles(name, row, value):
-        holds = value < at[row["Particle/viscosity ratio"]]
-        diagram.made[name, row["Particle/viscosity ratio"], value] = ("tumbles" if holds else "treads",)
-        return holds
+    def holds(name, row, value):
+        below = value < at[row["Particle/viscosity ratio"]]
+        diagram.made[name, row["Particle/viscosity ratio"], value] = ("tumbles" if below else "treads",)
+        return below
 
-    diagram.tumbles = tumbles
+    diagram.holds = holds
     diagram.find()
     rows = diagram.borders["one"]
     check([row[3] for row in rows] == ["edge"] * 3 + ["treads from here", "tumbles to here"], rows)
@@ -104,6 +127,9 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     deck("deck: deck.yaml\nalong: {key: a, from: 2, to: 1, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
     refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
     check(refused.returncode == 2 and "ascend" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
+    deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
+    refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
+    check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
 
 
 def what_drifts_over_many_turns_is_told_from_what_swings():
