@@ -12,9 +12,9 @@ highest one along}.
 In shear the shape is followed by `inclination`, the membrane by `phase`: a run tumbles where its shape turns by a right angle or more after `begin`, whether
 its membrane goes around on it (then it does both in turn) or not, and treads where only its membrane goes half around. One that does neither is told and ends
 its border. In a capillary a cell is askew by sqrt(d^2 + D^2 sin^2 2i), d the distance of its centroid from the axis over R_C, D its Taylor parameter, i its
-inclination, which is 0 of shapes that are symmetric about the axis: after `begin` a run slips where that is beyond 0.1, or in its last third 0.9 of what it was
-in its first or more, and beyond 0.005; it is a parachute otherwise. The particle starts as the deck says; where both motions are stable, a border is that of
-this start. A run that is there is not made again.
+inclination, which is 0 of shapes that are symmetric about the axis: after `begin` a run slips where that is beyond 0.1, or where its largest value in the last
+third is beyond 0.005 and half as much again as in the first; it is a parachute otherwise. The particle starts as the deck says; where both motions are stable, a
+border is that of this start. A run that is there is not made again.
 """
 
 import argparse
@@ -34,7 +34,7 @@ KEYS = {"deck", "motion", "set", "along", "across", "curves", "begin", "literatu
 SWING = 0.5  # half turns that a shape makes at least which tumbles; one whose membrane treads swings by less
 HALF = 180  # degrees: a shape, or its membrane, looks as before
 ASKEW, STRAIGHT = 0.1, 0.005  # of a cell that has left the axis or turned away from it; what its mesh may leave
-FADES = 0.9  # a cell that comes back to the axis is less than so many times as askew as before
+GROWS = 1.5  # a cell that leaves the axis is more than so many times as askew as before
 
 # Two motions, the one below the border first, by the names that `tell` gives to them; what it measures, and of which series.
 Kind = collections.namedtuple("Kind", "below above tell measures series")
@@ -58,7 +58,7 @@ def in_capillary(series, begin):
     askew = numpy.hypot(away, series["taylor_inertia"] * numpy.sin(2 * numpy.radians(series["inclination"])))
     thirds = time[0] + (time[-1] - time[0]) * numpy.linspace(begin, 1, 301)
     first, middle, last = (values.max() for values in numpy.array_split(numpy.interp(thirds, time, askew), 3))
-    return ("slips" if max(first, middle, last) > ASKEW or last > max(FADES * first, STRAIGHT) else "parachute"), first, last
+    return ("slips" if max(first, middle, last) > ASKEW or last > max(GROWS * first, STRAIGHT) else "parachute"), first, last
 
 
 MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane"), ("inclination", "phase")),
