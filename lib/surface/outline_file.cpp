@@ -20,7 +20,7 @@ struct Row {
 
 class File {
  public:
-  explicit File(const std::string& path) : name_("Tube/outline \"" + deck::shortened(path, 80) + "\"") {
+  File(const std::string& list, const std::string& path) : name_(list + "/outline \"" + deck::shortened(path, 80) + "\"") {
     for (const CsvRow& row : csv_rows(text_of_file(path, name_, 10'000'000), "x2")) rows_.push_back(point(row));
     if (rows_.size() > 1 && (rows_.front().x - rows_.back().x).norm() <= same_point * longest_step()) rows_.pop_back();
     check();
@@ -85,10 +85,7 @@ CubicCurve fit(const std::vector<Row>& rows, std::size_t first, std::size_t n, b
   return closed ? interpolate_closed(breaks, points) : interpolate_open(breaks, points);
 }
 
-}  // namespace
-
-Outline read_outline(const std::string& path) {
-  const File file(path);
+Outline through(const File& file) {
   const auto& rows = file.rows();
   std::vector<std::size_t> corners;
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -102,8 +99,12 @@ Outline read_outline(const std::string& path) {
   return Outline(std::move(sides), file.name());
 }
 
+}  // namespace
+
+Outline read_outline(const std::string& path) { return through(File("Tube", path)); }
+
 Outline outline(const TubeOptions& options) {
-  if (options.section == "file") return read_outline(options.outline.value());
+  if (options.section == "file") return through(File(options.channel ? "Channel" : "Tube", options.outline.value()));
   const Vec2 zero = Vec2::Zero();
   if (options.section == "circle") return Outline({Ellipse{zero, Vec2::Constant(options.radius.value())}});
   if (options.section == "ellipse") return Outline({Ellipse{zero, options.semi_axes.value()}});

@@ -37,6 +37,9 @@ def what_is_no_channel_is_refused():
     _refused(["Channel/profile", "step", "corner radius"], "Channel/profile=step")
     _refused(["Channel/corner radius", "0.3"], "Channel/profile=step", "Channel/corner radius=0.3")
     _refused(["Channel/points", "file"], "Channel/points=rows.csv")
+    turns = numpy.linspace(0, 2 * numpy.pi, 24, endpoint=False)
+    numpy.savetxt("eight.csv", numpy.column_stack([numpy.sin(turns), numpy.sin(2 * turns)]), delimiter=",")
+    _refused(["Channel/outline", "eight.csv", "crosses itself"], "Channel/section=file", "Channel/outline=eight.csv")
     _refused(["Channel/repulsion range", "belong together"], "Channel/repulsion=10")
     _refused(["Channel/repulsion", "round"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
     for setting in "Membrane/load=strong", "Particle/motion=free":
