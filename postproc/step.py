@@ -4,6 +4,8 @@
     step.py inputs/capsule_step.yaml --radii 0.1 0.05 --finer 'Channel/azimuthal elements=32' --finer 'Surface/elements per side=8'
     step.py inputs/capsule_step.yaml --radii 0.1 0.05 --curves lx.csv ly.csv lz.csv
 
+The extent along x3 has kinks, beside which it is no better than rows are close: --set 'Time/maximum step=0.01' for three digits.
+
 Each --finer is made of both radii beside the deck's own run, and what it changes is told; curves are of what is finest in one way after the other, by
 the sum of these changes. An edge rounded with the radius r changes the flow around by r^2q, where q = 0.544 is the power of the velocity beside a sharp
 edge of 90 degrees, sin(3 pi q/2) = q (Dean & Montagnon, Proc. Camb. Phil. Soc. 45, 1949), by which two radii say what none is.
