@@ -67,8 +67,8 @@ def cut_open(axis, run, c, n, across):
     lines = c["wall"][2:] if across == 1 else c["wall"][:2]
     for line in lines:
         axis.plot(line[:, 0], line[:, 2 if across == 1 else 1], color=style.INK, linewidth=1.6)
-    way = way_along(run, c)
-    shots = {}
+    way, reach = way_along(run, c), run.series["length_x1"].max()
+    shots, labelled = {}, []  # places of the times
     for x in numpy.linspace(way[0], way[-1], n):
         shot = run.snapshot_at(numpy.interp(x, way, run.series["time"]))
         shots[shot.path] = shot
@@ -76,10 +76,13 @@ def cut_open(axis, run, c, n, across):
         middle = (shot.points.min(0) + shot.points.max(0)) / 2
         axis.add_collection(LineCollection(shape.section(shot, middle[across], across), colors=[colour], linewidths=1.6, capstyle="round"))
         at = middle[:2] if bent else (middle[0], lines[:, :, 1:].min() * 0.97)
+        if any(numpy.hypot(*numpy.subtract(at, other)) < reach / 8 for other in labelled):
+            continue
+        labelled.append(at)
         axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
     axis.set_aspect("equal")
     axis.grid(False)
-    shown = lines[:, (c["s"] > way.min() - 1.5) & (c["s"] < way.max() + 1.5)].reshape(-1, 3)
+    shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
     axis.set_xlim(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0))
     if bent:
         axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)

@@ -71,7 +71,7 @@ Verdict verdict(const Expectation& e, const SeriesTable& series) {
 
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names) {
   for (const Expectation& e : expectations) {
-    if (std::ranges::find(names, e.series) != names.end()) continue;
+    if (!e.not_binding.empty() || std::ranges::find(names, e.series) != names.end()) continue;
     const std::string meant = guess(e.series, names), where = "Expect/" + e.name + (e.series == e.name ? "" : "/series");
     throw UserError(where + ": the results of this scene hold no series " + e.series +
                     (meant.empty() ? ", but " + alternatives(names) + "." : "; was " + meant + " meant?"));

@@ -30,7 +30,7 @@ struct Expectations {
   void declare(Section& section);
 };
 
-/// Throws UserError, with the name that was probably meant, where one is of a series that is not among `names`.
+/// Throws UserError, with the name that was probably meant, where one that binds is of a series that is not among `names`.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
 /// A sentence for each binding expectation at a time after `end`, which a run that ends there misses.

@@ -63,6 +63,7 @@ TEST(Expectations, AreOfSeriesThatThereAre) {
             "Expect/volum: the results of this scene hold no series volum; was volume meant?");
   EXPECT_EQ(refusal("    volume: {series: wellness, value: 1, tolerance: 1}\n", {"time", "volume", "area"}),
             "Expect/volume/series: the results of this scene hold no series wellness, but time, volume or area.");
+  EXPECT_EQ(refusal("    wellness: {value: 1, tolerance: 1, not binding: a key was changed}\n", {"time", "volume"}), "none");
 }
 
 TEST(Expectations, AfterTheEndAreSaidToBeMissed) {
