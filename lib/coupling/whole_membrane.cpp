@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace tanktread::coupling {
 namespace {
@@ -21,26 +22,26 @@ WholeMembrane::WholeMembrane(const spline::Space& space, const Net& unstressed, 
     return membrane::Membrane(space, unstressed, law, 4, bending);
   };
   Measure area{2, {}, {}}, difference{1, {}, {}};
-  area.parts.emplace_back(1.0, membrane(membrane::SurfaceTension{1}));
   double radius = 1;
   for (const Particle& one : particles) {
-    area.particles.push_back({one.block, area_stiffness(one) + leaf_stiffness(one), 0});  // for now: where an area has to be known
+    area.particles.push_back({one.block, area_stiffness(one) + leaf_stiffness(one), 0});  // both need A0
     difference.particles.push_back({one.block, leaf_stiffness(one), 0});
     if (one.leaf_modulus > 0) radius = one.radius;
   }
-  // (2 chi + c)^2/2 - (2 chi - c)^2/2 = 4 chi c
-  for (const double sign : {-1.0, 1.0})
+  area.parts.emplace_back(1.0, membrane(membrane::SurfaceTension{1}));
+  for (const double sign : {-1.0, 1.0})  // (2 chi + c)^2/2 - (2 chi - c)^2/2 is 4 chi c, here of c = 1/R
     difference.parts.emplace_back(-sign, membrane(membrane::SurfaceTension{0}, {radius / 2, false, sign / radius}));
 
   std::vector<int> all(space.elements.size());
-  for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
+  std::iota(all.begin(), all.end(), 0);
   const Net a = area.gradient_at(unstressed, all), n = difference.gradient_at(unstressed, all);
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Particle& one = particles[p];
-    const double area0 = area(unstressed, a, one.block), sphere = 4 * std::sqrt(std::numbers::pi * area0);  // 8 pi R, of its N
-    area.particles[p] = {one.block, area0 > 0 ? area_stiffness(one) / area0 : 0, area0};
-    difference.particles[p] = {one.block, area0 > 0 ? leaf_stiffness(one) / area0 : 0,
-                               one.leaf_difference ? *one.leaf_difference * sphere : difference(unstressed, n, one.block)};
+    if (area.particles[p].stiffness == 0) continue;
+    const double area0 = area(unstressed, a, one.block), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);  // its N, 8 pi R
+    area.particles[p] = {one.block, area_stiffness(one) / area0, area0};
+    difference.particles[p] = {one.block, leaf_stiffness(one) / area0,
+                               one.leaf_difference ? *one.leaf_difference * of_sphere : difference(unstressed, n, one.block)};
   }
   for (Measure* const measure : {&area, &difference}) {
     if (std::ranges::none_of(measure->particles, [](const Of& one) { return one.stiffness > 0; })) continue;
