@@ -23,6 +23,7 @@ import pathlib
 
 import needs  # before what it looks for
 import numpy
+from matplotlib.ticker import LogLocator, NullLocator
 
 import study
 import style
@@ -154,7 +155,7 @@ class Diagram:
     def draw(self, output):
         figure, axes = plt.subplots(figsize=(6.2, 4.2))
         for (name, rows), color in zip(self.borders.items(), style.RUNS * len(self.borders)):
-            edges = numpy.array([row[:3] for row in rows if row[3] == "edge"]).reshape(-1, 3)
+            edges = numpy.array(sorted(row[:3] for row in rows if row[3] == "edge")).reshape(-1, 3)
             if len(edges):
                 middle = numpy.sqrt(edges[:, 1] * edges[:, 2])
                 bars = [middle - edges[:, 1], edges[:, 2] - middle]
@@ -168,9 +169,14 @@ class Diagram:
             middle = numpy.sqrt(low * high)
             axes.errorbar(x, middle, [middle - low, high - middle], fmt=mark, color=style.FAINT, markersize=4, linewidth=0.8, capsize=2, label=name)
         axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
-        axes.text(0.02, 0.98, self.kind.above, transform=axes.transAxes, va="top", color=style.FAINT)
-        axes.text(0.98, 0.02, self.kind.below[0], transform=axes.transAxes, ha="right", color=style.FAINT)
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        for axis, words in (axes.xaxis, {"xscale": "linear"}), (axes.yaxis, {}):
+            if numpy.divide(*axis.get_view_interval()[::-1]) < 10:  # there is no power of ten to go by
+                axes.set(**words)
+                axis.set_major_locator(axis.get_major_locator() if words else LogLocator(subs=(1, 1.5, 2, 3, 4, 6)))
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_locator(NullLocator())
+        axes.text(0.02, 1.01, f"above: {self.kind.above}; below: {self.kind.below[0]}", transform=axes.transAxes, color=style.FAINT)
+        axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.14))
         style.save(figure, output)
 
 
