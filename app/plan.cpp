@@ -55,6 +55,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   const surface::TubeWall& wall = *body.wall;
   const double unknowns = 3.0 * wall.space.n_points / (wall.channel ? body.symmetry.order() : 1);
   std::string flow = "quiescent fluid";
+  if (scene.flow.type == "simple shear") flow = scene.flow.type + ", with which the wall goes along; the duct's own flow for the pressure drop";
   if (scene.flow.type == "duct")
     flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));

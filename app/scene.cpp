@@ -228,9 +228,9 @@ void check_motion(const Scene& scene) {
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
 }
 
-/// Whether an unbounded flow with the same gradient everywhere has a vorticity.
+/// Whether a flow with the same gradient everywhere has a vorticity.
 bool turns(const Scene& scene) {
-  if (scene.tube.present || scene.flow.type == "duct") return false;
+  if (scene.flow.type == "duct") return false;
   const stokes::AmbientFlow ambient(scene.flow);
   const Mat3 gradient = ambient.gradient(Vec3::Zero());
   return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
@@ -270,8 +270,10 @@ void check_contradictions(const Scene& scene) {
   refuse(scene.steady.present && !drop && !rigid && unstressed != "sphere" && turns(scene), sought, flow,
          "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
   const std::string confined = scene.tube.list();
-  refuse(tube && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
-         "that flow fills unbounded space; in a tube Flow/type is `duct` or `quiescent`");
+  const bool couette = tube && !scene.tube.channel && scene.flow.type == "simple shear" && !scene.flow.history;
+  refuse(tube && !couette && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
+         "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
+         "with which the wall goes along");
   refuse(tube && desingularised, "Quadrature/rule `desingularised`", confined, "the wall is not closed");
   const std::string repulsion = confined + "/repulsion";
   refuse(scene.tube.repulsion && rigid, repulsion, motion, "it acts on membranes");

@@ -10,7 +10,7 @@
 
 namespace tanktread {
 
-/// The duct's own flow; in quiescent fluid that of the mean velocity 1, which the pressure drop (2.7) is told by.
+/// The duct's own flow; in another one, or in quiescent fluid, that of the mean velocity 1, which the pressure drop (2.7) is told by.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
 /// Throws UserError, with the numbers, where the scene's particle does not fit into its tube, if there is one.

@@ -52,16 +52,17 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const double done = product(work, v);  // to all surfaces by the fluids
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
-  powers.left_over = left_over(load, missed(x, v, inside, load), measured);
+  powers.left_over = left_over(load, missed(x, v, inside, load), x, measured);
   return powers;
 }
 
-/// In a tube the pressure drop that the particles add does the work (2.7).
+/// In a duct's flow the pressure drop that the particles add does the work (2.7); others are of one gradient, as the walls of their tube move.
 double PowerBalance::of_flow(const Net& x, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
-  if (const Tube* tube = capsule_.tube()) {
+  if (flow.duct()) {
+    const Tube& tube = *capsule_.tube();
     const double drop = capsule_.response(x).pressure_drop;
-    return flow.duct() ? flow.amplitude() * tube->flow_rate(drop) * drop / tube->copies() : 0;
+    return flow.amplitude() * tube.flow_rate(drop) * drop / tube.copies();
   }
   const Net flux = capsule_.geometry().volume_gradient(x);
   const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
@@ -73,13 +74,22 @@ double PowerBalance::of_flow(const Net& x, const Net& work, const Net& inside) {
   return power;
 }
 
-/// int Df.r by the rule of the middles, of r there.
-double PowerBalance::left_over(const Net& load, const Net& left, const Net& measured) const {
+/// int (Df - p n).r by the rule of the middles, of r there, p the mean of Df.n over each particle: a uniform pressure does no work, and what
+/// quadrature leaves of its layer counts for nothing.
+double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
   const Net loads = values_ * load;
   double sum = 0;
-  for (std::size_t e = 0; e < middles_.size(); ++e) {
-    const auto row = static_cast<Eigen::Index>(e);
-    sum += loads.row(row).dot(left.row(row)) * surface::point(space_, measured, middles_[e].front()).jacobian;
+  for (const Particle& particle : capsule_.particles()) {
+    double area = 0, pressure = 0, flux = 0;
+    for (int k = 0; k < particle.block.n_elements; ++k) {
+      const int e = particle.block.first_element + k;
+      const spline::Site& middle = middles_[static_cast<std::size_t>(e)].front();
+      const surface::Point at = surface::point(space_, x, middle);
+      const Vec3 force = surface::point(space_, measured, middle).jacobian * loads.row(e).transpose(), lacks = left.row(e);
+      sum += force.dot(lacks);
+      area += at.jacobian, pressure += force.dot(at.n), flux += at.jacobian * at.n.dot(lacks);
+    }
+    sum -= pressure / area * flux;
   }
   return sum;
 }

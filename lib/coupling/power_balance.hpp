@@ -36,7 +36,7 @@ class PowerBalance {
   Powers operator()(const Net& x, const Net& slope);
 
  private:
-  double left_over(const Net& load, const Net& left, const Net& measured) const;
+  double left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const;
   Net missed(Net x, Net v, Net density, const Net& load);
   Net density(const Net& v, const RigidParticles& rigid) const;
   double of_flow(const Net& x, const Net& work, const Net& inside);

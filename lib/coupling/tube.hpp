@@ -42,7 +42,7 @@ struct TubeParameters {
 ///   answer    u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
 /// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of the traction on the wall, dp that of the pressure
-/// drop between the ends, Q the flow rate of v_inf; in quiescent fluid v_inf is the duct's flow of any mean velocity.
+/// drop between the ends, Q the flow rate of v_inf; v_inf is the duct's flow of any mean velocity here, whatever flow the walls go along with.
 ///
 /// Several particles are one surface here, C all of it. The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the
 /// particle's centroid. So what depends on the wall alone is assembled and factored once. Points of the particle are true ones everywhere; nets of

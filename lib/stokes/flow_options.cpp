@@ -12,9 +12,10 @@ void FlowOptions::declare(deck::Section& section) {
   section.key(
       "type", type,
       deck::Choice{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"},
-      "ambient flow: `simple shear` is rate (x3, 0, 0), `planar hyperbolic` rate (x1, 0, -x3), `uniaxial extension` rate "
-      "(-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, `uniform` by `velocity`, `parabolic` along x1 "
-      "with `profile`, `maximum velocity` and `half width`, without a wall, `duct` along x1 through the section of the Tube, with `mean velocity`");
+      "ambient flow: `simple shear` is rate (x3, 0, 0), in a straight Tube too, whose wall goes along with it then, `planar hyperbolic` "
+      "rate (x1, 0, -x3), `uniaxial extension` rate (-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, "
+      "`uniform` by `velocity`, `parabolic` along x1 with `profile`, `maximum velocity` and `half width`, without a wall, `duct` along x1 "
+      "through the section of the Tube, with `mean velocity`");
   section.key("shear rate", shear_rate, deck::positive(), "1/time", "rate of the flow; for `linear` it stays 1, the gradient says all");
   section.key("viscosity", viscosity, deck::positive(), "stress x time", "of the outer fluid");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",

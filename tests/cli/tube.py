@@ -46,7 +46,7 @@ def _refused(words, *settings):
 
 
 def what_contradicts_the_tube_is_refused():
-    _refused(["Tube", "simple shear", "duct"], "Flow/type=simple shear")
+    _refused(["Tube", "planar hyperbolic", "duct", "simple shear"], "Flow/type=planar hyperbolic")
     _refused(["Flow/mean velocity", "simple shear"], "Flow/type=simple shear", "Flow/mean velocity=2")
     _refused(["Membrane/capillary number", "gradient"], "Flow/type=quiescent")
     _refused(["Tube/radius", "circle", "ellipse"], "Tube/section=ellipse", "Tube/semi-axes=[1.0, 2.0]", "Tube/radius=1")
