@@ -143,6 +143,7 @@ class Deforming : public ParticleSystem {
       check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
       add_tube(*capsule_, state.x, whole);
     }
+    if (capsule_->cell()) whole.cell = capsule_->cell()->vectors();
     if (const auto& cell = capsule_->cell(); cell && cell->n() == 3)
       add_bulk_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), force_on_fluid(state.x), whole);
     if (all_ || capsule_->cell()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
@@ -347,7 +348,18 @@ class Deforming : public ParticleSystem {
     fields.push_back({"largest tension", tensions.col(1)});
     fields.push_back({"mean curvature", curvature});
     if (all_) fields.push_back({"particle", particle});
+    if (capsule_->cell()) fields.push_back({"into cell", into_cell(nodes, x)});
     return fields;
+  }
+
+  /// What takes each particle from where it has come to into the cell around the origin, at its nodes.
+  output::Rows into_cell(const output::Nodes& nodes, const Net& x) const {
+    std::vector<Vec3> of_particles;
+    for (const Member& member : members_) of_particles.push_back(-capsule_->cell()->shift(member.block.rows(x).colwise().mean().transpose()));
+    const std::vector<spline::Site>& sites = nodes.mesh().sites;
+    output::Rows shifts(static_cast<Eigen::Index>(sites.size()), 3);
+    for (Eigen::Index i = 0; i < shifts.rows(); ++i) shifts.row(i) = of_particles[particle_of(sites[static_cast<std::size_t>(i)].element)];
+    return shifts;
   }
 
   std::size_t particle_of(int element) const {

@@ -153,6 +153,9 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.contact_impulse; }, Needs::limiter},
     {"volume_fraction", "", "1", "volume of the particles over that of the cell", of_several, [](const Moment& m, int) { return m.volume_fraction; },
      Needs::cell},
+    {"cell_", "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3", "length",
+     "vector and component # of the cell that repeats, at this time; across directions that do not repeat unit vectors", of_several,
+     [](const Moment& m, int c) { return m.cell(c % 3, c / 3); }, Needs::lattice},
     {"particle_stress_", "11 22 33 12 13 23", "force/length^2", "what the particles add to the mean stress (6.9), without its trace, component #",
      of_several,
      [](const Moment& m, int component) {
@@ -239,6 +242,7 @@ bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::viscous_membrane) return scene.viscous_membrane();
   if (needs == Needs::membrane) return scene.membrane.law != "surface tension";
   if (needs == Needs::strain) return strains(scene);
+  if (needs == Needs::lattice) return scene.domain.present;
   if (needs == Needs::cell || needs == Needs::cell_strain)
     return scene.domain.present && scene.domain.directions() == 3 && (needs == Needs::cell || strains(scene));
   if (needs == Needs::adaptation) return scene.adaptation.enabled;

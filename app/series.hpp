@@ -53,6 +53,7 @@ struct Moment {
   Nearest nearest;                    ///< among others
   double contact_force = 0, contact_impulse = 0;
   double flow_power = 0, force_power = 0, fluid_dissipation = 0, power_residual = 0;
+  Mat3 cell = Mat3::Zero();             ///< vectors of the lattice, columns
   Mat3 particle_stress = Mat3::Zero();  ///< in a cell: sum of stresslets over its volume; in the axes of the plane of the flow: `turned_stress`
   Mat3 turned_stress = Mat3::Zero();
   double relative_viscosity = 1, volume_fraction = 0;
@@ -70,9 +71,10 @@ enum Owner : unsigned {
   of_spectrum = 256, of_branch = 512, of_surfactant = 1024, of_folds = 2048, of_periodic = 4096
 };
 
-/// What a scene must have beside; `cell`: a lattice of three directions; the last four: an exact solution of a prescribed body, what of it is not 0.
+/// What a scene must have beside; `lattice`: one of any directions, `cell`: of three; the last four: an exact solution of a prescribed body, what of it
+/// is not 0.
 enum class Needs {
-  nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, cell, cell_strain, adaptation, exact, exact_force,
+  nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, lattice, cell, cell_strain, adaptation, exact, exact_force,
   exact_torque, exact_pressure, limiter, power, membrane
 };
 

@@ -31,6 +31,7 @@ constexpr Entry fields[] = {
     {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
     {"concentration", "1", "drop with surfactant", "of surfactant over the initial one"},
     {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
+    {"into cell", "length", "in a Domain", "what takes the particle from where it has come to into the cell around the origin, of vectors cell_#"},
     {"mode k", "1", "capsule, drop", "displacement of mode k of a spectrum, at its largest 1; of one that oscillates its real part"},
     {"mode k imaginary", "1", "capsule, drop", "its imaginary part"},
     {"pressure", "force/length^2", "prescribed body",

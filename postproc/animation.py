@@ -55,7 +55,7 @@ class Film:
 
     def __init__(self, run, shots, field, view, pixels):
         self.run, self.field, self.view, self.pixels = run, field, view, pixels
-        places = numpy.concatenate([shot.points - middle(shot) for shot in shots]) @ shape.view_axes(*view)[:2].T
+        places = numpy.concatenate([shot.frame - middle(shot) for shot in shots]) @ shape.view_axes(*view)[:2].T
         self.window = places.min(0), places.max(0)
         self.norm, self.colours = shape.scale([shape.magnitude(shot.fields[field]) for shot in shots])
         extent = self.window[1] - self.window[0]
@@ -115,7 +115,7 @@ def shown(run):
 
 
 def middle(shot):
-    return (shot.points.min(0) + shot.points.max(0)) / 2
+    return (shot.frame.min(0) + shot.frame.max(0)) / 2
 
 
 if __name__ == "__main__":

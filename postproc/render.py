@@ -1,5 +1,7 @@
 """A surface as the eye sees it, orthographic, by a depth buffer: what is hidden stays hidden, element edges too, and colours can be read off the bar."""
 
+import itertools
+
 import numpy
 
 STEP = 0.7        # pixels between samples of a surface: no pixel of it is left out, which a square lattice of 1/√2 or less ensures
@@ -7,12 +9,14 @@ COARSE = 6        # facets along a side of a cell to measure it by
 RIM = 0.14        # what of a colour is lost where the surface turns away from the eye; none where it faces it
 EDGE_WIDTH = 1.2  # of an element edge on the surface, pixels
 EDGE_INK = 0.75   # how white it is
+INSIDE = 0.45     # how dark the inner side is where a cell's face cuts a particle open
 CONTOUR = 8       # pixels of depth between neighbours from which on a contour is drawn
 OVERSAMPLING = 2  # finer pixels along a pixel
 
 
 def picture(shot, values, view, colour_of, pixels=640):
-    """`values` (one a node of `shot`) on the surface, seen along the third row of `view` (right, up, towards the eye).
+    """`values` (one a node of `shot`) on the surface, seen along the third row of `view` (right, up, towards the eye). Of a lattice, where `shot.cell` says so,
+    what is in the cell around the origin: particles with their images, cut at its faces.
 
     Returns an image (rows, columns, RGBA), its uppermost row first, and its extent (left, right, low, high) in the surface's own length.
     `pixels`: of the longer side. `colour_of`: values to RGBA.
@@ -29,22 +33,34 @@ def picture(shot, values, view, colour_of, pixels=640):
 def seen(shot, values, view, pixels):
     """Of every pixel (right, up) what is nearest to the eye: depth towards the eye in pixels, -inf beside the surface; rows of value, facing and distance
     from an element edge; the lower left corner and the pixels a length."""
-    places = shot.points @ view.T
-    low, high = places[:, :2].min(0), places[:, :2].max(0)
+    places, frame = shot.places @ view.T, shot.frame @ view.T
+    low, high = frame[:, :2].min(0), frame[:, :2].max(0)
     size = pixels / (high - low).max()
     shape = OVERSAMPLING * (numpy.ceil((high - low) * size / OVERSAMPLING).astype(int) + 4)
     corner = low - 2 * OVERSAMPLING / size
     depth, found = numpy.full(shape[0] * shape[1], -numpy.inf, numpy.float32), numpy.zeros((shape[0] * shape[1], 3), numpy.float32)
-    for sample in _samples(shot, places * size, values):
-        _deposit(sample, corner * size, shape, depth, found)
+    if shot.cell is None:
+        for sample in _samples(shot, places * size, values):
+            _deposit(sample, corner * size, shape, depth, found)
+    else:
+        vectors = shot.cell @ view.T * size
+        for steps in itertools.product((-1, 0, 1), repeat=3):
+            for sample in _samples(shot, places * size + numpy.array(steps) @ vectors, values, numpy.linalg.inv(vectors)):
+                _deposit(sample, corner * size, shape, depth, found)
     return depth.reshape(shape), found.reshape(*shape, 3), corner, size
 
 
-def _samples(shot, places, values):
-    """Samples no further than STEP pixels apart, some cells at a time: rows of place (3), value, facing (cosine to the eye), distance from the cell's edge."""
+def _samples(shot, places, values, lattice=None):
+    """Samples no further than STEP pixels apart, some cells at a time: rows of place (3), value, facing (cosine to the eye), distance from the cell's edge.
+    With `lattice`, places to coordinates along its vectors, those in the cell around the origin; then inner sides too, whose value is not a number."""
     known = numpy.column_stack([places, values]).astype(numpy.float32)  # to a ten thousandth of a pixel
     grid = shot.sampled(places, COARSE)
-    seen = numpy.flatnonzero((_normals(grid)[0] > -0.2).any((1, 2)))
+    if lattice is None:
+        seen = numpy.flatnonzero((_normals(grid)[0] > -0.2).any((1, 2)))
+    else:
+        seen = numpy.flatnonzero((numpy.abs(grid @ lattice) < 0.5).all(-1).any((1, 2)))
+    if len(seen) == 0:
+        return
     wanted = numpy.maximum(_longest(grid[seen], 1), _longest(grid[seen], 2)) * 1.05 * COARSE / STEP  # a cell is not sampled evenly by its parameters
     k = 8 * numpy.ceil(wanted / 8).astype(int)
     for n in numpy.unique(k):
@@ -54,7 +70,11 @@ def _samples(shot, places, values):
             along = numpy.arange(n + 1, dtype=numpy.float32) / n
             inside = n * numpy.minimum(along, 1 - along)
             edge = area * numpy.minimum(inside / length_t, inside[:, None] / length_s)
-            keep = facing > -0.05
+            if lattice is None:
+                keep = facing > -0.05
+            else:
+                keep = (numpy.abs(sample[..., :3] @ lattice.astype(numpy.float32)) < 0.5).all(-1)
+                sample[facing < 0, 3] = numpy.nan
             yield numpy.column_stack([sample[keep], facing[keep], edge[keep]])
 
 
@@ -86,7 +106,7 @@ def _coloured(depth, found, colour_of):
     value, facing, edge = numpy.moveaxis(found, -1, 0)
     hit = numpy.isfinite(depth)
     image = numpy.zeros((*depth.shape, 4))
-    image[hit] = colour_of(value[hit])
+    image[hit] = numpy.where(numpy.isnan(value[hit])[:, None], (INSIDE, INSIDE, INSIDE, 1), colour_of(value[hit]))
     image[..., :3] *= (1 - RIM * (1 - numpy.clip(facing, 0, 1)) ** 2)[..., None]
     share = EDGE_INK * numpy.clip(EDGE_WIDTH * OVERSAMPLING / 2 - edge + 0.5, 0, 1)
     image[..., :3] += (share * hit)[..., None] * (1 - image[..., :3])

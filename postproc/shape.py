@@ -73,11 +73,22 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
     values = shot.fields[field]
     image, extent = render.picture(shot, magnitude(values), view, lambda seen: plt.get_cmap(colours)(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
+    if shot.cell is not None:
+        draw_cell(axis, shot.frame @ view.T)
     if triad:
         draw_triad(axis, view, numpy.array(extent))
     axis.set_anchor("N")
     axis.autoscale_view()
     axis.axis("off")
+
+
+def draw_cell(axis, corners):
+    """The edges of a cell, its corners as rows of right, up, towards the eye: those that meet in the foremost one before what is in it."""
+    front = corners[:, 2].argmax()
+    for k in range(8):
+        for other in (k | 1, k | 2, k | 4):
+            if other != k:
+                axis.plot(*corners[[k, other], :2].T, color=style.INK, linewidth=0.8, zorder=3 if front in (k, other) else 1)
 
 
 def draw_triad(axis, view, extent):
@@ -112,14 +123,14 @@ def cut(grid, across, place):
 
 def section(shot, place, across=1):
     """Line pieces in which the plane x_{across+1} = place (x2 by default) cuts the surface: shape (pieces, 2, 2), the other two coordinates."""
-    return numpy.delete(cut(shot.sampled(shot.points, SECTION_GRID), across, place), across, axis=2)
+    return numpy.delete(cut(shot.sampled(shot.places, SECTION_GRID), across, place), across, axis=2)
 
 
 def draw_sections(axis, runs, shots):
     for run, shot, color in zip(runs, shots, style.RUNS * len(runs)):
-        x2 = (shot.points[:, 1].min() + shot.points[:, 1].max()) / 2
+        x2 = (shot.frame[:, 1].min() + shot.frame[:, 1].max()) / 2
         rest = run.snapshots()[0].scaled(run)
-        if rest.time < shot.time and run is runs[0]:
+        if rest.time < shot.time and run is runs[0] and shot.cell is None:
             axis.add_collection(LineCollection(section(rest, x2), colors=style.FAINT, linewidths=1, linestyles="-"))
         pieces = section(shot, x2)
         axis.add_collection(LineCollection(pieces, colors=color, linewidths=1.8, capstyle="round"))
@@ -134,7 +145,7 @@ def draw_sections(axis, runs, shots):
         reach = numpy.abs((pieces - middle) @ along).max()
         words = f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}"
         axis.plot(*(middle + numpy.outer([-reach, reach], along)).T, color=color, linestyle=(0, (5, 3)), linewidth=1, label=words)
-    if runs[0].snapshots()[0].time < shots[0].time:
+    if runs[0].snapshots()[0].time < shots[0].time and shots[0].cell is None:
         axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()

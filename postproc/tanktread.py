@@ -23,6 +23,7 @@
 
 import concurrent.futures
 import hashlib
+import itertools
 import json
 import math
 import os
@@ -45,7 +46,7 @@ if not PROGRAM.exists():
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress", "displacement": "length", "velocity": "velocity",
-              "smallest tension": "tension", "largest tension": "tension", "mean curvature": "curvature"}  # of fields
+              "into cell": "length", "smallest tension": "tension", "largest tension": "tension", "mean curvature": "curvature"}  # of fields
 
 
 class Run:
@@ -149,6 +150,13 @@ class Run:
             node = node[part]
         return node
 
+    def cell(self, time):
+        """Of a lattice the three vectors, as rows, of the cell that repeats, over R_C; None without one."""
+        if "cell_1_x1" not in self.series:
+            return None
+        row = numpy.abs(self.series["time"] - time).argmin()
+        return numpy.array([[self.series[f"cell_{k}_x{i}"][row] for i in (1, 2, 3)] for k in (1, 2, 3)]) / self.scale("length")[0]
+
     def require(self, *names):
         """Ends the program with one sentence unless the run recorded these series."""
         for name in names:
@@ -175,6 +183,7 @@ class Snapshot:
 
     def __init__(self, path, time):
         self.path, self.time = pathlib.Path(path), time
+        self.cell = None  # of a lattice, in one that is `scaled`
         self._content = None
 
     def _read(self):
@@ -191,10 +200,21 @@ class Snapshot:
     cells = property(lambda self: self._read()[1])
     fields = property(lambda self: self._read()[2])
 
+    @property
+    def places(self):
+        """The nodes as they are drawn: `points`, of a lattice those in the cell around the origin."""
+        return self.points if self.cell is None else self.points + self.fields["into cell"]
+
+    @property
+    def frame(self):
+        """Points whose extent is that of a picture: `points`, of a lattice the corners of the cell, first along its third vector."""
+        return self.points if self.cell is None else numpy.array(list(itertools.product((-0.5, 0.5), repeat=3))) @ self.cell
+
     def scaled(self, run):
         """The same without units: lengths over R_C, fields as `run.label` says."""
         copy = Snapshot(self.path, self.time)
         points = self.points / run.scale("length")[0]
+        copy.cell = run.cell(self.time)
         copy._content = points, self.cells, {name: values / run.scale(DIMENSIONS.get(name))[0] for name, values in self.fields.items()}
         return copy
 

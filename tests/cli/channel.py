@@ -81,9 +81,9 @@ def an_iterated_wall_does_what_the_factored_one_does():
         fixed = ["Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.01", "Quadrature/tolerance=1e-5", f"Particle/viscosity ratio={ratio}"]
         for solver in "factored", "iterative":
             run(deck(DECK), *_words(fixed + [f"Solvers/wall={solver}", f"Symmetry/use={symmetry}"]), "--output", f"{ratio} {symmetry} {solver}", "--quiet")
-        for name in "velocity_x1", "length_x1", "disturbed_pressure_drop", "pressure_drop_by_flux", "channel_pressure_drop":
+        for name in "velocity_x1", "length_x1", "disturbed_pressure_drop", "pressure_drop_by_flux", "channel_pressure_drop":  # as far as their integrals
             one, other = (series(f"{ratio} {symmetry} {solver}", name)[-1] for solver in ("factored", "iterative"))
-            check(abs(other / one - 1) < 2e-6, f"{name}: {one} factored, {other} iterated, viscosity ratio {ratio}, symmetry {symmetry}")
+            check(abs(other / one - 1) < 1e-5, f"{name}: {one} factored, {other} iterated, viscosity ratio {ratio}, symmetry {symmetry}")
     _refused(["Solvers/wall", "block"], "Solvers/wall=iterative", "Solvers/tube=block")
 
 

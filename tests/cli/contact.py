@@ -67,7 +67,7 @@ def without_the_limiter_the_run_ends():
 
 
 def _same(one, other, tolerance):
-    for name in ("smallest_gap", "contact_force", "contact_impulse", "below/taylor_inertia", "above/centroid_x3", "stresslet_13"):
+    for name in ("smallest_gap", "contact_force", "contact_impulse", "below/taylor_inertia", "above/centroid_x3", "stresslet_11"):
         a, b = series(one, name), series(other, name)
         check(len(a) == len(b), f"{other}: {len(b)} rows, not {len(a)}")
         check(numpy.abs(a - b).max() <= tolerance * max(1, numpy.abs(a).max()), f"{other}: {name} is off by {numpy.abs(a - b).max():.1e}")

@@ -2,6 +2,9 @@
 # Scenes that repeat on a lattice: the same one by several cells and on several ranks, what a tilt that is put back leaves, resumed, and what a deck
 # may not ask for.
 # ranks: 2
+import pathlib
+
+import h5py
 import numpy
 
 from harness import check, deck, main, refused, run, series
@@ -56,6 +59,17 @@ def a_tilt_that_is_put_back_leaves_no_trace():
     before = _row("before", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 1.26, 0, 2.8]}")  # put back at 0.05
     after = _row("after", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, -1.54, 0, 2.8]}")  # was put back
     check(abs(before - after).max() < 1e-8, before - after)
+
+
+def what_has_left_its_cell_is_told_with_what_takes_it_back():
+    _row("left", "--set", "Particles/one/center=[0.3, 5.8, -2.7]")
+    cell = numpy.array([[series("left", f"cell_{k}_x{i}")[-1] for i in (1, 2, 3)] for k in (1, 2, 3)])
+    check(abs(cell - [[2.8, 0, 0], [0, 2.8, 0], [0.04 * 2.8, 0, 2.8]]).max() < 1e-12, "not the sheared cell", cell)
+    with h5py.File(sorted(pathlib.Path("left").glob("snapshot_*.hdf"))[-1]) as file:
+        points, shift = file["VTKHDF/Points"][:], file["VTKHDF/PointData/into cell"][:]
+    check(numpy.ptp(shift, 0).max() == 0 and abs(shift[0] - numpy.round(shift[0] @ numpy.linalg.inv(cell)) @ cell).max() < 1e-12, "no lattice vector", shift[0])
+    middle = (points.min(0) + points.max(0)) / 2
+    check(abs(middle[1] - 5.8) < 0.1 and (abs((middle + shift[0]) @ numpy.linalg.inv(cell)) < 0.51).all(), "not taken into the cell", middle, shift[0])
 
 
 def a_run_is_resumed_with_its_lattice_where_it_was():

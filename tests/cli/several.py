@@ -352,7 +352,7 @@ def mistakes_are_named():
         ("Particles/drop/Interface/motion=sideways", ["Particles/drop/Interface/motion", "relaxed"]),
         ("Solvers/rigid bodies=first kind", ["Solvers/rigid bodies", "Particles/capsule deforms"]),
         ("Membrane/law=Skalak", ["Membrane and Particles contradict", "Particles/defaults"]),
-        ("Tube/section=circle", ["Tube and Flow/type"]),
+        ("Tube/section=circle", ["Particles/capsule", "does not fit into the tube"]),
         ("Expect/taylor_inertia/value=1", ["tolerance"]),
     ):
         error = run("deck.yaml", "--check", "--set", setting, code=2).stderr.strip()
