@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/series.hpp"
+#include "coupling/power_balance.hpp"
 
 namespace tanktread {
 
@@ -64,9 +65,9 @@ void CarryingParticle::own_power(std::vector<double>& row, const motion::State& 
   auto& capsule = static_cast<coupling::Capsule&>(particle_->dynamics());
   const Net velocity = capsule.slides() ? capsule.fluid_velocity(own.x) : own.history.front();
   double &forces = row[column("force_power")], &residual = row[column("power_residual")];
-  const double flow = std::abs(row[column("flow_power")]), before = flow + std::abs(forces);
+  const double flow = row[column("flow_power")], fluids = row[column("fluid_dissipation")], before = coupling::turnover(flow, forces, fluids);
   forces += carried_->load().cwiseProduct(velocity).sum();
-  if (const double all = flow + std::abs(forces); all > 0) residual *= before / all;
+  if (const double all = coupling::turnover(flow, forces, fluids); all > 0) residual *= before / all;
 }
 
 SurfacePicture CarryingParticle::picture(const motion::State& state) {

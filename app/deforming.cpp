@@ -171,7 +171,7 @@ class Deforming : public ParticleSystem {
       power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
     const coupling::Powers powers = (*power_)(state.x, state.history.front());
     whole.flow_power = powers.flow, whole.force_power = powers.forces, whole.fluid_dissipation = powers.fluids;
-    const double all = std::abs(powers.flow) + std::abs(powers.forces);
+    const double all = coupling::turnover(powers.flow, powers.forces, powers.fluids);
     whole.power_residual = all > 0 ? powers.left_over / all : 0;
   }
 

@@ -72,7 +72,7 @@ constexpr Statement table[] = {
      [](const Moment& m, int) { return m.force_power; }, Needs::power},
     {"fluid_dissipation", "", "force length/time", "power that the fluids turn into heat, beyond what the outer one alone would (6.12)", of_run,
      [](const Moment& m, int) { return m.fluid_dissipation; }, Needs::power},
-    {"power_residual", "", "1", "what the balance of power lacks (6.13), over |flow_power| + |force_power|", of_run,
+    {"power_residual", "", "1", "what the balance of power lacks (6.13), over half the magnitudes of its terms", of_run,
      [](const Moment& m, int) { return m.power_residual; }, Needs::power},
     {"stresslet_", "11 22 33 12 13 23", "force length", "particle stresslet (6.7), component #", all_particles | of_several, stresslet},
     {"length_", axes, "length", "extent along #", moving, [](const Moment& m, int c) { return m.shape.lengths[c]; }},

@@ -1,5 +1,6 @@
 #include "coupling/power_balance.hpp"
 
+#include <cmath>
 #include <numeric>
 
 #include "coupling/collocation.hpp"
@@ -18,6 +19,10 @@ stokes::Sites middles(const spline::Space& space) {
 double product(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 
 }  // namespace
+
+double turnover(double flow, double forces, double fluids) {
+  return (std::abs(flow) + std::abs(forces) + std::abs(fluids) + std::abs(flow + forces - fluids)) / 2;
+}
 
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
                            const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)

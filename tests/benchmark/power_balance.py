@@ -41,7 +41,8 @@ def refined(deck, path=()):
 def left_over(outcome):
     """The largest share of a row's power that is left over, when, the root of the mean square, and rows; None without any power."""
     series = outcome.series
-    power = numpy.abs(series["flow_power"]) + numpy.abs(series["force_power"])
+    flow, forces, fluids = (series[name] for name in ("flow_power", "force_power", "fluid_dissipation"))
+    power = (abs(flow) + abs(forces) + abs(fluids) + abs(flow + forces - fluids)) / 2
     if not power.max() > 0:
         return None
     share = numpy.abs(series["power_residual"]) * power / numpy.maximum(power, 0.01 * power.max())
