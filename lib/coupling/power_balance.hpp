@@ -25,8 +25,8 @@ struct Powers {
   double left_over = 0;    ///< of what the velocities miss of (2.22) between the collocation sites (6.13)
 };
 
-/// Of (6.12) half the sum of the magnitudes of what flow and forces put in, of what the fluids dissipate, and of the rest: what is put in where all that
-/// is dissipated or stored is positive.
+/// Of (6.12) half the sum of the magnitudes of what flow and forces put in, of what the fluids dissipate, and of the rest: what is put in where
+/// all that is dissipated or stored is positive.
 double turnover(double flow, double forces, double fluids);
 
 /// The balance of power of particles that deform, and of rigid bodies among them, in affine flows or a tube.
