@@ -6,6 +6,7 @@
 #include "app/gaps.hpp"
 #include "app/member.hpp"
 #include "app/numbers.hpp"
+#include "app/tube.hpp"
 #include "base/formatted.hpp"
 #include "base/instruction_set.hpp"
 #include "coupling/frozen_operator.hpp"
@@ -269,6 +270,7 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
   check_apart(all, scene.domain.cell());
   arrange(all);
   const std::unique_ptr<Body> stacked = stacked_body(all);
+  if (stacked && scene.tube.present) stacked->wall = wall(scene, *stacked);
   return plan(scene, stacked ? *stacked : *all.front().body, ranks);
 }
 

@@ -75,6 +75,12 @@ def ranks_give_the_same():
         check(abs(one[name] - two[name]) < 1e-9 * max(1, abs(one[name])), f"{name}: {one[name]} {two[name]}")
 
 
+def the_plan_says_what_is_around_several():
+    pair = HEAD + "  Particles:\n    defaults: {radius: 0.4, %s}\n    one: {center: [-0.5, 0.0, 0.0]}\n    two: {center: [0.5, 0.0, 0.0]}\n" % BODY
+    told = run(deck(pair, "pair.yaml"), "--check").stdout
+    check(all(word in told for word in ("section `circle`", "period 2, 2 copies", "unknowns of the traction")) and "unbounded" not in told, told)
+
+
 def mistakes_are_told():
     refused(["Tube/periodic length", "0.7", "long"], deck(ONE), "--set", "Tube/periodic length=0.7")
     refused(["Tube/images", "0"], deck(ONE), "--set", "Tube/images=0")
