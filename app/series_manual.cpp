@@ -26,8 +26,9 @@ constexpr Entry fields[] = {
      "the load of (2.23)"},
     {"displacement", "length", "capsule, drop", "x - X from the unstressed shape"},
     {"velocity", "length/time", "capsule, drop, free body", "of the fluids on the surface; of a free body its own"},
-    {"smallest tension", "1", "capsule, drop", "smaller principal tension (3.2) over G_s, of a drop over sigma"},
-    {"largest tension", "1", "capsule, drop", "larger principal tension (3.2) over G_s, of a drop over sigma"},
+    {"smallest tension", "1", "capsule, drop",
+     "smaller principal tension of the law (3.2), without that of the whole area (3.26), over G_s, of a drop over sigma"},
+    {"largest tension", "1", "capsule, drop", "the larger one"},
     {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
     {"concentration", "1", "drop with surfactant", "of surfactant over the initial one"},
     {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
@@ -40,7 +41,7 @@ constexpr Entry fields[] = {
 };
 
 constexpr Entry entries[] = {
-    {"status", "", "all", "why the run ended: `done`, `steady`, `stopped: ` by what, `failed: ` and the reason"},
+    {"status", "", "all", "why the run ended: `done`, `steady`, `past` (Time/end when past), `stopped: ` by what, `failed: ` and the reason"},
     {"final", "", "all", "last value of every series; of a prescribed body also the vectors `drag` and `torque`"},
     {"final in SI", "", "all", "the same in SI units, with the list Units, as texts: a number and its unit"},
     {"expect", "", "all", "of every Expect: name, value found, value expected, error, whether it passed"},

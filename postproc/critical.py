@@ -5,9 +5,10 @@
     critical.py inputs/capsule_stuck.yaml --between 0.006 0.0063 --past 0.5 --set 'Particle/viscosity ratio=5' --set 'Channel/repulsion range=0.01'
 
 A run passes when it ends as past the place x1 = --past. It stays when, over the last ten channel radii over the mean velocity, its centroid went on average
-slower than a thousandth of that velocity, and in the second half of them no faster along the flow than in the first, but for a tenth of that and for
-what a way that wanders as much as this one about its parabola says by chance: a particle at rest wanders with the errors of its integrals. One
-that does neither is made again for twice the time, and once more; after that it is told, and ends the search. A run that is there is not made again.
+slower than a thousandth of that velocity, and in the second half of them no faster along the flow than in the first. Faster by a tenth of that
+thousandth, or by the standard error of the difference, which follows from how far the centroid strays from the parabola through its places, counts as no
+faster: a particle at rest wanders with the errors of its integrals. A run that does neither is made again for twice the time, and once more;
+one that still does neither ends the search, with a message. A run that is there is not made again.
 """
 
 import argparse

@@ -39,7 +39,7 @@ import yaml
 import literature
 import silhouette
 import tanktread
-from sweep import Mistake, answer, decks_of, expect, tell, yaml_of
+from sweep import Mistake, answer, decks_of, expect, keys_of, number, tell, yaml_of
 
 KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
 STEP = 0.01     # of a logarithm, for derivatives on the way
@@ -81,6 +81,8 @@ class Unknown:
         expect(not self.logarithmic or self.start_value > 0, f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
         start = self.number(self.start_value)
+        for word in {"known", "error", "from", "to"} & set(given):
+            number(given[word], f"{self.name}: {word}")
         self.bounds = tuple(self.number(given[word]) if word in given else start + far for word, far in (("from", -FAR), ("to", FAR)))
         self.known, self.error = given.get("known"), given.get("error")
 
@@ -106,7 +108,7 @@ class OutlineData:
         plane = given.get("plane", ["x1", "x3"])
         expect(len(set(plane)) == 2 and set(plane) <= {"x1", "x2", "x3"}, f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
-        table = numbers_of(folder / given["outline"], 2)
+        table = numbers_of(folder / str(given["outline"]), 2)
         self.points = table[:, :2][:, numpy.argsort(plane)]
         if self.error is None and table.shape[1] > 2:
             self.error = float(numpy.sqrt((table[:, 2] ** 2).mean()))
@@ -149,11 +151,13 @@ class SeriesData:
     def __init__(self, given, name, folder):
         known = {"series", "over", "value", "curve", "error", "at", "origin"}
         expect(set(given) <= known and ("value" in given) != ("curve" in given), f"{name}: a series has value or curve, and error, at, over, origin")
+        for word in {"value", "error"} & set(given):
+            number(given[word], f"{name}: {word}")
         self.name, self.series, self.error = name, [given["series"], *([given["over"]] if "over" in given else [])], given.get("error")
         self.places = int("origin" in given)
         expect(not self.places or given["origin"] == "free" and "curve" in given, f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
-            table = numbers_of(folder / given["curve"], 2)
+            table = numbers_of(folder / str(given["curve"]), 2)
             self.times, self.values = table[:, 0], table[:, 1]
             self.error = table[:, 2] if self.error is None and table.shape[1] > 2 else self.error
             self.span = float(numpy.ptp(self.times))  # which the place is told in
@@ -194,11 +198,13 @@ class Experiment:
     def __init__(self, name, given, folder):
         expect(isinstance(given, dict) and given.get("data"), f"the experiment {name} has no data")
         expect(set(given) <= {"set", "unknown", "data"}, f"the experiment {name} has set, unknown and data")
-        self.name, self.settings = name, given.get("set") or {}
-        self.unknowns = [Unknown(key, one, name) for key, one in (given.get("unknown") or {}).items()]
+        self.name, self.settings = name, keys_of(given.get("set"), f"{name}: set")
+        self.unknowns = [Unknown(key, one, name) for key, one in keys_of(given.get("unknown"), f"{name}: unknown").items()]
         kinds = {"outline": OutlineData, "series": SeriesData}
         self.data = []
+        expect(isinstance(given["data"], list), f"{name}: data must be a list of outlines and series")
         for k, one in enumerate(given["data"]):
+            one = keys_of(one, f"{name}: a datum")
             kind = next((kind for word, kind in kinds.items() if word in one), None)
             expect(kind, f"{name}: a datum is an outline or a series")
             self.data.append(kind(one, f"{name}: {one.get('outline') or one['series']}" if k or len(given["data"]) > 1 else f"{name}: data", folder))
@@ -432,16 +438,19 @@ def load(path, study):
     text = yaml_of(path, KEYS)
     folder = pathlib.Path(path).parent
     decks = decks_of(text, path)
-    study.limit = text.get("limit")
-    expect(text.get("experiments"), f"{path} has no experiments")
-    lists = [text, *text["experiments"].values(), *(text.get("laws") or {}).values()]
+    study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
+    expect(keys_of(text.get("experiments"), f"{path}: experiments"), f"{path} has no experiments")
+    laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in keys_of(text.get("laws"), f"{path}: laws").items()}
+    lists = [text, *text["experiments"].values(), *laws.values()]
     expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
-    unknowns = [Unknown(key, given) for key, given in (text.get("unknown") or {}).items()]
+    unknowns = [Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()]
     experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
-    fixed, fits = text.get("set") or {}, []
-    for law, settings in (text.get("laws") or {"the deck's law": {}}).items():
-        settings = fixed | (settings or {})
-        own = {key: Unknown(key, given) for key, given in (settings.pop("unknown", None) or {}).items()}
+    for key, values in keys_of(text.get("next"), f"{path}: next").items():
+        expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
+    fixed, fits = keys_of(text.get("set"), f"{path}: set"), []
+    for law, settings in (laws or {"the deck's law": {}}).items():
+        settings = fixed | settings
+        own = {key: Unknown(key, given) for key, given in keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown").items()}
         fits.append(Fit(law, settings, list(({one.key: one for one in unknowns} | own).values()), experiments, Runs(study, decks, law)))
     return fits, text
 

@@ -72,21 +72,30 @@ class Diagram:
 
     def __init__(self, path, runs):
         text = sweep.yaml_of(path, KEYS)
-        self.runs, self.decks, self.fixed = runs, sweep.decks_of(text, path), text.get("set") or {}
-        kind = text.get("motion", "shear")
+        self.runs, self.decks, self.fixed = runs, sweep.decks_of(text, path), sweep.keys_of(text.get("set"), f"{path}: set")
+        kind = str(text.get("motion", "shear"))
         sweep.expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
         self.kind = MOTIONS[kind]
         self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"  # there is no border in the range
-        self.along, across, curves = (text.get(name) or {} for name in ("along", "across", "curves"))
+        self.along, across, curves, literature = (sweep.keys_of(text.get(name), f"{path}: {name}") for name in ("along", "across", "curves", "literature"))
         sweep.expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
         self.along |= {name: sweep.number(self.along[name], f"{path}: along, {name}") for name in ("from", "to", "within")}
         sweep.expect(0 < self.along["from"] < self.along["to"] and self.along["within"] > 1,
                      f"{path}: along needs positive values that ascend and a factor above 1, but is from {self.along['from']} to {self.along['to']} within "
                      f"{self.along['within']}")
         sweep.expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
-        self.across, self.begin, self.literature = next(iter(across)), float(text.get("begin", 0.4)), text.get("literature") or {}
-        self.rows = {name: self.settings(name, across | (keys or {})) for name, keys in curves.items()}
+        self.across, self.begin = next(iter(across)), sweep.number(text.get("begin", 0.4), f"{path}: begin")
+        sweep.expect(0 <= self.begin < 1, f"{path}: begin is a share of a run, from 0 to less than 1, but is {self.begin:g}")
+        self.literature = {name: self.known(name, rows) for name, rows in literature.items()}
+        self.rows = {name: self.settings(name, across | sweep.keys_of(keys, f"{path}: the curve {name}")) for name, keys in curves.items()}
         self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
+
+    @staticmethod
+    def known(name, rows):
+        """Those of the literature, before anything is run."""
+        sweep.expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
+                     f"{name}: literature has rows of a value across, the lowest and the highest one along")
+        return [[sweep.number(value, name) for value in row] for row in rows]
 
     def settings(self, name, keys):
         """Those of a curve, one for each of its values across."""
@@ -152,6 +161,11 @@ class Diagram:
         study.write_table(directory / "runs.csv", ["curve", self.across, self.along["key"], "motion", *self.kind.measures,
                                                    "processor seconds", "directory"], [(*key, *run) for key, run in self.made.items()])
 
+    @property
+    def found(self):
+        """Whether there is anything to draw."""
+        return any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows)
+
     def draw(self, output):
         figure, axes = plt.subplots(figsize=(6.2, 4.2))
         for (name, rows), color in zip(self.borders.items(), style.RUNS * len(self.borders)):
@@ -170,7 +184,7 @@ class Diagram:
             axes.errorbar(x, middle, [middle - low, high - middle], fmt=mark, color=style.FAINT, markersize=4, linewidth=0.8, capsize=2, label=name)
         axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
         for axis, words in (axes.xaxis, {"xscale": "linear"}), (axes.yaxis, {}):
-            if numpy.divide(*axis.get_view_interval()[::-1]) < 10:  # there is no power of ten to go by
+            if axis.get_data_interval()[0] <= 0 or numpy.divide(*axis.get_view_interval()[::-1]) < 10:  # there is no power of ten to go by
                 axes.set(**words)
                 axis.set_major_locator(axis.get_major_locator() if words else LogLocator(subs=(1, 1.5, 2, 3, 4, 6)))
                 axis.set_major_formatter("{x:g}")
@@ -191,7 +205,9 @@ def main():
         diagram.find()
     finally:  # what is there, when it is stopped
         diagram.write(parsed.output)
-        diagram.draw(parsed.output / "phases.png")
+        if diagram.found:
+            diagram.draw(parsed.output / "phases.png")
+    sweep.expect(diagram.found, f"no border was found, and nothing is drawn: {parsed.output / 'borders.csv'} says how each search ended")
     return 0
 
 

@@ -51,6 +51,18 @@ def number(given, name):
         raise Mistake(f"{name}: {given} is not a number") from None
 
 
+def whole(given, name):
+    """A whole number above 0."""
+    expect(isinstance(given, int) and not isinstance(given, bool) and given > 0, f"{name} must be a whole number above 0, but is {given}")
+    return given
+
+
+def keys_of(given, name):
+    """A list of keys of a YAML file, empty where there is none."""
+    expect(given is None or isinstance(given, dict), f"{name} must be a list of keys with values, but is {given}")
+    return given or {}
+
+
 def tell(progress):
     """On standard error: in place on a terminal, which "" gives free again, as lines elsewhere."""
     if sys.stderr.isatty():
@@ -79,6 +91,7 @@ def decks_of(text, path):
     names = text["deck"] if isinstance(text["deck"], list) else [text["deck"]]
     found = []
     for name in names:
+        expect(isinstance(name, str), f"{path}: a deck is the name of a file, but {name} is none")
         places = [pathlib.Path(path).parent / name, pathlib.Path(name), tanktread.SOURCE / name]
         found.append(next((place.resolve() for place in places if place.is_file()), None))
         expect(found[-1], f"{path}: there is no deck {name}, beside it or where the script is started")
@@ -93,8 +106,8 @@ def values_of(key, given):
     if not isinstance(given, dict):
         return [given]
     expect({"from", "to", "number"} <= set(given), f"{key}: a range has from, to and number")
-    low, high, number = float(given["from"]), float(given["to"]), int(given["number"])
-    return [float(value) for value in spaced(key, given, low, high)(numpy.linspace(0, 1, number))]
+    low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
+    return [float(value) for value in spaced(key, given, low, high)(numpy.linspace(0, 1, whole(given["number"], f"{key}: number")))]
 
 
 def spaced(key, given, low, high):
@@ -108,28 +121,31 @@ def spaced(key, given, low, high):
 
 def drawn(text):
     """Rows of random settings."""
-    number = text.get("number")
-    expect(isinstance(number, int) and number > 0 and isinstance(text.get("keys"), dict), "random needs a number and keys")
-    generator = numpy.random.default_rng(int(text.get("seed", 1)))
+    expect("number" in text and keys_of(text.get("keys"), "random: keys"), "random needs a number and keys")
+    size, seed = whole(text["number"], "random: number"), text.get("seed", 1)
+    expect(isinstance(seed, int) and seed >= 0, f"random: seed must be a whole number, 0 or above, but is {seed}")
+    generator = numpy.random.default_rng(seed)
     columns = {}
     for key, given in text["keys"].items():
         if isinstance(given, list):
-            columns[key] = [given[k] for k in generator.integers(len(given), size=number)]
+            given = values_of(key, given)
+            columns[key] = [given[k] for k in generator.integers(len(given), size=size)]
         else:
             expect(isinstance(given, dict) and {"from", "to"} <= set(given), f"{key}: random values have from and to, or are a list to draw from")
-            columns[key] = [float(value) for value in spaced(key, given, float(given["from"]), float(given["to"]))(generator.random(number))]
+            low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
+            columns[key] = [float(value) for value in spaced(key, given, low, high)(generator.random(size))]
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
 def combinations(text):
     """The settings of every run that a study asks for, each once."""
-    grid = {key: values_of(key, given) for key, given in (text.get("grid") or {}).items()}
-    together = {key: values_of(key, given) for key, given in (text.get("together") or {}).items()}
+    grid = {key: values_of(key, given) for key, given in keys_of(text.get("grid"), "grid").items()}
+    together = {key: values_of(key, given) for key, given in keys_of(text.get("together"), "together").items()}
     expect(len({len(values) for values in together.values()}) <= 1, "the lists of `together` must be equally long")
     groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
               [dict(zip(together, row)) for row in zip(*together.values())] or [{}],
-              drawn(text["random"]) if text.get("random") else [{}]]
-    fixed = text.get("set") or {}
+              drawn(text["random"]) if keys_of(text.get("random"), "random") else [{}]]
+    fixed = keys_of(text.get("set"), "set")
     rows = [fixed | a | b | c for a, b, c in itertools.product(*groups)]
     return [row for k, row in enumerate(rows) if row not in rows[:k]]
 
@@ -139,14 +155,15 @@ def columns_of(text, path):
     record = text.get("record")
     expect(record, f"{path} records nothing: name series under `record`")
     if isinstance(record, list):
+        expect(all(isinstance(name, str) for name in record), f"{path}: `record` as a list is of names of series")
         record = {name: name for name in record}
     found = {}
-    for name, given in record.items():
-        given = {"series": given} if isinstance(given, str) else given
-        take = given.get("take", "last")
+    for name, given in keys_of(record, f"{path}: record").items():
+        given = {"series": given} if isinstance(given, str) else keys_of(given, f"{path}: {name}")
+        take = str(given.get("take", "last"))
         expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
         expect(not set(given) - {"series", "take", "at"}, f"{path}: {name} has series, take and at")
-        found[name] = (given.get("series", name), take, given.get("at"))
+        found[name] = (given.get("series", name), take, number(given["at"], f"{path}: {name}, at") if "at" in given else None)
     return found
 
 
@@ -175,9 +192,9 @@ class Sweep:
 
     def __init__(self, path, study):
         text = yaml_of(path, KEYS)
-        self.name, self.study, self.decks, self.ranks = pathlib.Path(path).stem, study, decks_of(text, path), int(text.get("ranks", 1))
+        self.name, self.study, self.decks, self.ranks = pathlib.Path(path).stem, study, decks_of(text, path), whole(text.get("ranks", 1), f"{path}: ranks")
         self.rows, self.columns = combinations(text), columns_of(text, path)
-        self.study.limit = text.get("limit")
+        self.study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row) if len({str(row.get(key)) for row in self.rows}) > 1]
 
     def make(self):

@@ -25,6 +25,7 @@ import tanktread
 from style import plt
 
 DEGREES = 16, 30, 40  # of the polynomials, from the first on each started from the one before
+ROUND = 1e-2  # by which the extents across the axis may differ
 COSINE, WEIGHT = legendre.leggauss(400)
 
 
@@ -63,7 +64,13 @@ class Energy:
 
         sweep.expect(run.value("Membrane/law", "") == "surface tension" and run.value("Membrane/bending reference", "") == "flat",
                      f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
-        self.area, self.volume = run.series["area"][0], run.series["volume"][0]
+        sweep.expect(run.summary, f"{run.name} has not come to its end")
+        last = [run.series[f"length_x{k}"][-1] for k in (1, 2)]
+        sweep.expect(abs(last[0] / last[1] - 1) < ROUND,
+                     f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not axisymmetric about x3")
+        sweep.expect(run.value("Flow/type", "") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
+        numbers = run.summary["numbers"]
+        self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
         self.tension, self.bending, self.curvature = of("surface tension"), of("bending modulus"), of("spontaneous curvature")
         self.of_area = of("global area dilatation") * self.tension / self.area
         self.of_leaves = numpy.pi * of("area difference modulus") * self.bending / self.area
@@ -122,13 +129,14 @@ def errors(path, meshes, output):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("deck", type=pathlib.Path, help="a vesicle, axisymmetric about x3")
+    parser.add_argument("deck", type=pathlib.Path, help="a vesicle, axisymmetric about x3; without --meshes the directory of its run will do")
     parser.add_argument("--meshes", type=int, nargs="*", default=[], metavar="N", help="elements per side of further runs")
     parser.add_argument("-o", "--output", default="vesicle.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    deck = study.deck_of(arguments.deck)
+    deck = arguments.deck if arguments.deck.is_dir() and not arguments.meshes else study.deck_of(arguments.deck)
     run = tanktread.run(deck)
+    run.require("energy", "length_x1", "length_x2", "length_x3")
     series = run.series
     outline, energy = at_rest(Energy(run), series["length_x3"][-1] / series["length_x1"][-1])
     print(f"{run.name}: energy {series['energy'][-1]:.9g}, relative error {series['energy'][-1] / energy - 1:.1e}")
@@ -150,7 +158,8 @@ def main():
         axes[2].set(xlabel="control points", ylabel="relative error of the energy")
         axes[2].legend()
     style.save(figure, arguments.output)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sweep.answer(main)

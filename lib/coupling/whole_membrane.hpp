@@ -16,8 +16,9 @@ namespace tanktread::coupling {
 ///
 ///   E = k/2 (Q - Q0)^2,   dE/dx = k (Q - Q0) q,   q = dQ/dx,   Q = x.q/m
 ///
-/// Area A: k = K/A0, m = 2 (3.26). Difference between the areas of leaves a unit apart, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27). Q is
-/// homogeneous in x, of degree m, so that its gradient tells it; gradients are given complete, by whoever shares them over ranks.
+/// Area A: k = K/A0, m = 2 (3.26). Difference between the areas of leaves a unit apart, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27). A0 is that
+/// of the unstressed surface. Q is homogeneous in x, of degree m, so that its gradient tells it. The caller sums what `gradients` gives over ranks and
+/// images before any other function takes it.
 class WholeMembrane {
  public:
   /// `space` must outlive this.
@@ -29,6 +30,7 @@ class WholeMembrane {
   /// What `elements` give to the gradient q of each measure, as Membrane::load.
   std::vector<Net> gradients(const Net& x, std::span<const int> elements) const;
 
+  /// Of particle p, both measures together; `q` are the complete gradients at x, here and below.
   double energy(const Net& x, const std::vector<Net>& q, std::size_t p) const;
 
   /// Adds dE/dx_A to d.
@@ -50,11 +52,11 @@ class WholeMembrane {
     double tension = 0;         // k (Q - Q0) where linearised
   };
   struct Measure {
-    int degree;                                               // m
-    std::vector<std::pair<double, membrane::Membrane>> parts;  // Q is the sum of so many times their energies
-    std::vector<Of> particles;                                // that resist
-    std::vector<membrane::Tangent> tangents = {};             // of the parts
-    Net q = {};                                               // where linearised
+    int degree;                                                // m
+    std::vector<std::pair<double, membrane::Membrane>> parts;  // factors and membranes: Q is the sum of each factor times the energy
+    std::vector<Of> particles;                                 // that resist
+    std::vector<membrane::Tangent> tangents = {};              // of the parts
+    Net q = {};                                                // where linearised
 
     double operator()(const Net& x, const Net& gradient, const spline::Block& block) const {
       return block.rows(x).cwiseProduct(block.rows(gradient)).sum() / degree;

@@ -106,7 +106,8 @@ void Options::declare(deck::Section& section) {
               "kbar/E_b of area-difference elasticity (3.27): the two leaves of a bilayer slide on each other, but keep the number of their "
               "molecules; 0: none");
   section.key("area difference", leaf_difference, deck::positive(), "1",
-              "of the leaves, without stress, over that of a sphere of the unstressed surface's area; if not given, that surface's own");
+              "N0/(8 pi R): the difference of the areas of leaves without stress over that of a sphere of the area A0 = 4 pi R^2; if not given, the "
+              "unstressed surface's own");
   section.key("shear viscosity", shear_viscosity, deck::not_negative(), "viscosity x length",
               "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
   section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
