@@ -75,6 +75,8 @@ def main():
     parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS", help="fit from here on (default: %(default)g)")
     parser.add_argument("-o", "--output", default="growth.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
+    if arguments.file and not pathlib.Path(arguments.file).is_file():
+        sys.exit(f"{arguments.file} is no file: give what the benchmark wrote")
     with open(arguments.file or measured()) as stream:
         benchmarks = json.load(stream)["benchmarks"]
     trees, dense = rows(benchmarks, False), rows(benchmarks, True)

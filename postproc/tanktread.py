@@ -384,6 +384,14 @@ class Outcome:
             return 0.0
 
 
+def deck_at(name):
+    """Where a deck is, as a whole path: looked for from where the script is started, then from the source directory."""
+    found = next((place for place in (pathlib.Path(name), SOURCE / name) if place.is_file()), None)
+    if found is None:
+        sys.exit(f"{name}: there is no such deck")
+    return found.resolve()
+
+
 class Study:
     """Runs of decks with keys changed: made once, kept in `directory`, and found again by what they are made of. `limit`: processor seconds that one
     run may take (None: any). `jobs`: runs at a time. `fresh`: makes also those that are there."""
@@ -394,8 +402,8 @@ class Study:
         self._manual = None
 
     def run(self, decks, settings, ranks=1):
-        """The outcome of `tanktread decks… --set …`. `decks`: a path, from the source directory if it is not a whole one, or several; `settings`:
-        {"Section/key": value}. One that a signal stopped goes on from its checkpoint."""
+        """The outcome of `tanktread decks… --set …`. `decks`: a path (`deck_at`), or several; `settings`: {"Section/key": value}.
+        One that a signal stopped goes on from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note = where / "outcome.json"
@@ -409,7 +417,7 @@ class Study:
         else:
             shutil.rmtree(where, ignore_errors=True)  # of an earlier program, or broken off
             where.mkdir(parents=True)
-            words = [str(SOURCE / deck) for deck in decks] + [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
+            words = [str(deck_at(deck)) for deck in decks] + [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
             words += ["--output", str(where)]
         made = self._make(launcher + [str(self.program)] + words + ["--quiet"])
         partial = note.with_suffix(".part")  # a note is whole, or there is none
@@ -442,7 +450,7 @@ class Study:
     @staticmethod
     def name(decks, settings, ranks=1):
         """Of a run's directory, by the content of the decks and the settings: a run of a deck that has changed is another run."""
-        texts = [(SOURCE / deck).read_text() for deck in decks]
+        texts = [deck_at(deck).read_text() for deck in decks]
         text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 

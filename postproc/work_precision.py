@@ -14,6 +14,7 @@ import argparse
 import itertools
 import math
 import pathlib
+import sys
 
 import needs  # before what it looks for
 import numpy
@@ -29,6 +30,8 @@ class Scene:
     """A study file. `options(choice)`: {option: settings}; the first is the default."""
 
     def __init__(self, path, curves, without=()):
+        if not pathlib.Path(path).is_file():
+            sys.exit(f"{path} is no file: give a study of tests/benchmark")
         text = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
         self.name, self.title = pathlib.Path(path).stem, text["title"]
         self.decks, self.base, self.choices = text["deck"], text.get("base", {}), text["choices"]

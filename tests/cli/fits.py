@@ -176,6 +176,8 @@ def mistakes_are_one_sentence():
                           ({"experiments": {"a": {"data": [datum | {"series": "tailor"}]}}}, "no series tailor"),
                           ({"experiments": {"a": {"data": [datum | {"at": 9.0}]}}}, "before its data"),
                           ({"experiments": {"a": {"data": [datum | {"origin": "free"}]}}}, "is of a curve"),
+                          ({"set": 3}, "set must be a list of keys"), ({"laws": {"one": 3}}, "the law one must be"), ({"next": {"A/b": 3}}, "a list of values"),
+                          ({"experiments": {"a": {"data": [datum | {"value": "much"}]}}}, "much is not a number"),
                           ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),
                           ({"set": {"Time/minimum step": 0.9, "Time/initial step": 0.95, "Membrane/capillary number": 1e-3}, "unknown": {"Particle/radius": 1.0}},
                            "all runs fail")):

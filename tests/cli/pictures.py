@@ -183,8 +183,22 @@ def the_readme_names_every_script_and_its_commands_name_what_is_there():
         check((SOURCE / path).exists(), f"README.md names {path}, which is not there")
 
 
+def a_vesicle_is_drawn_beside_an_axisymmetric_shape_and_another_particle_is_refused():
+    vesicle = DECK.replace("simple shear", "quiescent").replace("law: neo-Hookean, capillary number: 0.3",
+                                                                "law: surface tension, surface tension: 1, bending modulus: 1, bending reference: flat")
+    deck(vesicle, "vesicle.yaml")
+    said = _script("vesicle.py", "vesicle.yaml", "-o", "vesicle.png")
+    check("relative error" in said and pathlib.Path("vesicle.png").exists(), said)
+    check("relative error" in _script("vesicle.py", "results/vesicle", "-o", "again.png"), "of the directory of a run")
+    deck(vesicle.replace("shape: sphere", "shape: ellipsoid, semi-axes: [1.3, 1.0, 1.0]"), "along_x1.yaml")
+    deck(DECK, "capsule.yaml")
+    for path, words in (("along_x1.yaml", "not axisymmetric about x3"), ("capsule.yaml", "the law `surface tension`"), ("nowhere.yaml", "no such deck")):
+        said = _script("vesicle.py", path, code=2)
+        check(words in said.splitlines()[-1], said)
+
+
 def help_is_there_and_absent_results_are_named():
-    for name in "deformation.py", "shape.py", "read.py", "animation.py":
+    for name in "deformation.py", "shape.py", "read.py", "animation.py", "growth.py", "work_precision.py", "tweezers.py":
         check("usage" in _script(name, "--help"), name)
         said = _script(name, "nowhere", code=1)
         check("nowhere" in said and said.count("\n") == 1, said)

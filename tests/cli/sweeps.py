@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from unittest import mock
 
 import h5py
 import numpy
@@ -131,6 +132,31 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
     refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
     check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
+    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "list of keys")):
+        deck(f"deck: deck.yaml\nalong: {{key: a, from: 1, to: 2, within: 1.1}}\nacross: {{b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
+        refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
+        check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
+
+
+def a_phase_diagram_without_a_border_is_a_table_and_a_sentence():
+    deck(DECK)
+    deck("deck: deck.yaml\nalong: {key: Flow/shear rat, from: 1, to: 2, within: 1.1}\nacross: {Particle/radius: [1]}\ncurves: {one: {}}\n", "phases.yaml")
+    ended = subprocess.run([SOURCE / "postproc/phases.py", "phases.yaml"], capture_output=True, text=True)
+    check(ended.returncode == 2 and "no border was found" in ended.stderr and len(ended.stderr.splitlines()) == 1, ended.stderr)
+    check("shear rat" in pathlib.Path("results/phases/borders.csv").read_text(), "why there is none")
+
+
+def a_diagram_over_values_that_are_not_positive_is_drawn():
+    import phases
+    deck(DECK)
+    deck("deck: deck.yaml\nalong: {key: a, from: 1, to: 20, within: 1.1}\nacross: {b: [-1, 0, 1]}\ncurves: {one: {}}\n", "phases.yaml")
+    diagram = phases.Diagram("phases.yaml", None)
+    diagram.holds = lambda name, row, value: value < 3 + row["b"]
+    diagram.find()
+    with mock.patch.object(phases.style, "save") as save:
+        diagram.draw("phases.png")
+    axes = save.call_args.args[0].axes[0]
+    check(axes.get_xscale() == "linear" and axes.get_xlim()[0] < -1, axes.get_xlim())
 
 
 def what_drifts_over_many_turns_is_told_from_what_swings():
@@ -161,6 +187,7 @@ def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
     found = tanktread.run(path, {"Particle/semi-axes": [1.0, 1.0, 0.8], "Particle/shape": "spheroid"})
     check(found.value("Particle/shape") == "spheroid" and found.series["time"][-1] == 0.5, "another run")
     made = (found.directory / "run.h5").stat().st_mtime_ns
+    check(tanktread.run("deck.yaml", {"Particle/shape": "spheroid", "Particle/semi-axes": [1.0, 1.0, 0.8]}).directory == found.directory, "by its name from here")
     check((tanktread.run(path, {"Particle/shape": "spheroid", "Particle/semi-axes": [1.0, 1.0, 0.8]}).directory / "run.h5").stat().st_mtime_ns == made, "again")
     shot = found.snapshots()[-1]
     grid = shot.sampled(shot.points, 4)
@@ -229,7 +256,12 @@ def mistakes_are_one_sentence():
     deck(DECK)
     for text, words in (("deck: nowhere.yaml\nrecord: [a]", "no deck nowhere.yaml"), ("deck: deck.yaml", "records nothing"),
                         ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),
-                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML")):
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML"),
+                        ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a list of keys"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a list of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: x, to: 2, number: 3}}", "x is not a number"),
+                        ("deck: deck.yaml\nrecord: [a]\nrandom: {number: -1, keys: {A/b: [1]}}", "a whole number above 0"),
+                        ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number above 0"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):
         deck(text, "study.yaml")
         said = _sweep("study.yaml", code=2)
         check(words in said and said.count("\n") == 1, said)
