@@ -16,6 +16,7 @@ constexpr int limited_steps = 10;   // in a row: fewer are the start
 constexpr double folding = 0.05;    // jacobian_ratio; even elements have 0.5 and more, those at a plain pole 0.1
 constexpr double slenderness = 10;  // aspect_ratio
 constexpr double lost_volume = 1e-3;
+constexpr double stiff_area = 3e4;  // of the whole membrane, over what else resists: steps become many
 
 bool elastic(const Scene& scene) { return !scene.particle.rigid() && scene.membrane.law != "surface tension"; }
 
@@ -76,6 +77,9 @@ std::string Warnings::choice() const {
   if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == "fixed")
     return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
            "adaptive";
+  if (const double k = scene_.membrane.global_area_dilatation;
+      k > stiff_area && k * scene_.modulus() > stiff_area * scene_.bending_modulus() / (scene_.radius() * scene_.radius()))
+    return "the whole area resists so much that steps become many: a Membrane/global area dilatation of 1e4 keeps it nearly as well";
   return {};
 }
 

@@ -73,7 +73,8 @@ void Options::declare(deck::Section& section) {
               "integrated; 1 for C of 50 and more, whose area no mesh can keep at 16 points an element without locking; 0: as the rest of the law");
   section.key("global area dilatation", global_area_dilatation, deck::not_negative(), "1",
               "K/G_s of a resistance to a change of the whole area, K (A - A0)^2/(2 A0), A0 the unstressed surface's (3.26), beside what the law "
-              "resists in each place; K over the surface tension for a drop, with bending a vesicle; 0: none");
+              "resists in each place; K over the surface tension for a drop, with bending a vesicle; 0: none. What is left of the change falls "
+              "like 1/K; beyond some 1e4 steps become many");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
               "m of the law `Mooney-Rivlin`: 1 is the neo-Hookean one; what is left of 1 hardens");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},

@@ -35,6 +35,12 @@ def bending_or_inflation_silences_it():
         check(told == [] and kept == [], cure, told, kept)
 
 
+def a_whole_area_that_makes_steps_many_is_told():
+    few, many = (_said("Membrane/global area dilatation=" + k, "Time/final time=0.01") for k in ("1e4", "1e5"))
+    check(few == ([], []), few)
+    check(len(many[0]) == len(many[1]) == 1 and "of 1e4" in many[0][0], many)
+
+
 def a_fixed_step_beyond_the_limit_is_told_before_the_run_fails():
     told, _ = _said("Time/scheme=bs3", "Time/fixed step=0.3", "Membrane/capillary number=0.1", "Time/final time=30", code=3)
     check(any("Time/scheme" in line for line in told), told)
