@@ -151,8 +151,7 @@ def a_diagram_over_values_that_are_not_positive_is_drawn():
     deck(DECK)
     deck("deck: deck.yaml\nalong: {key: a, from: 1, to: 20, within: 1.1}\nacross: {b: [-1, 0, 1]}\ncurves: {one: {}}\n", "phases.yaml")
     diagram = phases.Diagram("phases.yaml", None)
-    diagram.holds = lambda name, row, value: value < 3 + row["b"]
-    diagram.find()
+    diagram.borders["one"] = [(b, 3.0 + b, 3.2 + b, "edge") for b in (-1, 0, 1)]
     with mock.patch.object(phases.style, "save") as save:
         diagram.draw("phases.png")
     axes = save.call_args.args[0].axes[0]
