@@ -19,6 +19,7 @@ import tanktread
 from deformation import unbroken
 from style import plt
 
+LEAST_WIDTH = 100  # pixels
 DEFORMABLE = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}  # what stands beside an axis, and its series
 RIGID = {"incl., °": ["inclination"], "ω₂": ["angular_velocity_x2"]}
 
@@ -33,6 +34,8 @@ def main():
     parser.add_argument("--width", type=int, default=720, help="of the animation, in pixels (default: %(default)s)")
     parser.add_argument("--frame", type=float, metavar="TIME", help="one picture of this time instead, a PNG")
     arguments = parser.parse_args()
+    if arguments.width < LEAST_WIDTH or arguments.rate <= 0:
+        parser.error(f"--width must be at least {LEAST_WIDTH} and --rate positive, but they are {arguments.width} and {arguments.rate:g}")
 
     run = tanktread.run(arguments.results)
     every = [shot.scaled(run) for shot in run.snapshots()]

@@ -7,8 +7,6 @@ The curve is a table with the columns `t`, which is time times the rate of the f
 """
 
 import argparse
-import pathlib
-import sys
 
 import needs  # before what it looks for
 import numpy
@@ -45,9 +43,7 @@ def main():
     parser.add_argument("-o", "--output", default="convergence.png", metavar="FILE", help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    if not pathlib.Path(arguments.curve).is_file():
-        sys.exit(f"{arguments.curve} is no file: give a table with named columns")
-    curve = numpy.genfromtxt(arguments.curve, delimiter=",", names=True)
+    curve = literature.table(arguments.curve, ("t", arguments.series))
     runs = sorted((Errors(tanktread.run(directory), curve, arguments.series) for directory in arguments.results), key=lambda one: one.points)
     families = sorted({one.family for one in runs})
     color = dict(zip(families, style.RUNS * len(families)))

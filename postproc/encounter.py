@@ -11,6 +11,7 @@ import sys
 import needs  # before what it looks for
 import numpy
 
+import literature
 import style
 import tanktread
 from style import plt
@@ -39,8 +40,7 @@ def main():
         least = numpy.argmin(run.series["smallest_gap"])
         print(f"{run.name}: smallest gap {run.series['smallest_gap'][least] / run.radius:.5f} R_C at dx = {dx[least]:.3f}, largest dz {dz.max():.5f}")
     if arguments.curve:
-        curve = numpy.genfromtxt(arguments.curve, delimiter=",", comments="#")
-        curve = curve[numpy.isfinite(curve).all(axis=1)] * arguments.unit
+        curve = literature.table(arguments.curve) * arguments.unit
         path.plot(curve[:, 0], curve[:, 1], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
     path.set_ylabel("dz / R$_C$")
     path.legend()

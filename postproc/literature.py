@@ -3,6 +3,8 @@
 import math
 import pathlib
 import re
+import sys
+import warnings
 
 import numpy
 
@@ -16,6 +18,8 @@ SHEAR_SOURCES = {
     "huet_2023_front_tracking": "Huet & Wachs 2023",
 }
 
+MORE = ("pre-inflation", "bending modulus", "bending number", "global area dilatation", "shear viscosity", "dilatational viscosity", "forces")  # than a law
+
 
 class Curve:
     """`label`, times `t`, deformation `d`, `inclination` in degrees or None, and whether it is `exact` (a computed reference, all digits good)."""
@@ -27,13 +31,27 @@ class Curve:
         self.inclination = None if inclination is None else numpy.asarray(inclination)[order]
 
 
+def table(path, names=()):
+    """A user's file: its columns of these names, or without names its rows of numbers, two or more. One sentence and the end of the program where it is none."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = numpy.genfromtxt(path, delimiter=",", comments="#", names=True if names else None)
+    except (OSError, ValueError, IndexError):
+        found = numpy.zeros(0)
+    whole = found.size > 1 and set(names) <= set(found.dtype.names or ()) if names else found.ndim == 2 and found.shape[1] > 1
+    if not whole:
+        sys.exit(f"{path} is no table {'with the columns ' + ', '.join(names) if names else 'of two columns of numbers'}, separated by commas")
+    return found if names else found[numpy.isfinite(found).all(axis=1)]
+
+
 def curves(run, folder):
     """Those of a folder (None: none) that belong to the run's scene: a neo-Hookean sphere in simple shear, by its capillary number."""
     if folder is None:
         return []
     folder = pathlib.Path(folder)
     membrane = run.deck.get("Membrane", {})
-    plain = all(not membrane.get(key, 0) for key in ("pre-inflation", "bending modulus")) and run.value("Particle/viscosity ratio", 1) == 1
+    plain = run.value("Particle/viscosity ratio", 1) == 1 and not any(membrane.get(key) for key in MORE)
     shear = run.value("Flow/type") == "simple shear" and run.value("Particle/shape", "sphere") == "sphere"
     ca = membrane.get("capillary number")
     if not (folder.is_dir() and plain and shear and membrane.get("law") == "neo-Hookean" and ca):

@@ -9,6 +9,7 @@ import needs  # before what it looks for
 import numpy
 from matplotlib.collections import LineCollection
 
+import literature
 import shape
 import style
 import tanktread
@@ -37,8 +38,7 @@ def main():
         print(f"{run.name}: gap from {run.series['gap'][0] / run.radius:.6g} to {run.series['gap'][-1] / run.radius:.6g} R_C; "
               f"velocity away from the wall {away[-1]:.5g}, along it {along[-1]:.5g}")
     if arguments.curve:
-        curve = numpy.genfromtxt(arguments.curve, delimiter=",", comments="#")
-        curve = curve[numpy.isfinite(curve).all(axis=1)]
+        curve = literature.table(arguments.curve)
         gap.plot(curve[:, 0], curve[:, 1], style.MARKS[0], color=style.INK, markersize=3, label="exact")
     gap.set_yscale("log")
     gap.set_ylabel("gap / R$_C$")

@@ -1,5 +1,8 @@
 """How the pictures look, in one place. Importing it selects a backend that needs no display."""
 
+import pathlib
+import sys
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -41,6 +44,15 @@ plt.rcParams.update({
 
 
 def save(figure, path):
-    figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
+    """Writes a figure, into a folder that is made if it is not there, or ends the program with one sentence."""
+    path, kinds = pathlib.Path(path), figure.canvas.get_supported_filetypes()
+    path = path if path.suffix or not path.name else path.with_name(path.name + ".png")
+    if path.suffix[1:].lower() not in kinds:
+        sys.exit(f"a picture has a name that ends in .{', .'.join(sorted(kinds))}, but was to be named {path}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
+    except OSError as error:
+        sys.exit(f"{path} cannot be written: {error.strerror}")
     plt.close(figure)
     print(path)

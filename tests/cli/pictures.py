@@ -197,6 +197,19 @@ def a_vesicle_is_drawn_beside_an_axisymmetric_shape_and_another_particle_is_refu
         check(words in said.splitlines()[-1], said)
 
 
+def pictures_and_curves_that_cannot_be_are_one_sentence():
+    name, folder = _alone(), pathlib.Path("not_a_folder")
+    folder.write_text("")
+    pathlib.Path("curve.csv").write_text("nothing\nof,a,table\n")
+    for script, words, code, said in (("shape.py", ["-o", "not_a_folder/shape.png"], 1, "cannot be written"), ("shape.py", ["-o", "shape.doc"], 1, "ends in"),
+                                      ("animation.py", ["--width", "0"], 2, "--width must be"), ("convergence.py", ["--curve", "curve.csv"], 1, "no table"),
+                                      ("convergence.py", ["--curve", "none.csv"], 1, "with the columns t, taylor_inertia")):
+        heard = _script(script, name, *words, code=code)
+        check(said in heard.splitlines()[-1], script, heard)
+    _script("shape.py", name, "-o", "new/folder/shape")
+    check(pathlib.Path("new/folder/shape.png").exists(), "a folder is made, and a name without ending is of a PNG")
+
+
 def help_is_there_and_absent_results_are_named():
     for name in "deformation.py", "shape.py", "read.py", "animation.py", "growth.py", "work_precision.py", "tweezers.py":
         check("usage" in _script(name, "--help"), name)
