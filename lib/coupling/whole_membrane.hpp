@@ -16,9 +16,9 @@ namespace tanktread::coupling {
 ///
 ///   E = k/2 (Q - Q0)^2,   dE/dx = k (Q - Q0) q,   q = dQ/dx,   Q = x.q/m
 ///
-/// Area A: k = K/A0, m = 2 (3.26). Difference between the areas of leaves a unit apart, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27). A0 is that
-/// of the unstressed surface. Q is homogeneous in x, of degree m, so that its gradient tells it. The caller sums what `gradients` gives over ranks and
-/// images before any other function takes it.
+/// Area A: k = K/A0, m = 2 (3.26). Difference between the areas of leaves a unit apart, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27). A0 is
+/// that of the unstressed surface. Q is homogeneous in x, of degree m, so that its gradient tells it. The caller sums what `gradients` gives over
+/// ranks and images before any other function takes it.
 class WholeMembrane {
  public:
   /// `space` must outlive this.
