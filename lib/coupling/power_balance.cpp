@@ -4,15 +4,21 @@
 #include <numeric>
 
 #include "coupling/collocation.hpp"
+#include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
 
-stokes::Sites middles(const spline::Space& space) {
+/// Two points a direction: between collocation sites the velocity errs like the square of a parabola, which the middle alone counts twice.
+const quadrature::TensorRule& rule() { return quadrature::tensor_gauss(2); }
+
+/// Of all elements, in their order.
+stokes::Sites places(const spline::Space& space) {
   stokes::Sites sites;
-  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) sites.push_back({{e, 0.5, 0.5}});
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
+    for (int q = 0; q < rule().size(); ++q) sites.push_back({{e, rule().s[q], rule().t[q]}});
   return sites;
 }
 
@@ -26,11 +32,11 @@ double turnover(double flow, double forces, double fluids) {
 
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
                            const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
-    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), middles_(middles(space)), values_(value_matrix(space, middles_)),
-      unstressed_(unstressed), mass_(space), single_(stokes::Layer::Kernel::single_layer, space, middles_, quadrature) {
+    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),
+      unstressed_(unstressed), mass_(space), single_(stokes::Layer::Kernel::single_layer, space, places_, quadrature) {
   single_.set_reference(unstressed);
   if (const std::vector<double> contrasts = viscosity_contrasts(capsule.particles()); !contrasts.empty())
-    double_.emplace(stokes::Layer::Kernel::double_layer, space, middles_, quadrature, contrasts);
+    double_.emplace(stokes::Layer::Kernel::double_layer, space, places_, quadrature, contrasts);
   if (!wall) return;
   single_.set_wall(*wall);
   if (double_) double_->set_wall(*wall);
@@ -44,7 +50,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   Powers powers;
   powers.flow = of_flow(x, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
-  std::vector<int> all(middles_.size());
+  std::vector<int> all(space_.elements.size());
   std::iota(all.begin(), all.end(), 0);
   capsule_.membrane().load(x, all, stored);
   capsule_.add_whole_membrane_load(x, stored);
@@ -79,20 +85,21 @@ double PowerBalance::of_flow(const Net& x, const Net& work, const Net& inside) {
   return power;
 }
 
-/// int (Df - p n).r by the rule of the middles, of r there, p the mean of Df.n over each particle: a uniform pressure does no work, and what
-/// quadrature leaves of its layer counts for nothing.
+/// int (Df - p n).r by Gauss' rule, p the mean of Df.n over each particle: a uniform pressure does no work, and what quadrature leaves of its
+/// layer counts for nothing.
 double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
   const Net loads = values_ * load;
   double sum = 0;
   for (const Particle& particle : capsule_.particles()) {
     double area = 0, pressure = 0, flux = 0;
-    for (int k = 0; k < particle.block.n_elements; ++k) {
-      const int e = particle.block.first_element + k;
-      const spline::Site& middle = middles_[static_cast<std::size_t>(e)].front();
-      const surface::Point at = surface::point(space_, x, middle);
-      const Vec3 force = surface::point(space_, measured, middle).jacobian * loads.row(e).transpose(), lacks = left.row(e);
+    const int first = particle.block.first_element * rule().size(), n = particle.block.n_elements * rule().size();
+    for (int i = first; i < first + n; ++i) {
+      const spline::Site& place = places_[static_cast<std::size_t>(i)].front();
+      const double weight = rule().weights[i % rule().size()];
+      const surface::Point at = surface::point(space_, x, place);
+      const Vec3 force = weight * surface::point(space_, measured, place).jacobian * loads.row(i).transpose(), lacks = left.row(i);
       sum += force.dot(lacks);
-      area += at.jacobian, pressure += force.dot(at.n), flux += at.jacobian * at.n.dot(lacks);
+      area += weight * at.jacobian, pressure += force.dot(at.n), flux += weight * at.jacobian * at.n.dot(lacks);
     }
     sum -= pressure / area * flux;
   }
@@ -107,7 +114,7 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   return all;
 }
 
-/// v less the right-hand side of (2.22), at the middles.
+/// v less the right-hand side of (2.22), at the places.
 Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell()) {
@@ -120,8 +127,8 @@ Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
       if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
     }
   }
-  const std::vector<int> own = ranks_.share(static_cast<int>(middles_.size()));
-  Net u = Net::Zero(static_cast<Eigen::Index>(middles_.size()), 3), twice = u;
+  const std::vector<int> own = ranks_.share(static_cast<int>(places_.size()));
+  Net u = Net::Zero(static_cast<Eigen::Index>(places_.size()), 3), twice = u;
   single_.place(x, capsule_.measure());
   single_.apply(load, own, u);
   u /= -viscosity_;

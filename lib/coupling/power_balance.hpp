@@ -36,7 +36,7 @@ class PowerBalance {
   PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity, const quadrature::Options& quadrature,
                const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks);
 
-  /// At x, where control points move by `slope`. One evaluation of the layers at the middles of the elements. Collective.
+  /// At x, where control points move by `slope`. One evaluation of the layers at 2 x 2 Gauss points of each element. Collective.
   Powers operator()(const Net& x, const Net& slope);
 
  private:
@@ -49,7 +49,7 @@ class PowerBalance {
   const spline::Space& space_;
   double viscosity_;
   const Ranks& ranks_;
-  stokes::Sites middles_;
+  stokes::Sites places_;
   Eigen::SparseMatrix<double> values_;  // N_A there
   Net unstressed_;
   membrane::MassMatrix mass_;
