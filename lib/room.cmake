@@ -20,8 +20,10 @@ endif()
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp CONTENT "")
 add_library(headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp)
 target_link_libraries(headers PRIVATE Eigen3::Eigen)
-target_precompile_headers(headers PRIVATE <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <set> <span> <string> <vector>
+set(common_headers <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <set> <span> <string> <vector>
   <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <Eigen/SparseCore>)
+set_property(GLOBAL PROPERTY common_headers ${common_headers})
+target_precompile_headers(headers PRIVATE ${common_headers})
 
 function(room name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;EXTERNAL")

@@ -1,10 +1,14 @@
-# The headers of GoogleTest and of the rooms, compiled once for all programs.
+# The headers of GoogleTest and of the rooms, compiled once for all programs, and once with those of app.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
-add_library(test_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
 find_package(Eigen3 REQUIRED NO_MODULE)
-target_link_libraries(test_headers PRIVATE Eigen3::Eigen GTest::gtest)
-target_precompile_headers(test_headers PRIVATE <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <set> <span> <string> <vector>
-  <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <Eigen/SparseCore> <gtest/gtest.h>)
+get_property(common_headers GLOBAL PROPERTY common_headers)
+foreach(name test_headers app_test_headers)
+  add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/lib)
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen GTest::gtest)
+  target_precompile_headers(${name} PRIVATE ${common_headers} <gtest/gtest.h>)
+endforeach()
+target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/app/body.hpp)
 
 # gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
 # Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks.
@@ -15,7 +19,11 @@ function(gtest_program name)
     get_property(externals GLOBAL PROPERTY externals_of_${room})
     target_link_libraries(${name} PRIVATE tanktread_${room} ${externals})
   endforeach()
-  target_precompile_headers(${name} REUSE_FROM test_headers)
+  if("app" IN_LIST arg_ROOMS)
+    target_precompile_headers(${name} REUSE_FROM app_test_headers)
+  else()
+    target_precompile_headers(${name} REUSE_FROM test_headers)
+  endif()
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE SOURCE_DIRECTORY="${PROJECT_SOURCE_DIR}")
   if(arg_MPI)
