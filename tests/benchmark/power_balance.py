@@ -4,7 +4,7 @@
     tests/benchmark/power_balance.py [deck ...]
 
 Each deck as it is, to the short end times below where it is long; where more than 1e-4 is left over again with Time/tolerance and Quadrature/tolerance a
-tenth, and with 3/2 of the elements per side as well. Where nothing takes power, in a spherical membrane with a tension and in what has come to rest, what the
+tenth, and with 3/2 of the elements of particles and walls as well. Where nothing takes power, in a spherical membrane with a tension and in what has come to rest, what the
 mesh leaves over has nothing to be a share of: rows of less than a hundredth of the run's largest power have their share of that hundredth. Prints a table;
 decks without the series with the sentence that says why. A run is made once, under results/power_balance.
 """
@@ -26,14 +26,16 @@ ENDS = {"suspension": 0.4, "sheared_suspension": 0.4, "capsule_stuck": 30, "caps
         "hyperbolic_skalak_ca0.8": 3, "drop_four_roll": 4, "capsule_constriction": 1, "shear_neo_hookean_ca0.6": 6, "shear_neo_hookean_ca0.45": 6,
         "oscillating_shear": 2, "capsule_treading": 2}
 
+MESHES = {"elements per side", "azimuthal elements", "meridional elements", "axial elements"}
+
 
 def refined(deck, path=()):
-    """{key: 3/2 of the elements} for every mesh that a deck gives by its elements per side."""
+    """{key: 3/2 of the elements} for every mesh, of particles and walls, that a deck gives by its elements."""
     found = {}
     for key, value in deck.items():
         if isinstance(value, dict):
             found |= refined(value, (*path, key))
-        elif key == "elements per side":
+        elif key in MESHES:
             found["/".join((*path, key))] = round(1.5 * value)
     return found
 
