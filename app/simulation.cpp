@@ -181,9 +181,19 @@ class Run {
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     adapting_ = true;
-    if (particle_->adapt(state_, totals_)) results_.remesh(particle_->body(), particle_->bezier());
+    adapt();
     for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
+  }
+
+  /// Another mesh where the rule says so, with the velocity there: loads of a finer mesh are others, and steps that went on with the velocity of the
+  /// mesh before were a tenth as long.
+  void adapt() {
+    if (!particle_->adapt(state_, totals_)) return;
+    results_.remesh(particle_->body(), particle_->bezier());
+    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
+    state_.history.clear();
+    motion::begin(motion, state_);
   }
 
   /// A step of the scheme; `before`: where it began, on this side of a kink of the motion.

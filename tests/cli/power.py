@@ -77,6 +77,26 @@ def the_large_pressure_in_a_drop_counts_for_nothing():
     check(lacks.max() < 1e-3, "the quadrature of a uniform pressure counts as power", lacks)
 
 
+SPINDLE = """
+Tanktread:
+  Flow: {type: planar hyperbolic}
+  Particle: {orientation: [20.0, 35.0, 50.0]}
+  Membrane: {law: Skalak, area dilatation: 1.0, capillary number: 0.6}
+  Surface: {elements per side: 6}
+  Adaptation: {enabled: true, surface tolerance: 4.0e-4, levels: 2}
+  Time: {final time: 1.1}
+  Output: {interval: 0.5, power balance: true}
+"""
+
+
+def a_mesh_that_has_changed_has_a_velocity_of_its_own():
+    deck(SPINDLE, "spindle.yaml")
+    run("spindle.yaml", "--output", "spindle", "--quiet")
+    points, lacks = series("spindle", "n_control_points"), numpy.abs(series("spindle", "power_residual"))
+    check(points[-1] > points[0], "no refinement to look at", points)
+    check(lacks.max() < 1e-3, "a row has the loads of one mesh and the velocity of another", lacks)  # 5e-3 with the velocity of the mesh before
+
+
 def mistakes_are_named():
     deck(CAPSULE)
     refused(["Output/power balance", "parabolic"], "deck.yaml", "--set", "Flow/type=parabolic", "--set", "Flow/half width=5")
