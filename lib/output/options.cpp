@@ -14,7 +14,8 @@ void Options::declare(deck::Section& section) {
               "the run stops with a checkpoint after this time; if not given, never");
   section.key("power balance", power_balance,
               "whether each row holds what flow and forces put in, what the fluids dissipate (6.12), and what the velocities lack of it (6.13), at "
-              "the price of the layers at four places an element a row; of what deforms, and rigid bodies among it, in flows of one gradient, in tubes");
+              "the price of the layers at four places an element a row; of what deforms, and rigid bodies among it, in flows of one gradient, in "
+              "tubes");
   section.key("surface text", surface_text, "write the last surface as Bezier-extraction text, `surface.iga`, which Particle/file reads");
 }
 
