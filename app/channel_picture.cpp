@@ -8,7 +8,7 @@
 namespace tanktread {
 namespace {
 
-constexpr int places = 301, sections = 10;
+constexpr int places_along = 301, sections = 10;
 
 /// Places, a row each.
 std::vector<double> flat(const std::vector<Vec3>& rows) {
@@ -45,16 +45,16 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
   const auto [low, high] = channel.outline().box();
   std::vector<double> s, factor, rate_s;
   std::vector<Vec3> centre, lines[4];
-  for (int k = 0; k < places; ++k) {
-    s.push_back(channel.start() + (channel.end() - channel.start()) * k / (places - 1));
+  for (int k = 0; k < places_along; ++k) {
+    s.push_back(channel.start() + (channel.end() - channel.start()) * k / (places_along - 1));
     const surface::Channel::Section at = channel.section(s.back());
     centre.push_back(at.centre);
     factor.insert(factor.end(), {at.factor[0], at.factor[1]});
     lines[0].push_back(at.centre + low[0] * at.factor[0] * at.across), lines[1].push_back(at.centre + high[0] * at.factor[0] * at.across);
     lines[2].push_back(at.centre + low[1] * at.factor[1] * Vec3::UnitZ()), lines[3].push_back(at.centre + high[1] * at.factor[1] * Vec3::UnitZ());
   }
-  Net axis(places, 3);
-  for (int k = 0; k < places; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
+  Net axis(places_along, 3);
+  for (int k = 0; k < places_along; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
   const Net v = flow.velocities(axis);
   std::vector<double> velocity(v.data(), v.data() + v.size());
   for (int k = 0; k < sections; ++k) rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));

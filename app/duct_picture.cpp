@@ -6,11 +6,11 @@
 namespace tanktread {
 namespace {
 
-constexpr int places = 400, lines = 121;
+constexpr int places_around = 400, lines = 121;
 
 std::vector<double> outline_of(const surface::Outline& outline) {
   std::vector<double> out;
-  const auto share = outline.shares(places);
+  const auto share = outline.shares(places_around);
   for (int k = 0; k < outline.n_sides(); ++k) {
     auto knots = outline.knots(k, share[static_cast<std::size_t>(k)]);
     if (k + 1 < outline.n_sides()) knots.pop_back();

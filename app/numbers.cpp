@@ -15,9 +15,8 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 double resting_volume(const Body& body) { return surface::volume(body.space, body.rest); }
 double resting_area(const Body& body) { return surface::measures(body.space, body.rest).area; }
-bool elastic(const Scene& scene) { return !scene.particle.rigid() && scene.membrane.law != "surface tension"; }
 
-constexpr Number table[] = {
+constexpr Number named_numbers[] = {
     {"radius", "length", "R_C: of the sphere of equal volume", [](const Scene&, const Body& b) { return b.radius; }},
     {"volume", "length^3", "of the resting shape", [](const Scene&, const Body& b) { return resting_volume(b); }},
     {"area", "length^2", "of the resting shape", [](const Scene&, const Body& b) { return resting_area(b); }},
@@ -29,16 +28,16 @@ constexpr Number table[] = {
      [](const Scene& s, const Body&) { return s.particle.rigid() ? none : s.particle.viscosity_ratio; }},
     {"capillary_number", "1", "Ca = mu speed/G_s, of a drop mu speed/sigma",
      [](const Scene& s, const Body&) { return !s.particle.rigid() && s.speed() > 0 ? s.flow.viscosity * s.speed() / s.modulus() : none; }},
-    {"shear_modulus", "force/length", "G_s", [](const Scene& s, const Body&) { return elastic(s) ? s.modulus() : none; }},
+    {"shear_modulus", "force/length", "G_s", [](const Scene& s, const Body&) { return s.elastic() ? s.modulus() : none; }},
     {"area_modulus", "force/length", "K_s of small strains: (1 + 2 C) G_s of Skalak's law and of Evans and Skalak's, 3 G_s of rubber",
-     [](const Scene& s, const Body& b) { return elastic(s) ? area_modulus(b.law) : none; }},
+     [](const Scene& s, const Body& b) { return s.elastic() ? area_modulus(b.law) : none; }},
     {"surface_tension", "force/length", "sigma",
-     [](const Scene& s, const Body&) { return s.particle.rigid() || elastic(s) ? none : s.modulus(); }},
+     [](const Scene& s, const Body&) { return s.particle.rigid() || s.elastic() ? none : s.modulus(); }},
     {"bending_modulus", "force length", "E_b",
-     [](const Scene& s, const Body&) { return elastic(s) && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
+     [](const Scene& s, const Body&) { return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
     {"bending_number", "1", "E_b/(G_s R_C^2)",
      [](const Scene& s, const Body& b) {
-       return elastic(s) && s.bending_modulus() > 0 ? s.bending_modulus() / (s.modulus() * b.radius * b.radius) : none;
+       return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() / (s.modulus() * b.radius * b.radius) : none;
      }},
     {"relaxation_time", "time", "mu R_C/G_s, of a drop mu R_C/sigma",
      [](const Scene& s, const Body& b) { return s.particle.rigid() ? none : s.flow.viscosity * b.radius / s.modulus(); }},
@@ -58,12 +57,12 @@ constexpr Number table[] = {
 
 }  // namespace
 
-std::span<const Number> all_numbers() { return table; }
+std::span<const Number> all_numbers() { return named_numbers; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
   if (!scene.particles.empty()) return found;  // which are of one particle
-  for (const Number& one : table)
+  for (const Number& one : named_numbers)
     if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;
 }

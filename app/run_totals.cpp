@@ -56,6 +56,12 @@ void PhaseAngle::advance(double step, double now, std::optional<double> angle) {
   rate = now;
 }
 
+output::Entries<long> counts(const RunTotals& totals) {
+  output::Entries<long> all;
+  each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
+  return all;
+}
+
 void store(const RunTotals& totals, output::Checkpoint& checkpoint) {
   each_count(totals, [&](const char* name, auto, auto, const auto& count) { checkpoint.numbers[name] = static_cast<double>(count); });
   store(totals.contacts, checkpoint);

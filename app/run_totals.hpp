@@ -55,6 +55,9 @@ void each_count(Some& totals, const Act& act) {
   act("kernel_evaluations_self", all, "on the element of the target", totals.kernel.self);
 }
 
+/// Every count by its name, for the summary.
+output::Entries<long> counts(const RunTotals& totals);
+
 /// Adds all of `totals` to the checkpoint.
 void store(const RunTotals& totals, output::Checkpoint& checkpoint);
 

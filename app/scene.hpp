@@ -119,6 +119,7 @@ struct Scene : ParticleKind {
   double rate() const;               ///< speed over radius; of the membrane at rest, modulus/(viscosity x radius), where nothing else moves
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
+  bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< a membrane, not an interface of a drop
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscous(); }
   bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }
   bool kelvin_voigt_membrane() const { return viscous_membrane() && !membrane.relaxation_time; }

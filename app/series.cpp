@@ -40,7 +40,7 @@ double migration_velocity(const Moment& m, int) {
   return place.dot(velocity) > 0 ? -velocity.norm() : velocity.norm();
 }
 
-constexpr Statement table[] = {
+constexpr Statement statements[] = {
     {"time", "", "time", "simulated time; 0 of a steady problem", timed | of_prescribed, [](const Moment& m, int) { return m.time; }},
     {"time_step", "", "time", "size of the step that ended here", timed, [](const Moment& m, int) { return m.step.step; }},
     {"taylor_inertia", "", "1", "Taylor parameter (6.2) of the ellipsoid with the same second moments, in the plane of the flow", of_deforming,
@@ -219,7 +219,7 @@ constexpr Statement table[] = {
 
 std::vector<Series> stated() {
   std::vector<Series> all;
-  for (const Statement& one : table) {
+  for (const Statement& one : statements) {
     std::istringstream components(one.components);
     std::string component, description = one.description;
     components >> component;

@@ -38,12 +38,6 @@ namespace {
 /// Why a run ends before its time, as its status says it.
 const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady", past = "past";
 
-output::Entries<long> counts(const RunTotals& totals) {
-  output::Entries<long> all;
-  each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
-  return all;
-}
-
 /// Next multiple of the snapshot interval after `time`, or the final time.
 double next_snapshot(const Scene& scene, double time) {
   const double interval = scene.snapshot_interval();

@@ -34,12 +34,6 @@ namespace tanktread {
 
 namespace {
 
-output::Entries<long> counts(const RunTotals& totals) {
-  output::Entries<long> all;
-  each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });
-  return all;
-}
-
 coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
   using Work = coupling::Work;
   for (long Work::*count : {&Work::evaluations, &Work::assemblies, &Work::tangents, &Work::solves, &Work::solver_iterations,

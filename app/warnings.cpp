@@ -18,7 +18,6 @@ constexpr double slenderness = 10;  // aspect_ratio
 constexpr double lost_volume = 1e-3;
 constexpr double stiff_area = 3e4;  // of the whole membrane, over what else resists: steps become many
 
-bool elastic(const Scene& scene) { return !scene.particle.rigid() && scene.membrane.law != "surface tension"; }
 
 /// Shortest wave that elements of size h carry.
 double wave_number(double h) { return std::numbers::pi / h; }
@@ -72,7 +71,7 @@ std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
 }
 
 std::string Warnings::choice() const {
-  if (elastic(scene_) && scene_.membrane.load == "strong")
+  if (scene_.elastic() && scene_.membrane.load == "strong")
     return "the load is taken in the strong form, which feeds the shape's errors until steps vanish: set Membrane/load to weak";
   if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == "fixed")
     return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
@@ -86,7 +85,7 @@ std::string Warnings::choice() const {
 /// A flat membrane under the tension -T with bending modulus B: waves of number k grow at (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B).
 /// Six tenths of that are what a capsule shows, and the flow carries waves out of the compressed part at its own rate.
 std::string Warnings::compression(const StepFindings& signs) {
-  if (!elastic(scene_)) return {};
+  if (!scene_.elastic()) return {};
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
   const double bending = scene_.bending_modulus();
   const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
@@ -104,7 +103,7 @@ std::string Warnings::compression(const StepFindings& signs) {
 std::string Warnings::stiffness(const StepFindings& signs) {
   const bool fixed = scene_.time.fixed_step.has_value(), explicit_scheme = scene_.time.scheme == "bs3";
   const bool iterated = scene_.time.scheme == "crank-nicolson" && scene_.time.nonlinear_solver == "plain";
-  if (!elastic(scene_) || !(explicit_scheme || iterated)) return {};
+  if (!scene_.elastic() || !(explicit_scheme || iterated)) return {};
   const double limit = explicit_scheme ? 2.51 : 2, reached = signs.step * tanktread::stiffness(scene_, signs.element);
   memory_.limited = reached > 0.8 * limit ? memory_.limited + 1 : 0;
   if (!(fixed && reached > limit) && memory_.limited < limited_steps) return {};
@@ -115,10 +114,10 @@ std::string Warnings::stiffness(const StepFindings& signs) {
 
 std::string Warnings::fold(const StepFindings& signs) const {
   if (signs.jacobian_ratio > folding) return {};
-  const std::string cure = scene_.membrane.load == "strong" && elastic(scene_)           ? "set Membrane/load to weak"
-                           : scene_.interface_motion() == "material" && !elastic(scene_) ? "set Interface/motion to relaxed"
+  const std::string cure = scene_.membrane.load == "strong" && scene_.elastic()           ? "set Membrane/load to weak"
+                           : scene_.interface_motion() == "material" && !scene_.elastic() ? "set Interface/motion to relaxed"
                                                                                          : finer_mesh(scene_);
-  const bool drawn = !elastic(scene_) && strains(scene_);
+  const bool drawn = !scene_.elastic() && strains(scene_);
   return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure +
          (drawn ? "; or there is no steady shape: above a critical capillary number the flow draws the drop out until it breaks" : "");
 }
@@ -126,7 +125,7 @@ std::string Warnings::fold(const StepFindings& signs) const {
 std::string Warnings::stretch(const StepFindings& signs) const {
   if (signs.aspect_ratio < slenderness) return {};
   return formatted("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
-         (elastic(scene_) || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
+         (scene_.elastic() || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
 }
 
 std::string Warnings::gap(const StepFindings& signs) const {

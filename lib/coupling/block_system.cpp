@@ -8,8 +8,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
-
 /// The four blocks in one array, of unknowns or of residuals.
 template <class Number>
 struct Parts {

@@ -8,8 +8,6 @@ namespace {
 
 constexpr double regularisation = 1e-4;  // of the normal equations of corrections of norm 1, which may be nearly parallel
 
-double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
-
 }  // namespace
 
 Secants::Secants(std::vector<Net> pairs) : pairs_(std::move(pairs)) { factor(); }

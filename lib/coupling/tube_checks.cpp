@@ -11,7 +11,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr double sharpness = 1e-2, sharpest = 1e-8;  // of integrals over the wall beside pressures that are large: over the tolerance, and at most
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // of integrals over the wall beside large pressures: over the tolerance, and at most
 
 /// Points of a section between its centroid and its outline, as far as they are inside; `place` takes them into space.
 template <class Place>
@@ -96,7 +96,7 @@ Tube::Leak Tube::leak(const Net& f) {
   const Net at = values * wall.net;
   const Response response = respond(f);
   quadrature::Options options = particle_->parameters.quadrature;
-  options.tolerance = std::clamp(sharpness * options.tolerance, 1e-12, sharpest);
+  options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
   layer.place(wall.net);
   const std::vector<int> own = wall_->ranks().share(static_cast<int>(at.rows()));

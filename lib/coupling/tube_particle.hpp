@@ -16,9 +16,6 @@
 
 namespace tanktread::coupling {
 
-/// Sum over the control points of a.b; 0 where one of them is empty.
-inline double dot(const Net& a, const Net& b) { return a.size() == 0 || b.size() == 0 ? 0 : a.cwiseProduct(b).sum(); }
-
 struct Tube::Particle {
   Particle(const spline::Space& space, const TubeParameters& parameters);
 

@@ -3,7 +3,7 @@
 namespace tanktread::membrane {
 namespace {
 
-constexpr double residual_allowed = 1e-13;
+constexpr double residual_of_mass = 1e-13;
 constexpr int iterations_allowed = 60;  // more would cost as much as a factorisation
 
 Eigen::Array3d column_products(const Net& a, const Net& b) { return a.cwiseProduct(b).colwise().sum().transpose(); }
@@ -24,7 +24,7 @@ void MassSolver::factor(const Eigen::SparseMatrix<double>& m0) {
 Net MassSolver::solve(const Eigen::SparseMatrix<double>& s, const Net& d) {
   const Eigen::VectorXd scale = diagonal_.cwiseQuotient(s.diagonal()).cwiseSqrt();
   const auto precondition = [&](const Net& r) { return Net(scale.asDiagonal() * reference_.solve(scale.asDiagonal() * r)); };
-  const Eigen::Array3d enough = residual_allowed * residual_allowed * column_products(d, d);
+  const Eigen::Array3d enough = residual_of_mass * residual_of_mass * column_products(d, d);
   Net f = precondition(d), r = d - s * f;
   Net direction = Net::Zero(d.rows(), 3);
   Eigen::Array3d before = Eigen::Array3d::Zero();

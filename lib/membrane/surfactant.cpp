@@ -13,7 +13,7 @@
 namespace tanktread::membrane {
 
 namespace {
-constexpr int most_points = 144, most_functions = 64;  // of an element
+constexpr int most_area_points = 144, most_functions = 64;  // of an element
 }  // namespace
 
 Surfactant::Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity)
@@ -23,7 +23,7 @@ Surfactant::Surfactant(const spline::Space& space, const Net& initial, const Sur
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(order + std::max(0, element.degree - 3));
     ElementPoints& at = elements_.emplace_back();
     at.n = rule.size(), at.functions = static_cast<int>(element.points.size());
-    assert(at.n <= most_points && at.functions <= most_functions);
+    assert(at.n <= most_area_points && at.functions <= most_functions);
     const auto n = static_cast<std::size_t>(at.n), table = n * element.points.size();
     for (std::vector<double>* one : {&at.value, &at.by_s, &at.by_t}) one->resize(table);
     for (std::vector<double>* one : {&at.s, &at.t, &at.metric}) one->resize(4 * n);
@@ -77,7 +77,7 @@ Net Surfactant::load() const {
   Net d = Net::Zero(space_.n_points, 3);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
-    double along_s[3 * most_points], along_t[3 * most_points], rows[3 * most_functions];
+    double along_s[3 * most_area_points], along_t[3 * most_area_points], rows[3 * most_functions];
     for (int q = 0; q < at.n; ++q) {
       const double less = clean_tension_ * (options_.tension(at.c[static_cast<std::size_t>(q)]) - 1) * at.area()[q];
       for (int k = 0; k < 3; ++k) {
@@ -98,7 +98,7 @@ Eigen::VectorXd Surfactant::rate(const Net& faster) const {
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
-    double own[3 * most_functions], w[3 * most_points], along_s[most_points], along_t[most_points], rows[most_functions];
+    double own[3 * most_functions], w[3 * most_area_points], along_s[most_area_points], along_t[most_area_points], rows[most_functions];
     for (std::size_t a = 0; a < points.size(); ++a) Eigen::Map<Eigen::RowVector3d>(own + 3 * a) = faster.row(points[a]);
     sample(3, at.n, at.functions, at.value.data(), own, w);
     const double *s = at.s.data(), *t = at.t.data();

@@ -13,14 +13,14 @@ constexpr int lasting_steps = 25;  // for which a measured stiffness is used
 constexpr int most_stages = 200;
 
 /// State::memory.
-struct Memory {
+struct StiffnessMemory {
   double stiffness = 0;  ///< measured
   double age = 0;        ///< steps since
   double error = 0;      ///< of the last accepted step over the tolerance
   double points = 0;     ///< control points of the mesh on which it was measured
 };
 
-void measure(coupling::Dynamics& dynamics, State& state, Memory& memory, StepReport& report) {
+void measure(coupling::Dynamics& dynamics, State& state, StiffnessMemory& memory, StepReport& report) {
   const auto points = static_cast<double>(state.x.rows());
   const int iterations = memory.points == points ? 3 : 8;
   dynamics.at(state.time, state.time);
@@ -72,7 +72,7 @@ int rkc2_stages(double dt, double rho) { return std::max(2, 1 + static_cast<int>
 
 StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
-  Memory memory = remembered<Memory>(state.memory);
+  StiffnessMemory memory = remembered<StiffnessMemory>(state.memory);
   Attempts attempts(options_, state, limit);
   if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure(dynamics, state, memory, attempts.report);
 

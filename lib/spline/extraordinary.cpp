@@ -18,7 +18,7 @@ constexpr int N = 3;
 Row unit(int point) { return Row::Unit(point); }
 
 /// A row about face 0 seen from face j.
-Row turned(const Row& r, int j) {
+Row turned_row(const Row& r, int j) {
   Row out = r;
   for (int group = 1; group < Ring::size; group += N)
     for (int i = 0; i < N; ++i) out[group + (i + j) % N] = r[group + i];
@@ -52,7 +52,7 @@ Eigen::MatrixXd averaged_bicubic() {
     for (int u = 0; u < 4; ++u) {
       Row sum = Row::Zero();
       if (u == 0 && v == 0) {
-        for (int j = 0; j < N; ++j) sum += turned(near_corner(1, 1, 0, 0), j) / N;
+        for (int j = 0; j < N; ++j) sum += turned_row(near_corner(1, 1, 0, 0), j) / N;
       } else {
         // A Bezier point on a side or at a corner is the mean of the inner points on both or all four sides of it.
         struct Inner {
@@ -102,12 +102,12 @@ struct Conditions {
 Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biquartic) {
   std::array<Row, N> s0, s1, s2, s3;  // the spoke cubics
   for (int j = 0; j < N; ++j) {
-    s0[j] = turned(bicubic.row(0), j);
-    s1[j] = turned(bicubic.row(1), j);
-    s2[j] = turned(bicubic.row(2), j);
-    s3[j] = turned(bicubic.row(3), j);
+    s0[j] = turned_row(bicubic.row(0), j);
+    s1[j] = turned_row(bicubic.row(1), j);
+    s2[j] = turned_row(bicubic.row(2), j);
+    s3[j] = turned_row(bicubic.row(3), j);
   }
-  const auto old = [&](int v, int u, int j) { return turned(biquartic.row(5 * v + u), j % N); };
+  const auto old = [&](int v, int u, int j) { return turned_row(biquartic.row(5 * v + u), j % N); };
   Conditions out;
   auto& [G, g] = out;
   for (int j = 0; j < N; ++j) {

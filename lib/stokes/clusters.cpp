@@ -17,7 +17,7 @@ int longest_order(double tolerance) {
   return std::clamp(static_cast<int>(std::lround(2.8 - 0.72 * std::log10(tolerance))), 3, most_chebyshev);
 }
 
-int order_for(double tolerance, double z) {
+int chebyshev_order(double tolerance, double z) {
   return static_cast<int>(std::ceil(-std::log(tolerance) / std::log(z + std::sqrt(z * z - 1)) - 1e-9));
 }
 
@@ -143,7 +143,7 @@ void Clusters::enclose(Cluster& cluster) {
   cluster.radius = std::sqrt(square);
   cluster.reach = (rho + 1 / rho) / 2 * longest;
   for (int d = 0; d < 3; ++d)
-    cluster.order[d] = cluster.half[d] > 1e-12 * longest ? std::clamp(order_for(tolerance_, cluster.reach / cluster.half[d]), 1, most) : 1;
+    cluster.order[d] = cluster.half[d] > 1e-12 * longest ? std::clamp(chebyshev_order(tolerance_, cluster.reach / cluster.half[d]), 1, most) : 1;
   const auto quanta = [this](int n) { return (n + quantum_ - 1) / quantum_; };
   cluster.bare = quanta(cluster.n_points()) <= quanta(cluster.n_nodes());
   cluster.first_node = n_nodes(), cluster.first_block = n_blocks_;

@@ -15,7 +15,7 @@ namespace {
 constexpr int points = 8, points_far = 10,
               points_log = 16;  // Gauss points: nodes of (2.17) an element; of (2.15) far away; with a logarithm
 constexpr int sweeps = 2;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using surface::PlaneJet;
 using surface::Vec2;
 

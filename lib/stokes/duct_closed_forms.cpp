@@ -7,7 +7,7 @@
 namespace tanktread::stokes {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 class EllipseProfile : public DuctProfile {
  public:

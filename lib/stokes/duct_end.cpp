@@ -13,7 +13,7 @@ namespace {
 
 using surface::Vec2;
 
-constexpr int far_around = 24, far_order = 5, close_order = 7;
+constexpr int far_around = 24, order_far = 5, order_close = 7;
 constexpr double far = 1.2, smallest = 1e-5;  // in radii of the end: where the far nodes do; cells that are not halved
 
 Mat3 axes(const surface::Channel::Section& place) {
@@ -45,9 +45,9 @@ DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inwa
   Nodes nodes;
   cells_ = cells(far_around);
   for (const Cell& cell : cells_) {
-    add(cell, far_order, nodes);
+    add(cell, order_far, nodes);
     Nodes own;
-    add(cell, close_order, own);
+    add(cell, order_close, own);
     close_.push_back(sources(own));
   }
   far_ = sources(nodes);
@@ -96,7 +96,7 @@ bool DuctEnd::close(const Cell& cell, const Vec3& at, bool& around) const {
 
 void DuctEnd::add_graded(const Cell& cell, const Vec3& at, Nodes& nodes) const {
   bool around = false;
-  if (!close(cell, at, around)) return add(cell, close_order, nodes);
+  if (!close(cell, at, around)) return add(cell, order_close, nodes);
   for (const int k : {0, 1}) {
     Cell half = cell;
     double(&range)[2] = around ? half.t : half.r;
@@ -171,7 +171,7 @@ DuctEnd::Points DuctEnd::points() const {
   Nodes nodes;
   for (const Cell& cell : cells_)  // denser towards the wall, where what collocation leaves decays over an element
     for (const auto& [inner, outer] : {std::pair(0., 0.75), std::pair(0.75, 1.)})
-      add({cell.side, {cell.t[0], cell.t[1]}, {inner, outer}}, close_order, nodes);
+      add({cell.side, {cell.t[0], cell.t[1]}, {inner, outer}}, order_close, nodes);
   const auto n = static_cast<Eigen::Index>(nodes.area.size());
   Points points{Net(n, 3), Eigen::Map<const Eigen::VectorXd>(nodes.area.data(), n)};
   for (Eigen::Index k = 0; k < n; ++k) {

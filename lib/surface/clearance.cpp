@@ -41,7 +41,7 @@ Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double
 }
 
 /// Part of an element, by its Bezier points.
-struct Piece {
+struct ElementPart {
   std::array<Eigen::MatrixXd, 3> points;  // a matrix for each coordinate
   Disc disc{Vec2::Zero(), 0};
   double bound = -std::numeric_limits<double>::infinity();  // no place of the piece is nearer to the outline
@@ -66,15 +66,15 @@ Eigen::MatrixXd products(Eigen::Index p) {
 }
 
 /// The search halves pieces, those of the least bound first, until none can be nearer than the best place found.
-class Search {
+class OutlineSearch {
  public:
-  Search(const Patches& surface, const Outline& outline) : surface_(surface), outline_(outline) {}
+  OutlineSearch(const Patches& surface, const Outline& outline) : surface_(surface), outline_(outline) {}
 
   Clearance nearest() {
     begin();
     while (!pieces_.empty() && near(pieces_.front().bound)) {
-      std::ranges::pop_heap(pieces_, std::ranges::greater(), &Piece::bound);
-      Piece piece = std::move(pieces_.back());
+      std::ranges::pop_heap(pieces_, std::ranges::greater(), &ElementPart::bound);
+      ElementPart piece = std::move(pieces_.back());
       pieces_.pop_back();
       look_at_corner(piece);
       if (near(piece.bound))
@@ -105,7 +105,7 @@ class Search {
       double reach = 0;
       for (int b = 0; b < patch.n_bezier(); ++b) reach = std::max(reach, squared(patch, b));
       if (!near(central.gap(reach))) continue;
-      Piece element;
+      ElementPart element;
       element.disc = central;
       for (const int c : coordinates)
         element.points[c] = Eigen::Map<const Eigen::MatrixXd>(patch.points + c * patch.n_bezier(), patch.degree + 1, patch.degree + 1);
@@ -113,16 +113,16 @@ class Search {
     }
   }
 
-  void add(Piece piece) {
+  void add(ElementPart piece) {
     ++best_.pieces;
     bound(piece);
     if (!near(piece.bound)) return;
     pieces_.push_back(std::move(piece));
-    std::ranges::push_heap(pieces_, std::ranges::greater(), &Piece::bound);
+    std::ranges::push_heap(pieces_, std::ranges::greater(), &ElementPart::bound);
   }
 
-  Piece half(const Piece& piece, int k) const {
-    Piece part;
+  ElementPart half(const ElementPart& piece, int k) const {
+    ElementPart part;
     part.disc = piece.disc, part.bound = piece.bound;
     const Eigen::MatrixXd halving = spline::restriction(static_cast<int>(piece.points[0].rows()) - 1, 0.5 * k, 0.5 * (k + 1));
     for (const int c : coordinates)
@@ -131,7 +131,7 @@ class Search {
   }
 
   /// Perhaps the best place. Where it is farther from the outline than the disc says, the piece gets a disc that fits.
-  void look_at_corner(Piece& piece) {
+  void look_at_corner(ElementPart& piece) {
     const Vec2 x = piece.corner.tail<2>();
     const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());
     if (!near(expected)) return;
@@ -143,7 +143,7 @@ class Search {
   }
 
   /// The Bezier points of the squared distance to the disc's centre bound it, and show along which index it bends.
-  void bound(Piece& piece) {
+  void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);
     const Eigen::MatrixXd y = piece.points[1].array() - piece.disc.centre[0], z = piece.points[2].array() - piece.disc.centre[1];
@@ -167,13 +167,13 @@ class Search {
 
   const Patches& surface_;
   const Outline& outline_;
-  std::vector<Piece> pieces_;  // a heap
+  std::vector<ElementPart> pieces_;  // a heap
   Eigen::MatrixXd products_;   // of the degree last used
   Clearance best_;
 };
 
 }  // namespace
 
-Clearance clearance(const Patches& surface, const Outline& outline) { return Search(surface, outline).nearest(); }
+Clearance clearance(const Patches& surface, const Outline& outline) { return OutlineSearch(surface, outline).nearest(); }
 
 }  // namespace tanktread::surface

@@ -76,9 +76,10 @@ double separation(const Points& a, const Points& b, const Vec3& direction) {
   return (direction.transpose() * b).minCoeff() - (direction.transpose() * a).maxCoeff();
 }
 
-class Search {
+class PairSearch {
  public:
-  Search(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond) : trees_{&first, &second}, tolerance_(tolerance) {
+  PairSearch(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond)
+      : trees_{&first, &second}, tolerance_(tolerance) {
     best_.gap = beyond;
   }
 
@@ -204,7 +205,7 @@ int ElementBoxes::split(int first, int last) {
 double distance(const Box& a, const Box& b) { return (b.low - a.high).max(a.low - b.high).max(0.).matrix().norm(); }
 
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond) {
-  return Search(first, second, tolerance, beyond).nearest();
+  return PairSearch(first, second, tolerance, beyond).nearest();
 }
 
 namespace {

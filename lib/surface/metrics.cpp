@@ -18,13 +18,13 @@ namespace tanktread::surface {
 namespace {
 
 /// Part of a mid-line inside one Bezier element.
-struct Piece {
+struct LinePiece {
   spline::Site first, last;
 };
 
 /// A mid-line in the plane of its macro face, cut where Bezier elements end. `direction` 0: along x.
-std::vector<Piece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
-  std::vector<Piece> result;
+std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
+  std::vector<LinePiece> result;
   const double end = (direction == 0 ? start.x : start.y) + length;
   double at = end - length;
   while (at < end - 1e-9 * length) {
@@ -34,7 +34,7 @@ std::vector<Piece> pieces(const spline::Space& space, const spline::Locator& loc
     const spline::Element& element = space.elements[site.element];
     const double from = element.origin[direction], size = element.size[direction], to = std::min(from + size, end);
     double spline::Site::*coordinate = direction == 0 ? &spline::Site::s : &spline::Site::t;
-    Piece piece{site, site};
+    LinePiece piece{site, site};
     piece.first.*coordinate = std::max(0., (at - from) / size);
     piece.last.*coordinate = std::min(1., (to - from) / size);
     result.push_back(piece);
@@ -43,7 +43,7 @@ std::vector<Piece> pieces(const spline::Space& space, const spline::Locator& loc
   return result;
 }
 
-double arc_length(const Patches& patches, const Piece& piece) {
+double arc_length(const Patches& patches, const LinePiece& piece) {
   const quadrature::GaussRule& rule = quadrature::gauss(6);
   const double ds = piece.last.s - piece.first.s, dt = piece.last.t - piece.first.t;
   double sum = 0;
@@ -56,10 +56,10 @@ double arc_length(const Patches& patches, const Piece& piece) {
 
 double curvature(const Patches& patches, const spline::Site& site) { return mean_curvature(jet(patches[site.element], site.s, site.t)); }
 
-MidLine mid_line(const std::vector<Piece>& parts, const Patches& patches, const MetricFields& fields, bool meets_pole) {
+MidLine mid_line(const std::vector<LinePiece>& parts, const Patches& patches, const MetricFields& fields, bool meets_pole) {
   const spline::Site &start = parts.front().first, &end = parts.back().last;
   MidLine result;
-  for (const Piece& part : parts) result.length += arc_length(patches, part);
+  for (const LinePiece& part : parts) result.length += arc_length(patches, part);
   if (meets_pole) return result;
   if (fields.traction) result.traction = (fields.traction(end) - fields.traction(start)).norm() / result.length;
   if (fields.velocity) result.velocity = (fields.velocity(end) - fields.velocity(start)).norm() / result.length;
@@ -172,13 +172,13 @@ std::vector<int> vertices_along(const Lattice& lattice, Ray ray, int stride, int
 }
 
 /// Vertices one edge apart: up to three before its start, the two ends, up to three beyond its end; `start`: position of the start among them.
-struct Line {
+struct EdgeLine {
   std::vector<int> vertices;
   int start = 0;
 };
 
-Line line(const Lattice& lattice, Ray edge, int length) {
-  Line result;
+EdgeLine line(const Lattice& lattice, Ray edge, int length) {
+  EdgeLine result;
   if (!lattice.is_extraordinary[edge.vertex]) {
     const std::vector<int> before = vertices_along(lattice, {edge.vertex, (edge.slot + 2) & 3}, length, 3);
     result.vertices.assign(before.rbegin(), before.rend());
@@ -190,7 +190,7 @@ Line line(const Lattice& lattice, Ray edge, int length) {
   return result;
 }
 
-Sample fourth_difference(Samples& samples, const Line& line, int first) {
+Sample fourth_difference(Samples& samples, const EdgeLine& line, int first) {
   static constexpr double weight[5] = {1, -4, 6, -4, 1};
   Sample sum{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   for (int k = 0; k < 5; ++k) {
@@ -203,7 +203,7 @@ Sample fourth_difference(Samples& samples, const Line& line, int first) {
 }
 
 Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int length, const Mat3& f) {
-  const Line found = line(lattice, edge, length);
+  const EdgeLine found = line(lattice, edge, length);
   Resolution result;
   if (static_cast<int>(found.vertices.size()) > found.start + 1)
     result.length = (samples.at(found.vertices[found.start + 1]).now - samples.at(edge.vertex).now).norm();

@@ -39,9 +39,9 @@ Vec3 reflected(const Vec3& x, const Vec3& centre, const Vec3& signs) { return ce
 using Keeps = std::function<bool(const Image&)>;
 
 /// The space and its nets, with what the search for any image looks at.
-class Search {
+class ImageSearch {
  public:
-  Search(const spline::Space& space, std::span<const Net* const> nets)
+  ImageSearch(const spline::Space& space, std::span<const Net* const> nets)
       : space_(space), nets_(nets), centre_(middle(*nets[0])),
         size_((nets[0]->colwise().maxCoeff() - nets[0]->colwise().minCoeff()).maxCoeff()), map_(space), bezier_(space.elements.size()),
         points_(rows(*nets[0]), exact * size_), centres_(centres(), close * size_) {}
@@ -195,7 +195,7 @@ std::string name(const Vec3& signs) {
 }  // namespace
 
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs) {
-  return Search(space, nets).image(signs, [](const Image&) { return true; });
+  return ImageSearch(space, nets).image(signs, [](const Image&) { return true; });
 }
 
 Symmetry::Symmetry(int n_points) : fundamental_(n_points), source_(n_points), signs_(Net::Ones(n_points, 3)) {
@@ -240,7 +240,7 @@ void Symmetry::complete(Net& field) const {
 }
 
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps) {
-  Search search(space, nets);
+  ImageSearch search(space, nets);
   std::vector<Image> generators, group = identity(space.n_points, space.elements.size());
   for (const Vec3& signs : candidates) {
     if (contains(group, signs)) continue;

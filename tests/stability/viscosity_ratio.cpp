@@ -9,7 +9,7 @@
 #include "tests/evolution.hpp"
 
 namespace tanktread {
-namespace {
+namespace viscosity_ratio_test {
 
 struct Outcome {
   double volume_error, iterations;
@@ -34,5 +34,5 @@ TEST(ViscosityRatio, NeedsNoMoreIterationsAtEitherEndWithIt) {
   for (const char* ratio : {"0.001", "0.1", "10", "100"}) EXPECT_LT(outcome(ratio, "exact").iterations, 12) << ratio;  // 7 to 9 measured
 }
 
-}  // namespace
+}  // namespace viscosity_ratio_test
 }  // namespace tanktread

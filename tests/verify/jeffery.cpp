@@ -11,7 +11,7 @@
 #include "deck/document.hpp"
 
 namespace tanktread {
-namespace {
+namespace jeffery_test {
 
 using std::numbers::pi;
 
@@ -77,5 +77,5 @@ TEST(Jeffery, OrbitOutOfThePlaneIsClosed) {
   EXPECT_LT((run.axis() - start).norm(), 1e-5);
 }
 
-}  // namespace
+}  // namespace jeffery_test
 }  // namespace tanktread

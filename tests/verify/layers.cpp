@@ -17,7 +17,7 @@
 #include "tests/verify/layers_reference.hpp"
 
 namespace tanktread {
-namespace {
+namespace layers_test {
 
 /// A strongly deformed, S-shaped surface of the cube mesh, and a smooth load on it.
 struct Scene {
@@ -324,5 +324,5 @@ TEST(CrossLayer, KeepsTheRequestedToleranceAsATargetApproachesTheSurface) {
   }
 }
 
-}  // namespace
+}  // namespace layers_test
 }  // namespace tanktread

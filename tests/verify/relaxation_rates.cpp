@@ -15,7 +15,7 @@
 #include "tests/evolution.hpp"
 
 namespace tanktread {
-namespace {
+namespace relaxation_rates_test {
 
 using Pair = Eigen::Vector2d;
 
@@ -159,5 +159,5 @@ TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::abs(some[k].rate - all[k].rate), 0, 1e-5) << k;
 }
 
-}  // namespace
+}  // namespace relaxation_rates_test
 }  // namespace tanktread

@@ -12,7 +12,7 @@
 #include "tests/rigid.hpp"
 
 namespace tanktread {
-namespace {
+namespace rigid_spheroid_test {
 
 RigidSolution on_cube(int n, std::vector<std::string> settings = {}) {
   settings.push_back("Surface/elements per side=" + std::to_string(n));
@@ -125,5 +125,5 @@ TEST(RigidBody, HeldInAParabolicFlowFeelsFaxensForce) {
   }
 }
 
-}  // namespace
+}  // namespace rigid_spheroid_test
 }  // namespace tanktread

@@ -15,7 +15,7 @@
 #include "tests/evolution.hpp"
 
 namespace tanktread {
-namespace {
+namespace surfactant_test {
 
 /// d(f, g)/dt by (f, g), of the tension sigma at the concentration 1; mu = R_C = 1.
 Eigen::Matrix2d theory(double lambda, double tension, double elasticity, double diffusivity) {
@@ -175,5 +175,5 @@ TEST_P(SurfactantInExtension, DeformsADropAsTheoryOfSmallDeformationHasIt) {
 
 INSTANTIATE_TEST_SUITE_P(Surfactant, SurfactantInExtension, testing::Values(0., 0.03));
 
-}  // namespace
+}  // namespace surfactant_test
 }  // namespace tanktread

@@ -11,7 +11,7 @@
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {
-namespace {
+namespace tube_gap_test {
 
 using stokes::CrossLayer;
 
@@ -59,5 +59,5 @@ TEST(TubeGap, LayersKeepTheirToleranceAcrossIt) {
   }
 }
 
-}  // namespace
+}  // namespace tube_gap_test
 }  // namespace tanktread

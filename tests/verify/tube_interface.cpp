@@ -12,7 +12,7 @@
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {
-namespace {
+namespace tube_interface_test {
 
 struct Interface {
   Net velocity;
@@ -83,5 +83,5 @@ TEST(InterfaceInATube, BecomesTheRigidSphere) {
   EXPECT_NEAR(along.mean(), 1.67984674, 2e-4);
 }
 
-}  // namespace
+}  // namespace tube_interface_test
 }  // namespace tanktread

@@ -9,7 +9,7 @@
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {
-namespace {
+namespace tube_rigid_test {
 
 using std::numbers::pi;
 
@@ -85,5 +85,5 @@ TEST(RigidSphereInATube, OffTheAxisAddsTheAsymptoticPressureDrop) {
   EXPECT_NEAR((4 * ratio[0] - ratio[1]) / 3, 1, 1e-3);  // what is left of the second order
 }
 
-}  // namespace
+}  // namespace tube_rigid_test
 }  // namespace tanktread

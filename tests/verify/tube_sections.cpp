@@ -11,7 +11,7 @@
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {
-namespace {
+namespace tube_sections_test {
 
 using std::numbers::pi;
 
@@ -82,5 +82,5 @@ TEST(TubeSections, EmptyTubeIsPoiseuilleAndSampson) {
   }
 }
 
-}  // namespace
+}  // namespace tube_sections_test
 }  // namespace tanktread

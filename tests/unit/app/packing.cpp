@@ -7,7 +7,7 @@
 #include "app/packing.hpp"
 
 namespace tanktread {
-namespace {
+namespace packing_test {
 
 using std::numbers::pi;
 
@@ -96,5 +96,5 @@ TEST(Packing, WhatHasNoRoomIsSaidToHaveNone) {
   EXPECT_FALSE(pack(scene.spheres, scene.cell, 1));
 }
 
-}  // namespace
+}  // namespace packing_test
 }  // namespace tanktread

@@ -13,7 +13,7 @@
 #include "deck/document.hpp"
 
 namespace tanktread {
-namespace {
+namespace scene_test {
 
 Scene scene(const std::string& lists) {
   Scene out;
@@ -234,5 +234,5 @@ TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
     EXPECT_FALSE(may_change_on_resume(path)) << path;
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace tanktread

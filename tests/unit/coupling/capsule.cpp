@@ -12,8 +12,6 @@
 namespace tanktread::coupling {
 namespace {
 
-double dot(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
-
 /// A unit sphere on the coarsest mesh, in shear or at rest.
 struct Fixture : SphereInFlow {
   explicit Fixture(const char* type = "simple shear") : SphereInFlow(3, type) {

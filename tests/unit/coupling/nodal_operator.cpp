@@ -11,7 +11,7 @@
 #include "tests/layers.hpp"
 
 namespace tanktread::coupling {
-namespace {
+namespace nodal_operator_test {
 
 struct Fixture {
   spline::TMesh mesh;
@@ -78,5 +78,5 @@ TEST(NodalOperator, IsTheSameByClustersToATenthOfWhatItLeavesOut) {
   for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), clusters.row(i));
 }
 
-}  // namespace
+}  // namespace nodal_operator_test
 }  // namespace tanktread::coupling

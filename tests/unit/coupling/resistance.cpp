@@ -17,7 +17,7 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::coupling {
-namespace {
+namespace resistance_test {
 
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
@@ -166,5 +166,5 @@ TEST(Resistance, SaysWhenTheSolverStopsShort) {
   EXPECT_THROW(short_of_it.force_density(s.field([](const Vec3&) { return Vec3(1, 0, 0); })), RunFailure);
 }
 
-}  // namespace
+}  // namespace resistance_test
 }  // namespace tanktread::coupling

@@ -14,7 +14,7 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::coupling {
-namespace {
+namespace rigid_body_test {
 
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
@@ -147,5 +147,5 @@ TEST(FreeBody, KeepsItsQuaternionOfUnitLength) {
   EXPECT_NEAR(place.bottomRows<2>().norm(), 1, 1e-15);
 }
 
-}  // namespace
+}  // namespace rigid_body_test
 }  // namespace tanktread::coupling

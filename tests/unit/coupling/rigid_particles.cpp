@@ -14,7 +14,7 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::coupling {
-namespace {
+namespace rigid_particles_test {
 
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
@@ -247,5 +247,5 @@ TEST(RigidTractions, AnArrayResists) {
   EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-5);  // 3e-4 by double layers
 }
 
-}  // namespace
+}  // namespace rigid_particles_test
 }  // namespace tanktread::coupling

@@ -6,7 +6,7 @@
 #include "tests/unit/coupling/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
-namespace {
+namespace symmetry_test {
 
 struct Fixture : SphereInFlow {
   Fixture() : SphereInFlow(4, "simple shear") {
@@ -99,5 +99,5 @@ TEST(Symmetry, GivesTheImplicitStepOfTheWholeSurface) {
   EXPECT_NEAR((steps[1] - steps[0]).norm(), 0, 1e-4 * steps[0].norm());  // entries of the frozen operator are rounded to 2^-9, 294 of them a row
 }
 
-}  // namespace
+}  // namespace symmetry_test
 }  // namespace tanktread::coupling

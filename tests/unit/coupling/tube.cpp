@@ -15,7 +15,7 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::coupling {
-namespace {
+namespace tube_test {
 
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
@@ -188,5 +188,5 @@ TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
   EXPECT_TRUE(body.motion(here).velocity.allFinite());
 }
 
-}  // namespace
+}  // namespace tube_test
 }  // namespace tanktread::coupling

@@ -12,7 +12,7 @@
 #include "tests/assembled_tangent.hpp"
 
 namespace tanktread::membrane {
-namespace {
+namespace membrane_test {
 
 const std::vector<Law> laws = {NeoHookean{1.3}, Skalak{1.3, 2.5}, SurfaceTension{1.3}};
 
@@ -209,5 +209,5 @@ TEST(Membrane, SmallestTensionIsTheSmallestOfItsPoints) {
   EXPECT_LT(summary.compressed_area, 1);
 }
 
-}  // namespace
+}  // namespace membrane_test
 }  // namespace tanktread::membrane

@@ -8,7 +8,7 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::membrane {
-namespace {
+namespace patch_forces_test {
 
 struct Sphere {
   spline::TMesh mesh;
@@ -54,5 +54,5 @@ TEST(PatchForces, NeedAPlaceOfTheirOwn) {
   EXPECT_NO_THROW(PatchForces({{{"one", {1, 0, 0}, 0.1, {}}, {"other", {-2, 0, 0}, 0.3, {}}}}).check());
 }
 
-}  // namespace
+}  // namespace patch_forces_test
 }  // namespace tanktread::membrane

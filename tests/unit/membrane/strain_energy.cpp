@@ -7,7 +7,7 @@
 #include "membrane/laws.hpp"
 
 namespace tanktread::membrane {
-namespace {
+namespace strain_energy_test {
 
 using Constants = std::map<std::string, double>;
 
@@ -103,5 +103,5 @@ TEST(StrainEnergy, WhatIsNoEnergyIsRefusedWithItsNumbers) {
   EXPECT_PRED2(says, refusal(std::string(100000, '-') + "I1"), "100002 characters");
 }
 
-}  // namespace
+}  // namespace strain_energy_test
 }  // namespace tanktread::membrane

@@ -10,7 +10,7 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::membrane {
-namespace {
+namespace viscosity_test {
 
 struct Sphere {
   spline::TMesh mesh = spline::cube(6);
@@ -70,5 +70,5 @@ TEST(ViscousLoad, DissipatesWhatTheRateOfStrainSays) {
   EXPECT_NEAR(sphere.power({0, 1.9}, sphere.net, v), four_pi * 1.9 * 0.2, mesh * four_pi);
 }
 
-}  // namespace
+}  // namespace viscosity_test
 }  // namespace tanktread::membrane

@@ -12,7 +12,7 @@
 #include "motion/schemes.hpp"
 
 namespace tanktread::motion {
-namespace {
+namespace integrators_test {
 
 /// One control point whose three coordinates follow
 ///   x' = -rate (x - cos t) - sin t,  y' = -y^2,  t' = 1:   x = cos t, y = 1/(1 + t) from x = 1, y = 1, t = 0,
@@ -432,5 +432,5 @@ TEST(Integrators, ACopiedStateGoesOnToTheLastBit) {
   }
 }
 
-}  // namespace
+}  // namespace integrators_test
 }  // namespace tanktread::motion

@@ -11,7 +11,7 @@
 #include "suitability.hpp"
 
 namespace tanktread::spline {
-namespace {
+namespace coarsening_test {
 
 constexpr auto rule = ExtraordinaryRule::catmull_clark;
 
@@ -109,5 +109,5 @@ TEST(Coarsening, AMovingFeatureKeepsTheNumberOfControlPointsBounded) {
   EXPECT_LT(most[1], 1.1 * most[0]);
 }
 
-}  // namespace
+}  // namespace coarsening_test
 }  // namespace tanktread::spline

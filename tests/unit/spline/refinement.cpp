@@ -12,7 +12,7 @@
 #include "spline/locate.hpp"
 
 namespace tanktread::spline {
-namespace {
+namespace refinement_test {
 
 constexpr auto rule = ExtraordinaryRule::catmull_clark;
 
@@ -187,5 +187,5 @@ TEST(Refinement, G1SpacesAreNotNestedAtAnExtraordinaryPointButAwayFromIt) {
   EXPECT_LT(Transfer(before, away)(net).residual, 1e-12);
 }
 
-}  // namespace
+}  // namespace refinement_test
 }  // namespace tanktread::spline

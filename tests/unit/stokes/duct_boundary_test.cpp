@@ -10,7 +10,7 @@
 #include "tests/outlines.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace duct_boundary_test {
 
 using surface::Outline;
 using surface::Vec2;
@@ -104,5 +104,5 @@ TEST(BoundaryProfile, DoesNotDependOnWhereTheSectionIs) {
   EXPECT_NEAR(2 * v3, u2, 1e-10);
 }
 
-}  // namespace
+}  // namespace duct_boundary_test
 }  // namespace tanktread::stokes

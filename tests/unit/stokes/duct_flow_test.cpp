@@ -7,7 +7,7 @@
 #include "stokes/ambient_flow.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace duct_flow_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -134,5 +134,5 @@ TEST(DuctFlow, IsWhatFlowTypeDuctMeans) {
   EXPECT_THROW(AmbientFlow{options}, std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace duct_flow_test
 }  // namespace tanktread::stokes

@@ -17,7 +17,7 @@
 #include "stokes/periodic_sum.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace periodic_test {
 
 using Kind = PeriodicKernel::Kind;
 using Six = Eigen::Matrix<double, 6, 1>;
@@ -236,5 +236,5 @@ TEST(PeriodicSum, ItsErrorIsBelowWhatIsAsked) {
   }
 }
 
-}  // namespace
+}  // namespace periodic_test
 }  // namespace tanktread::stokes

@@ -16,7 +16,7 @@
 #include "tests/layers.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace plane_wall_test {
 
 const PlaneWall level(Vec3(0.3, 0.2, -0.4), Vec3(0, 0, 1)), oblique(Vec3(0.1, -0.2, 0.3), Vec3(1, -2, 2));
 
@@ -221,5 +221,5 @@ TEST(PlaneWall, FluidSticksToIt) {
   }
 }
 
-}  // namespace
+}  // namespace plane_wall_test
 }  // namespace tanktread::stokes

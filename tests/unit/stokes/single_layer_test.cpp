@@ -12,7 +12,7 @@
 #include "tests/layers.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace single_layer_test {
 
 /// A deformed surface of the smallest cube mesh, and a load on it.
 struct Scene {
@@ -170,5 +170,5 @@ TEST(SingleLayer, FixedRuleOfThePaperIsGoodToSevenDigitsAtVertices) {
   EXPECT_GT(largest(fixed - exact), 1e-9 * largest(exact));  // another rule it is
 }
 
-}  // namespace
+}  // namespace single_layer_test
 }  // namespace tanktread::stokes

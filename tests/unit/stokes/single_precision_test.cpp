@@ -8,7 +8,7 @@
 #include "stokes/far_kernel.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace single_precision_test {
 
 /// Nodes on a sphere about a place far from the origin, in any unit of length, that carry random numbers; targets beside some of them.
 struct Scene {
@@ -94,5 +94,5 @@ TEST(SinglePrecision, GivesATargetTheSameWhateverItsNeighboursAre) {
   same(stresslet_sum_in_single, scene.charges());
 }
 
-}  // namespace
+}  // namespace single_precision_test
 }  // namespace tanktread::stokes

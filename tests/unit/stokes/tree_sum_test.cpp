@@ -12,7 +12,7 @@
 #include "tests/layers.hpp"
 
 namespace tanktread::stokes {
-namespace {
+namespace tree_sum_test {
 
 /// Nodes with forces, in small groups, and targets.
 struct Cloud {
@@ -258,5 +258,5 @@ TEST(TreeSum, IsChosenForLargeSurfacesOnly) {
   EXPECT_FALSE(chosen(24, {.rule = "desingularised"}));  // its identities meet every node
 }
 
-}  // namespace
+}  // namespace tree_sum_test
 }  // namespace tanktread::stokes

@@ -17,7 +17,7 @@
 namespace tanktread::surface {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TubeOptions tube(const char* section) {
   TubeOptions options;
