@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -19,14 +18,12 @@
 #include "stokes/ambient_flow.hpp"
 #include "stokes/far_kernel.hpp"
 #include "surface/shapes.hpp"
+#include "tests/benchmark/clock.hpp"
 #include "tests/layers.hpp"
 
 namespace {
 
 using namespace tanktread;
-
-/// Seconds of processor time: a busy machine does not count.
-double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Interactions a second of the bare sum, best of the runs so far: what everything below is held against.
 double bare_rate = 0;

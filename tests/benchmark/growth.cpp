@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <numeric>
 #include <string>
@@ -19,6 +18,7 @@
 #include "spline/extraction.hpp"
 #include "stokes/ambient_flow.hpp"
 #include "surface/shapes.hpp"
+#include "tests/benchmark/clock.hpp"
 #include "tests/layers.hpp"
 
 namespace {
@@ -26,9 +26,6 @@ namespace {
 using namespace tanktread;
 
 constexpr double asked = 1e-5;  // of the integrals; the default is less
-
-/// Seconds of processor time: a busy machine does not count.
-double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Bytes in use: of the heap, and mapped for large arrays.
 double bytes() {

@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <random>
 #include <vector>
 
@@ -16,13 +15,11 @@
 #include "spline/transfer.hpp"
 #include "stokes/ambient_flow.hpp"
 #include "surface/shapes.hpp"
+#include "tests/benchmark/clock.hpp"
 
 namespace {
 
 using namespace tanktread;
-
-/// Seconds of processor time: a busy machine does not count.
-double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 constexpr auto rule = spline::ExtraordinaryRule::catmull_clark;
 

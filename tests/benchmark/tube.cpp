@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <memory>
 
 #include "base/timing.hpp"
@@ -14,13 +13,11 @@
 #include "stokes/ambient_flow.hpp"
 #include "surface/shapes.hpp"
 #include "surface/tube_wall.hpp"
+#include "tests/benchmark/clock.hpp"
 
 namespace {
 
 using namespace tanktread;
-
-/// Seconds of processor time: a busy machine does not count.
-double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// A capsule of a = 0.6 R_T, somewhat deformed, 0.2 R_T below the axis.
 struct Capsule {
