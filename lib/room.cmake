@@ -4,8 +4,8 @@
 # any processor of the family x86-64, each is compiled for several sets of instructions (base/kernel.hpp), with -fno-weak: what a header brings along,
 # inline or as a template, stays in the object, for the linker must not take a function with AVX-512 for that of another file.
 # NaN and infinity keep their meaning (-fno-finite-math-only): a run that goes wrong must still be noticed.
-# So do comparisons with them; what a kernel may not rely on is the last bit of a sum.
-set(kernel_flags -O3 -ffast-math -fno-finite-math-only)
+# So do comparisons with them; what a kernel may not rely on is the last bit of a sum. With the checks of sanitizers between, -O3 takes ten times as long.
+set(kernel_flags $<IF:$<CONFIG:Sanitized>,-O2,-O3> -ffast-math -fno-finite-math-only)
 set(instruction_sets)
 if(SEVERAL_INSTRUCTION_SETS)
   set(instruction_sets avx2 avx512)

@@ -10,10 +10,11 @@ foreach(name test_headers app_test_headers)
 endforeach()
 target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/app/body.hpp)
 
-# gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
-# Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks.
+# gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
+# Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks,
+# but for the suites named after SERIAL, of code that knows of no ranks: each would do there what it did alone.
 function(gtest_program name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;ROOMS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;ROOMS;SERIAL")
   add_executable(${name} ${arg_SOURCES})
   foreach(room ${arg_ROOMS})
     get_property(externals GLOBAL PROPERTY externals_of_${room})
@@ -36,7 +37,9 @@ function(gtest_program name)
   discover(${name} short "-*Long.*" "${arg_KIND}")
   discover(${name} long "*Long.*" "${arg_KIND};long")
   if(arg_MPI)
-    add_test(NAME ${name}.on_two_ranks COMMAND ${MPIEXEC_EXECUTABLE} -n 2 $<TARGET_FILE:${name}> --gtest_filter=-*Long.*)
+    list(TRANSFORM arg_SERIAL APPEND ".*")
+    list(JOIN arg_SERIAL ":" serial)
+    add_test(NAME ${name}.on_two_ranks COMMAND ${MPIEXEC_EXECUTABLE} -n 2 $<TARGET_FILE:${name}> --gtest_filter=-*Long.*:${serial})
     set_tests_properties(${name}.on_two_ranks PROPERTIES LABELS "${arg_KIND};mpi" PROCESSORS 2 ENVIRONMENT "${run_environment}")
   endif()
 endfunction()
