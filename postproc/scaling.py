@@ -18,18 +18,18 @@ The machine should have a free core for every rank.
 import argparse
 import os
 import pathlib
-import re
 import statistics
 import subprocess
 import sys
 import tempfile
 
-SOURCE = pathlib.Path(__file__).resolve().parent.parent
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+import yaml
+
+import tanktread
 
 
 def summaries(program, deck, settings, ranks, copies):
-    """Text of summary.yaml after each of some runs at the same time."""
+    """summary.yaml of each of some runs at the same time."""
     with tempfile.TemporaryDirectory() as where:
         places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
         runs = []
@@ -37,34 +37,34 @@ def summaries(program, deck, settings, ranks, copies):
             words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output", str(place)]
             for setting in settings:
                 words += ["--set", setting]
-            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=os.environ | ENVIRONMENT))
+            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=os.environ | tanktread.ENVIRONMENT))
         said = [run.communicate()[1] for run in runs]
         for place, error in zip(places, said):
             if not (place / "summary.yaml").exists():
                 sys.exit(error.strip() or "the run wrote no summary")
-        return [(place / "summary.yaml").read_text() for place in places]
+        return [yaml.safe_load((place / "summary.yaml").read_text()) for place in places]
 
 
-def seconds(text):
+def seconds(summary):
     """By phase, and of all of them."""
-    block = re.search(r"^seconds:\n((?:  .*\n)*)", text, re.M)[1]
-    times = {name: float(value) for name, value in re.findall(r"^  (.+): (\S+)$", block, re.M)}
+    times = summary["seconds"]
     return times | {"all but start": sum(times.values()) - times.get("start", 0)}
 
 
-def value(text, key):
-    return float(re.findall(rf"^  {key}: (\S+)$", text, re.M)[0])
+def difference(one, many, name="taylor_inertia"):
+    """Largest of a series at the end, of any particle."""
+    return max((abs(value - many["final"][key]) for key, value in one["final"].items() if key.split("/")[-1] == name), default=0)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("deck", nargs="?", default=SOURCE / "inputs/shear_neo_hookean.yaml")
+    parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / "inputs/shear_neo_hookean.yaml")
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
     parser.add_argument("--set", dest="settings", action="append", metavar="KEY=VALUE",
                         help="(default: 24 elements a side, to time 0.4)")
     parser.add_argument("--capacity", action=argparse.BooleanOptionalAction, default=True, help="measure what the machine gives (default: do)")
-    parser.add_argument("--program", default=SOURCE / "build/release/app/tanktread")
+    parser.add_argument("--program", default=tanktread.PROGRAM)
     arguments = parser.parse_args()
     settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]
     many = arguments.ranks
@@ -73,7 +73,7 @@ def main():
     for _ in range(arguments.repeat):
         for kind, (ranks, copies) in kinds.items():
             runs[kind] += summaries(arguments.program, arguments.deck, settings, ranks, copies)
-    times = {kind: [seconds(text) for text in texts] for kind, texts in runs.items()}
+    times = {kind: [seconds(summary) for summary in of_kind] for kind, of_kind in runs.items()}
     titles = ["1 rank", f"{many} ranks", "ratio"] + (["capacity", "efficiency"] if arguments.capacity else [])
     print(f"{'seconds':>18}" + "".join(f"{title:>11}" for title in titles))
     for phase in times["one"][0]:
@@ -87,9 +87,8 @@ def main():
             line += f"{capacity:>11.2f}{ratio / capacity:>11.2f}"
         print(line)
     for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
-        print(f"{key:>24}{value(runs['one'][0], key):>16.10g}{value(runs['many'][0], key):>16.10g}")
-    difference = abs(value(runs["one"][0], "taylor_inertia") - value(runs["many"][0], "taylor_inertia"))
-    print(f"{'difference of D':>24}{difference:>16.1e}")
+        print(f"{key:>24}{runs['one'][0]['counts'][key]:>16.10g}{runs['many'][0]['counts'][key]:>16.10g}")
+    print(f"{'difference of D':>24}{difference(runs['one'][0], runs['many'][0]):>16.1e}")
 
 
 if __name__ == "__main__":

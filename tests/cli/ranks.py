@@ -2,11 +2,13 @@
 # ranks: 3
 # The answer does not depend on the number of ranks: every series and picture of one, two and three is the same.
 import pathlib
+import re
+import subprocess
 
 import numpy
 import yaml
 
-from harness import check, deck, main, run, series
+from harness import PROGRAM, SOURCE, check, deck, main, run, series
 
 DECK = """
 Tanktread:
@@ -16,6 +18,14 @@ Tanktread:
   Time: {final time: 1.0}
 """
 LONG = ["Particle/shape=ellipsoid", "Particle/semi-axes=[4.0, 0.6, 0.5]", "Surface/elements per side=6", "Quadrature/tolerance=1e-2"]  # ends are far apart
+TWO = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particles:
+    defaults: {Membrane: {capillary number: 0.3}, Surface: {elements per side: 3}}
+    left: {center: [-1.5, 0, 0]}
+    right: {center: [1.5, 0, 0]}
+"""
 CLOCK = ["wall_seconds"]  # the only series that may differ
 
 
@@ -105,6 +115,14 @@ def a_red_cell():
 
 def a_membrane_of_another_law_in_another_flow():
     _compare("Membrane/law=Skalak", "Flow/type=planar hyperbolic", "Membrane/capillary number=0.6")
+
+
+def two_particles_are_timed_phase_by_phase():
+    words = [SOURCE / "postproc/scaling.py", deck(TWO), "--repeat", "1", "--no-capacity", "--program", PROGRAM, "--set", "Time/final time=0.1"]
+    said = subprocess.run(words, capture_output=True, text=True)
+    check(said.returncode == 0, said.stderr)
+    found = re.search(r"difference of D +(\S+)", said.stdout)
+    check("single layer" in said.stdout and found and float(found[1]) < 1e-10, said.stdout)
 
 
 main()
