@@ -6,7 +6,7 @@
 
 #include "base/types.hpp"
 #include "stokes/flow_options.hpp"
-#include "stokes/periodic_kernel.hpp"
+#include "stokes/periodic_images.hpp"
 
 namespace tanktread::deck {
 class Section;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "stokes/periodic_kernel.hpp"
+#include "stokes/periodic_images.hpp"
 
 namespace tanktread {
 

@@ -8,7 +8,7 @@
 #include "base/pack.hpp"
 #include "base/types.hpp"
 #include "stokes/cluster_kernel.hpp"
-#include "stokes/periodic_kernel.hpp"
+#include "stokes/periodic_images.hpp"
 
 namespace tanktread::stokes {
 

@@ -13,7 +13,7 @@
 #include "quadrature/gauss.hpp"
 #include "stokes/far_kernel.hpp"
 #include "stokes/kernels.hpp"
-#include "stokes/periodic_kernel.hpp"
+#include "stokes/periodic_images.hpp"
 #include "stokes/periodic_sum.hpp"
 
 namespace tanktread::stokes {

@@ -1,4 +1,4 @@
-#include "stokes/periodic_kernel.hpp"
+#include "stokes/periodic_images.hpp"
 
 #include <algorithm>
 #include <cmath>
