@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The direction of dependencies: every #include in lib/ is one that the room's line in lib/CMakeLists.txt allows.
+"""The direction of dependencies: every #include in lib/ is one that the room's line in lib/CMakeLists.txt allows. Kernels are in
+the namespace of their set of instructions.
 
 Usage: layers.py <source directory>
 """
@@ -70,10 +71,17 @@ def include_errors(source, rooms):
                     yield f"{path}: in {room} only {ONLY_IN[room, owner]} may include {header}"
 
 
+def kernel_errors(source):
+    """What is compiled once for each set of instructions is in the namespace of its set, or the linker takes one of them by chance (kernels.py)."""
+    for path in sorted((source / "lib").glob("*/*_kernel.cpp")):
+        if "\nnamespace INSTRUCTIONS {\n" not in path.read_text():
+            yield f"{path}: a file *_kernel.cpp has its functions in the namespace INSTRUCTIONS (base/kernel.hpp)"
+
+
 def main():
     source = pathlib.Path(sys.argv[1])
     rooms = allowed(source)
-    errors = [*order_errors(rooms), *include_errors(source, rooms)]
+    errors = [*order_errors(rooms), *include_errors(source, rooms), *kernel_errors(source)]
     print("\n".join(errors))
     sys.exit(bool(errors))
 
