@@ -38,10 +38,21 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body) {
   }
 }
 
-Body body(const Scene& scene) {
+bool alike(const Scene& one, const Scene& other) {
+  const surface::ParticleShape &here = one.particle.shape, &there = other.particle.shape;
+  const auto levels = [](const Scene& scene) { return scene.adaptation.enabled ? scene.adaptation.levels : 0; };
+  return here.shape == there.shape && here.shape != "file" && !here.initial && !there.initial && one.surface == other.surface &&
+         levels(one) == levels(other);
+}
+
+Body body(const Scene& scene, const Member* alike) {
   Body b;
   const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
-  if (const auto& imported = scene.particle.shape.imported) {
+  if (alike) {
+    const Body& other = *alike->body;
+    b.mesh = other.mesh, b.space = other.space, b.plain = other.plain;
+    b.rest = surface::placed_again(other.rest, alike->scene.particle.shape, scene.particle.shape);
+  } else if (const auto& imported = scene.particle.shape.imported) {
     b.space = imported->space;
     b.rest = surface::imported_shape(scene.particle.shape);
   } else if (scene.surface.polar()) {

@@ -17,6 +17,8 @@
 
 namespace tanktread {
 
+struct Member;
+
 /// What the deck describes, before anything moves.
 struct Body {
   spline::TMesh mesh;  ///< empty for one from a file
@@ -39,7 +41,12 @@ struct Body {
   /// The space whose refinements contain it: fields go over from mesh to mesh in it.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
-Body body(const Scene& scene);
+
+/// Of a scene of one particle. `alike`: an equal particle elsewhere, or none, whose mesh and resting shape are taken.
+Body body(const Scene& scene, const Member* alike = nullptr);
+
+/// Whether a particle's mesh and resting shape can be had from one of the other scene.
+bool alike(const Scene& one, const Scene& other);
 
 /// Gives the body a mesh, and the spline space that the deck wants on it.
 void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);

@@ -1,6 +1,7 @@
 // Capsules and drops in the time loop, on meshes that may change.
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -132,8 +133,12 @@ class Deforming : public ParticleSystem {
     whole.time = state.time, whole.wall_seconds = wall_seconds;
     whole.step = report, whole.work = capsule_->work();
     std::vector<double> of_particles;
+    std::vector<Moment> moments;
+    for (std::size_t p = 0; p < members_.size(); ++p) moments.push_back(moment(p, state));
+    add_treading(state.x, v, moments);
     for (std::size_t p = 0; p < members_.size(); ++p) {
-      const Moment now = moment(p, state, v, report);
+      Moment& now = moments[p];
+      if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, report.step, now);
       std::ranges::copy(tanktread::row(particle_series(members_[p].scene), now), std::back_inserter(of_particles));
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
       whole.velocity += now.velocity / static_cast<double>(members_.size());
@@ -221,9 +226,9 @@ class Deforming : public ParticleSystem {
     return force;
   }
 
-  /// What a row is made of for particle p, where the fluids move by v.
-  Moment moment(std::size_t p, const motion::State& state, const Net& v, const motion::StepReport& report) {
-    Member& member = members_[p];
+  /// What a row is made of for particle p, but for its tank-treading.
+  Moment moment(std::size_t p, const motion::State& state) {
+    const Member& member = members_[p];
     if (member.scene.particle.rigid()) return rigid_moment(p, state);
     const Body& body = *member.body;
     const Net x = member.own(state.x), slope = member.own(state.history.front());
@@ -231,14 +236,39 @@ class Deforming : public ParticleSystem {
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
     now.energy += capsule_->whole_membrane_energy(state.x, p);
-    if (members_[p].scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
+    if (member.scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
     now.intrinsic_viscosity = intrinsic_viscosity(body, scene_.flow.viscosity, now);
-    add_treading(member.scene, body, geometry(member), x, member.own(v), now);
-    std::optional<double> angle;
-    if (!capsule_->particles()[p].slides()) angle = angle_in(body.plane, surface::value(body.nested(), x, member.followed) - now.centre);
-    member.phase_angle.advance(report.step, now.treading.frequency, angle);
-    now.phase = member.phase_angle.degrees;
     return now;
+  }
+
+  /// Velocity and tank-treading of those that deform, where the fluids move by v. Each particle is one rank's.
+  void add_treading(const Net& x, const Net& v, std::vector<Moment>& moments) const {
+    constexpr std::size_t n = 5;
+    std::vector<double> found(n * moments.size(), 0.);
+    for (const int k : ranks_.share(static_cast<int>(moments.size()))) {
+      const Member& member = members_[k];
+      if (member.scene.particle.rigid()) continue;
+      Moment& now = moments[k];
+      tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(x), member.own(v), now);
+      std::ranges::copy(std::array<double, n>{now.velocity[0], now.velocity[1], now.velocity[2], now.treading.velocity, now.treading.frequency},
+                        &found[n * k]);
+    }
+    ranks_.add(found);
+    for (std::size_t p = 0; p < moments.size(); ++p) {
+      const double* of = &found[n * p];
+      if (!members_[p].scene.particle.rigid()) moments[p].velocity = {of[0], of[1], of[2]}, moments[p].treading = {of[3], of[4]};
+    }
+  }
+
+  /// The angle that the material of particle p has turned by.
+  void advance_phase(std::size_t p, const Net& x, double step, Moment& now) {
+    Member& member = members_[p];
+    const Body& body = *member.body;
+    std::optional<double> angle;
+    if (!capsule_->particles()[p].slides())
+      angle = angle_in(body.plane, surface::value(body.nested(), member.own(x), member.followed) - now.centre);
+    member.phase_angle.advance(step, now.treading.frequency, angle);
+    now.phase = member.phase_angle.degrees;
   }
 
   /// The same for a rigid body.

@@ -17,12 +17,18 @@ namespace {
 
 constexpr double accuracy = 1e-7;  // over R_C
 
+/// The patches of a particle in the shape x, by the map that it shares with its equals where there is one.
+surface::Patches patches_of(const Member& member, const Net& x) {
+  if (member.geometry) return {member.geometry->bezier(), x};
+  return {surface::BezierMap(member.body->space), x};
+}
+
 /// A particle's surface as closest_points takes it.
 struct Placed {
   surface::Patches patches;
   surface::ElementBoxes boxes;
 
-  Placed(const surface::BezierMap& map, const Net& x) : patches(map, x), boxes(patches) {}
+  Placed(const Member& member, const Net& x) : patches(patches_of(member, x)), boxes(patches) {}
 };
 
 struct Pair {
@@ -48,7 +54,7 @@ class Pairs {
         double reach = std::numeric_limits<double>::infinity())
       : members_(members), x_(x) {
     for (std::size_t p = 0; p < members.size(); ++p) {
-      placed_.push_back(std::make_unique<Placed>(surface::BezierMap(members[p].body->space), x[p]));
+      placed_.push_back(std::make_unique<Placed>(members[p], x[p]));
       radius_ = std::max(radius_, members[p].body->radius);
     }
     each(cell, [&](const Pair& pair) { reach = std::min(reach, pair.bound + size(pair.first) + size(pair.second)); });
@@ -64,7 +70,7 @@ class Pairs {
   surface::ClosestPoints closest(const Pair& pair, double reach) const {
     const auto& [bound, p, q, beyond] = pair;
     std::unique_ptr<Placed> moved;
-    if (!beyond.isZero(0)) moved = std::make_unique<Placed>(surface::BezierMap(members_[q].body->space), x_[q].rowwise() + beyond.transpose());
+    if (!beyond.isZero(0)) moved = std::make_unique<Placed>(members_[q], x_[q].rowwise() + beyond.transpose());
     return surface::closest_points(placed_[p]->boxes, moved ? moved->boxes : placed_[q]->boxes, accuracy * radius_, reach);
   }
 

@@ -67,10 +67,12 @@ coupling::Rigid rigid(const Scene& scene, const Body& body) {
 std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
   for (Scene& one : scene.alone()) {
+    const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
+    auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal));
     Member& member = all.emplace_back();
     member.name = one.name;
     member.scene = std::move(one);
-    member.body = std::make_unique<Body>(body(member.scene));
+    member.body = std::move(its_body);
   }
   if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
     only.wall = wall(all.front().scene, only);

@@ -73,6 +73,11 @@ Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape
   return resting_shape(fit, sphere, shape);
 }
 
+Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to) {
+  const Mat3 one = map_of(from), other = map_of(to), map = one == other ? Mat3(Mat3::Identity()) : Mat3(other * one.inverse());
+  return ((net.rowwise() - from.center.transpose()) * map.transpose()).rowwise() + to.center.transpose();
+}
+
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {
   const LeastSquaresFit fit(space);
   return resting_shape(fit, unit_sphere(mesh, fit), shape);

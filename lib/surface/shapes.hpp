@@ -67,6 +67,9 @@ Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int
 /// The resting shape `net` of an ellipsoid, in place, fitted again on the space that it is on by now; any other shape as it is.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
 
+/// The resting shape `net` of one particle made into that of another on the same mesh, of another size, place and orientation.
+Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to);
+
 /// The surface of a file, its centroid moved to the deck's centre and turned about it.
 Net imported_shape(const ParticleShape& shape);
 

@@ -2,7 +2,7 @@
 
     #!/usr/bin/python3
     # label: long                     (optional: left out of the default run)
-    # ranks: 2                        (optional: processes it starts at a time)
+    # ranks: 2                        (optional: processors it takes)
     from harness import check, main, run
 
     def an_unknown_key_is_named():
@@ -12,8 +12,12 @@
     main()
 
 main() runs every function of the script whose docstring is not "not a test", each in an empty directory of its own, and fails if one
-fails. Relative paths given to run() that exist in the source directory are taken from there.
+fails. A script of two ranks has two processors: its functions that start one rank run two at a time, before the others. Relative paths given to run() that exist in the source directory are taken from there.
 """
+import concurrent.futures
+import inspect
+import itertools
+import multiprocessing
 import os
 import pathlib
 import subprocess
@@ -98,6 +102,20 @@ def summary(results):
     return yaml.safe_load((pathlib.Path(results) / "summary.yaml").read_text())
 
 
+def _outcome(test):
+    """Whether a test passes, and what is to be said of it."""
+    with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
+        os.chdir(directory)
+        try:
+            test()
+            return True, "passed " + test.__name__.replace("_", " ")
+        except Exception as error:  # the rest of the script still runs
+            said = str(error) if isinstance(error, Failed) else traceback.format_exc()
+            return False, "FAILED " + test.__name__.replace("_", " ") + "\n" + said
+        finally:
+            os.chdir(SOURCE)
+
+
 def main():
     """Runs the functions of the calling script."""
     script = sys.modules["__main__"]
@@ -105,16 +123,12 @@ def main():
              and not f.__name__.startswith("_") and (f.__doc__ or "") != "not a test"]
     if not tests:
         sys.exit("no tests in this script")
+    head = pathlib.Path(script.__file__).read_text().splitlines()[:20]
+    apart = [f for f in tests if "ranks" in inspect.getsource(f)] if "# ranks: 2" in head else tests
     failed = 0
-    for test in tests:
-        with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
-            os.chdir(directory)
-            try:
-                test()
-                print("passed", test.__name__.replace("_", " "))
-            except Exception as error:  # the rest of the script still runs
-                failed += 1
-                print("FAILED", test.__name__.replace("_", " "))
-                print(error if isinstance(error, Failed) else traceback.format_exc())
-            os.chdir(SOURCE)
+    with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("fork")) as two:
+        outcomes = list(two.map(_outcome, [f for f in tests if f not in apart]))
+    for passed, said in itertools.chain(outcomes, map(_outcome, apart)):
+        failed += not passed
+        print(said, flush=True)
     sys.exit(1 if failed else 0)

@@ -227,6 +227,20 @@ TEST(Members, ThatAreEqualShareTheirTables) {
   for (const Member& member : members) EXPECT_EQ(member.scene.particles.capacity(), 0u);
 }
 
+TEST(Members, HaveTheMeshAndTheShapeThatTheyHaveAlone) {
+  const std::string flat = ", shape: ellipsoid, semi-axes: [1, 1, 0.9]";
+  const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("turned", 3, ", orientation: [0, 40, 10]") + particle("flat", 6, flat) +
+                          particle("flat and turned", 9, flat + ", orientation: [20, 0, 30]") + particle("large", 15, ", radius: 2") +
+                          "    fine: {center: [20, 0, 0], Surface: {elements per side: 4}}\n  Contact: {}\n");
+  for (const Member& member : tanktread::members(all)) {
+    const Body alone = body(member.scene);
+    ASSERT_EQ(member.body->rest.rows(), alone.rest.rows()) << member.name;
+    EXPECT_LT((member.body->rest - alone.rest).cwiseAbs().maxCoeff(), 1e-13) << member.name;
+    EXPECT_EQ(member.body->space.n_points, alone.space.n_points) << member.name;
+    EXPECT_NEAR(member.body->volume, alone.volume, 1e-12) << member.name;
+  }
+}
+
 TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
   for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
     EXPECT_TRUE(may_change_on_resume(path)) << path;

@@ -138,5 +138,21 @@ TEST(Shapes, StandWhereTheDeckPutsThem) {
   EXPECT_LT((measures(cube.space, net).centroid - shape.center).norm(), 1e-12);
 }
 
+TEST(Shapes, AreThoseOfAnotherParticlePlacedAgain) {
+  const CubeMesh cube(6);
+  for (const char* kind : {"ellipsoid", "red cell"}) {
+    ParticleShape one, other;
+    one.shape = other.shape = kind;
+    one.center = {1, -2, 0.5}, other.center = {-3, 4, 7};
+    one.orientation = {10, 20, -30}, other.orientation = {-70, 5, 40};
+    if (one.shape == "ellipsoid")
+      one.semi_axes = {1, 0.7, 2}, other.semi_axes = {0.3, 1.1, 0.9};
+    else
+      one.radius = 2, other.radius = 0.5;
+    const Net again = placed_again(cube.shape(one), one, other);
+    EXPECT_LT((again - cube.shape(other)).cwiseAbs().maxCoeff(), 1e-13) << kind;
+  }
+}
+
 }  // namespace
 }  // namespace tanktread::surface
