@@ -125,34 +125,36 @@ struct Sums {
   }
 };
 
-}  // namespace
-
-void image_stokeslet_sum(const Charges& points, const double* target, double* value) {
-  const auto& q = points.q;
+/// Sums over the points at a block of targets; `add`: what point k, at r from a target, adds there; z0 as the images have it.
+template <class Add>
+void image_sum(const Charges& points, const double* target, double* value, const Add& add) {
   for (int p = 0; p < packs; ++p) {
     Register t[3], u[3] = {};
     for (int c = 0; c < 3; ++c) t[c] = load(target + far_block * c + lanes * p);
     for (int k = 0; k < points.n; ++k) {
       const Register r[3] = {points.x[k] - t[0], points.y[k] - t[1], points.z[k] - t[2]};
-      ImageOfForce(r, -t[2]).add(r, q[0][k], q[1][k], q[2][k], u);
+      add(k, r, -t[2], u);
     }
     for (int c = 0; c < 3; ++c) store(u[c], value + far_block * c + lanes * p);
   }
 }
 
+}  // namespace
+
+void image_stokeslet_sum(const Charges& points, const double* target, double* value) {
+  const auto& q = points.q;
+  image_sum(points, target, value, [&](int k, const Register (&r)[3], const Register& z0, Register (&u)[3]) {
+    ImageOfForce(r, z0).add(r, q[0][k], q[1][k], q[2][k], u);
+  });
+}
+
 void image_stresslet_sum(const Charges& points, const double* target, double* value) {
   const auto& q = points.q;
-  for (int p = 0; p < packs; ++p) {
-    Register t[3], u[3] = {};
-    for (int c = 0; c < 3; ++c) t[c] = load(target + far_block * c + lanes * p);
-    for (int k = 0; k < points.n; ++k) {
-      const Register r[3] = {points.x[k] - t[0], points.y[k] - t[1], points.z[k] - t[2]};
-      const Register sr[3] = {q[0][k] * r[0] + q[3][k] * r[1] + q[4][k] * r[2], q[3][k] * r[0] + q[1][k] * r[1] + q[5][k] * r[2],
-                              q[4][k] * r[0] + q[5][k] * r[1] + q[2][k] * r[2]};
-      ImageOfStress(r, -t[2]).add(r, sr, Register{} + (q[0][k] + q[1][k] + q[2][k]), u);
-    }
-    for (int c = 0; c < 3; ++c) store(u[c], value + far_block * c + lanes * p);
-  }
+  image_sum(points, target, value, [&](int k, const Register (&r)[3], const Register& z0, Register (&u)[3]) {
+    const Register sr[3] = {q[0][k] * r[0] + q[3][k] * r[1] + q[4][k] * r[2], q[3][k] * r[0] + q[1][k] * r[1] + q[5][k] * r[2],
+                            q[4][k] * r[0] + q[5][k] * r[1] + q[2][k] * r[2]};
+    ImageOfStress(r, z0).add(r, sr, Register{} + (q[0][k] + q[1][k] + q[2][k]), u);
+  });
 }
 
 void image_single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u) {
