@@ -663,6 +663,8 @@ double Capsule::volume_error(const Net& x) const {
   return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
 }
 
+double Capsule::distance(const Net& from, const Net& to) const { return norm(Corotation::deformation(particles(), from, to)); }
+
 double Capsule::norm(const Net& displacement) const {
   const double along = tube_ && !tube_->fixed() ? displacement.col(0).mean() : 0;
   double largest = 0;

@@ -9,6 +9,7 @@
 
 #include "base/timing.hpp"
 #include "base/types.hpp"
+#include "coupling/corotation.hpp"
 #include "coupling/dynamics.hpp"
 #include "coupling/film_inverses.hpp"
 #include "coupling/frozen_operator.hpp"
@@ -117,6 +118,7 @@ class Capsule : public Dynamics {
   void restore_volume(Net& x) override;
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
+  double distance(const Net& from, const Net& to) const override;
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
@@ -267,6 +269,8 @@ class Capsule : public Dynamics {
   Krylov velocity_solver_, step_solver_, inner_solver_;
   NodalOperator nodal_;                     // or frozen_, as the options say
   FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
+  Net frozen_at_;                          // shape at which they were assembled
+  Corotation corotation_;                  // from there to the shape linearised last
   RigidParticles rigid_;
   std::optional<RigidTractions> tractions_;  // where rigid bodies, alone, are solved for by these
   std::optional<OneBodyInverses> alone_;  // made when first needed

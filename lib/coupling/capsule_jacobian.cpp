@@ -24,6 +24,7 @@ void Capsule::freeze(const Net& at) {
   if (cell_) put_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
+  frozen_at_ = at;
   stokes::Layer& layer = site_layer_ ? *site_layer_ : layer_;
   const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer.assemble(targets, of...); };
   layer.place(x, stokes::Measure::reference);
@@ -55,6 +56,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++work_.tangents;
   tangent_.update(x, own_elements_);
+  if (frozen_at_.rows() == x.rows()) corotation_ = Corotation(particles(), frozen_at_, x);
   if (whole_) whole_->update(x, whole_gradients(x), own_elements_);
   if (repulsion_) repulsion_->update(x, own_elements_);
   if (viscous_) linearised_viscous_->update(x, own_elements_);
@@ -84,13 +86,13 @@ std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
 Net Capsule::frozen_single_layer(const Net& f) {
   Net u = Net::Zero(f.rows(), 3);
   if (parameters_.solvers.frozen_operator != "nodal") {
-    frozen_.apply(f, u);
+    frozen_.apply(corotation_.back(f), u);
     replicate(u);
   } else {
-    nodal_.apply(f, u);
+    nodal_.apply(corotation_.back(f), u);
     gather(nodal_.shared(), u);
   }
-  return u;
+  return corotation_.forth(u);
 }
 
 /// P of a rate, where last linearised. A stiff membrane's answer to a change of volume, which the fluids do not let happen, would spoil all else.
@@ -138,8 +140,9 @@ Net Capsule::frozen_viscous(const Net& v) {
   Net hv = Net::Zero(v.rows(), 3), deforming = inside, load;
   rigid_.clear(deforming);
   if (double_layer_) {
-    frozen_double_.apply(deforming, hv);
+    frozen_double_.apply(corotation_.back(deforming), hv);
     replicate(hv);
+    hv = corotation_.forth(hv);
   }
   if (viscous_) {
     load = viscous_load(*linearised_viscous_, deforming);

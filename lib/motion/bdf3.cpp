@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t places = 3;         // earlier ones that a step needs, x_n not counted
 constexpr double growth = 1.5;    // of a step, at most
 constexpr int patience = 3;       // attempts before the places are given up
-constexpr double sharper = 1.86;  // shift over step, against TR-BDF2's
+constexpr double proportional = 1e-3;  // tolerance below which a step has less than all of it
 
 /// (4.9) at the end dt of the step: 1/shift and a_0, a_1, a_2 for places at times[0 … 2].
 struct Differentiation {
@@ -39,7 +39,6 @@ StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit)
   state.places.insert(state.places.begin(), std::move(before));
   if (state.places.size() == places) {
     state.history.resize(1);
-    state.memory[0] = std::min(0.9, sharper * state.memory[0]);
     state.step = std::min(state.step, options_.fixed_step.value_or(growth * report.step));
   }
   return report;
@@ -48,11 +47,12 @@ StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit)
 StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   if (state.places.size() < places) return start(dynamics, state, limit);
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
-  Memory memory = remembered<Memory>(state.memory);
+  const Memory memory = remembered<Memory>(state.memory);
   coupling::Secants secants = state.secants;
   const std::array<const Net*, places + 1> nets{&state.x, &state.places[0].x, &state.places[1].x, &state.places[2].x};
   std::array<double, places + 1> times{};
   for (size_t i = 0; i < places; ++i) times[i + 1] = state.places[i].time - state.time;
+  const double share = std::min(1.0, std::cbrt(options_.tolerance / proportional));
   Attempts attempts(options_, state, limit);
 
   while (attempts.report.rejected < patience) {
@@ -63,19 +63,18 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     Stage stage;
     stage.y = predicted;
     dynamics.improve_start(stage.y, state.x, scheme.shift);
-    stage.contraction = memory.expected_contraction(dt);
     dynamics.at(state.time + dt, state.time);
     solve(dynamics, options_, rhs, scheme.shift, secants, stage);
     attempts.report.iterations += stage.iterations;
 
     const double distance = stage.solved ? dynamics.norm(stage.y - predicted) : 0;
-    const double error = scheme.shift / (dt - times[places]) * distance / options_.tolerance;
-    const Verdict verdict = judge(dynamics, options_, state, stage, error, 4, memory);
+    const double error = (scheme.shift / (dt - times[places]) * distance / share + stage.error) / options_.tolerance;
+    const Verdict verdict = judge(dynamics, options_, state, secants, stage, error, 4, memory);
     const double factor = std::min(growth, verdict.factor);
     if (verdict.accepted) {
       state.places.insert(state.places.begin(), {state.time, state.x});
       state.places.pop_back();
-      state.memory = values_of(Memory{stage.contraction, error, dt});
+      state.memory = values_of(Memory{error, dt});
       state.history = {stage.slope};
       state.secants = std::move(secants);
       const StepReport report = attempts.accept(dynamics, std::move(stage.y), error, factor);

@@ -9,11 +9,9 @@
 namespace tanktread::motion {
 
 namespace {
-const double worth_assembling = 0.8;  // root mean square displacement over R_C since the last assembly
-const double doubtful = 0.3;          // contraction rate expected where an attempt erred too much
-}
-
-double Memory::expected_contraction(double dt) const { return std::min(0.9, std::max(least, contraction * (step > 0 ? dt / step : 1))); }
+constexpr double unobserved = 0.5;        // contraction rate assumed before one is observed
+constexpr double worth_assembling = 0.3;  // change of shape since the last assembly
+}  // namespace
 
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {
   double previous = 0;
@@ -22,7 +20,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     const Net defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
     ++stage.iterations;
     if (!defect.allFinite()) return;
-    if (k > 0 && options.secants > 0) {
+    if (k == 1 && options.secants > 0) {  // later corrections are so small that they teach the noise of the quadrature
       const Net missed = dynamics.missed_of(defect - before, delta, shift);
       if (!missed.allFinite()) return;
       secants.add(delta, missed, options.secants);
@@ -30,12 +28,13 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     dynamics.linearise(stage.y);
     delta = dynamics.correction(shift, defect, options.linear_tolerance, secants);
     const double size = dynamics.norm(delta);
-    stage.y += delta;
     if (!std::isfinite(size)) return;
-    double& rate = stage.contraction;
-    if (k > 0) rate = std::max(0.3 * rate, size / previous);
+    stage.y += delta;
+    if (k > 0 && previous > 0) stage.rate = std::max(options.linear_tolerance, size / previous);
+    const double rate = stage.rate > 0 ? stage.rate : unobserved;
     if (rate >= 1) return;
-    if (rate / (1 - rate) * size < options.newton_tolerance * options.tolerance) {
+    stage.error = rate / (1 - rate) * size;
+    if (stage.error < options.newton_tolerance * options.tolerance) {
       stage.slope = dynamics.symmetric((stage.y - rhs) / shift);
       stage.y = rhs + shift * stage.slope;
       stage.solved = true;
@@ -46,17 +45,19 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
   }
 }
 
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, Stage& last, double error, int power, Memory& memory) {
-  // A fresh operator helps only where the shape has moved on; the rest of the contraction rate is the part left out of (4.3).
-  const double moved = dynamics.norm(state.x - state.frozen);
-  if (last.solved ? last.contraction > options.contraction_limit && moved > worth_assembling : moved > 0) dynamics.freeze(state.frozen = state.x);
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error, int power,
+              const Memory& memory) {
+  // A fresh operator helps only if the shape has changed; the rest of the contraction rate is the part left out of (4.3).
+  const double changed = dynamics.distance(state.frozen, state.x);
+  if (last.solved ? last.rate > options.contraction_limit && changed > worth_assembling : changed > 0) {
+    dynamics.freeze(state.frozen = state.x);
+    secants = state.secants = {};
+  }
   if (!last.solved || !std::isfinite(error)) {
-    memory.contraction = std::min(0.5, last.contraction);
     if (options.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
     return {};
   }
   const bool small = error <= 1 || options.fixed_step;
-  if (!small) memory.least = doubtful;
   if (small) dynamics.restore_volume(last.y);
   return {small && last.y.allFinite(), step_factor(error, small ? memory.error : 0, power)};
 }

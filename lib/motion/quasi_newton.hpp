@@ -1,5 +1,5 @@
 #pragma once
-// What the implicit schemes share: the stage equation, its quasi-Newton iteration and the memory of how fast that contracts.
+// Solution of the stages of implicit schemes: quasi-Newton iteration, its measured error, and what decides on a step.
 
 #include <span>
 
@@ -7,44 +7,46 @@
 
 namespace tanktread::motion {
 
-/// The controller's memory as it stands in front of State::memory.
+/// What the step controller remembers between steps, stored at the front of State::memory.
 struct Memory {
-  double contraction = 0.3;  ///< contraction rate of the quasi-Newton iteration at the step `step`
-  double error = 0;          ///< local error of the last accepted step over the tolerance; 0 before the first
-  double step = 0;           ///< its size
-  double least = 0;          ///< contraction rate below which none is expected: of the step whose first attempt erred too much
-
-  /// The contraction rate to expect of a step dt: the part left out of (4.3) grows with the step. What the linear solves leave does not, so that a
-  /// step that errs too much is not tried again shorter and shorter with a single iteration, whose rate is never seen.
-  double expected_contraction(double dt) const;
+  double error = 0;  ///< local error of the last accepted step divided by the tolerance; 0 before the first step
+  double step = 0;   ///< size of that step
 };
 
-/// A stage y - shift v(y) = rhs and what its solution came to.
+/// A stage y - shift v(y) = rhs and its solution.
 struct Stage {
-  Net y;                   ///< the start of the iteration, then its end
-  Net slope;               ///< (y - rhs)/shift, algebraic
-  double contraction = 0;  ///< expected rate, then the one found
-  int iterations = 0;      ///< velocity evaluations
+  Net y;                ///< start of the iteration, then its result
+  Net slope;            ///< (y - rhs)/shift
+  double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier one; 0 if none was observed yet
+  double error = 0;     ///< bound of the distance of the result to the exact solution of the stage, in the norm of `Time/tolerance`
+  int iterations = 0;   ///< evaluations of the defect
   bool solved = false;
 };
 
-/// Quasi-Newton iteration on the frozen-geometry Jacobian (4.3), H fresh in every iteration, to `Time/newton tolerance`.
-/// Uses the secants (4.13) and adds its own.
+/// Solves a stage by quasi-Newton iteration with the frozen-geometry Jacobian (4.3), whose membrane tangent H is updated in every iteration, and the
+/// secants (4.13), to which it adds one pair. With d_k the correction of iteration k,
+///
+///   rate = |d_k|/|d_(k-1)|,   error = rate/(1 - rate) |d_k|                                                                       (4.28)
+///
+/// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. The rate is one that was observed in the same step, where
+/// shape and shift are the same; before one was, it is taken as 1/2, so that a stage whose first correction is not itself small is evaluated a second
+/// time. It is never taken below the relative residual of the linear solves.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
 
-/// What an attempt at a step comes to.
+/// Decision on an attempted step.
 struct Verdict {
   bool accepted = false;
-  double factor = 0.5;  ///< the next step over this one
+  double factor = 0.5;  ///< next step divided by this one
 };
 
-/// After an attempt that ended with the stage `last` and the local error `error`, over the tolerance, of a scheme whose error falls with this
-/// power of the step. Restores the volume of an accepted end, and accepts none of which that fails. Assembles the layer operator anew at state.x
-/// where the iteration failed or contracted too slowly and the shape has moved on since the last time. Throws RunFailure when a step of fixed size
-/// was not solved.
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, Stage& last, double error, int power, Memory& memory);
+/// Decides on an attempt that ended with the stage `last` and has the local error `error`, divided by the tolerance, which falls with the given power
+/// of the step. Restores the volume of an accepted end; an attempt for which that fails is rejected. Assembles the layer operators anew at state.x,
+/// and forgets the secants, if the iteration failed or contracted too slowly and the shape has changed since the last time. Throws RunFailure if a
+/// step of fixed size was not solved.
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error, int power,
+              const Memory& memory);
 
-/// The value at t of the polynomial through nets[i] at times[i].
+/// Returns the value at t of the polynomial through nets[i] at times[i].
 Net interpolated(std::span<const double> times, std::span<const Net* const> nets, double t);
 
 }  // namespace tanktread::motion
