@@ -461,15 +461,15 @@ Net Capsule::double_layer_of(const Net& v) {
   return hv;
 }
 
-/// v_inf - (1/mu) R^-1 A f, and what the wall answers to the load where it is eliminated.
-Net Capsule::explicit_velocity(const Net& x, const Net& f) {
+/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle.
+Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
     const bool known = tube_ && flow_.duct();
     const Eigen::SparseMatrix<double>& values = projection_ ? projection_->values() : sites_;
     u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(values * x)) - u / parameters_.viscosity;
     if (tube_ && schur()) {
-      Tube::Response response = tube_->respond(f);
+      Tube::Response response = tube_->respond(f, moves);
       u += response.velocity;
       if (!has_velocity_system()) latest_.response = std::move(response);
     }

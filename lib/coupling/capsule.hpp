@@ -203,7 +203,8 @@ class Capsule : public Dynamics {
   Net double_layer_of(const Net& v);
   Net membrane_load(const Net& x, Net* other);
   void place(const Net& x);
-  Net explicit_velocity(const Net& x, const Net& f);
+  Net explicit_velocity(const Net& x, const Net& f, const Net& moves = {});
+  Net defect_here(const Net& x, const Net& u);
   void own(const surface::Share& share);
   void make_layers();
   void replicate(Net& net);

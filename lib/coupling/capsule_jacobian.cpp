@@ -171,15 +171,25 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
   return stiff_system(shift, interface_ ? r : frozen_viscous(r), tolerance, secants);
 }
 
-/// Whether the defect of a velocity comes without a system of its own.
-bool Capsule::defect_without_system() const { return (viscous_ || double_layer_) && !interface_ && !tube_ && !cell_ && rigid_.empty(); }
+/// Returns whether the defect of a velocity is computed by (3.14), without solving for the velocity.
+bool Capsule::defect_without_system() const { return (viscous_ || double_layer_) && !interface_ && schur() && rigid_.empty(); }
 
-/// P (w - B P u) - (1 - P) u, of which B v = w is the system of the velocity (solve_velocity): the load of u in a viscous membrane joins the elastic
-/// one, in one sum. (3.14)
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_without_system()) return velocity(x) - u;
   ++work_.evaluations;
-  if (!x.allFinite() || !in_front_of_wall(x)) return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  if (!cell_ || !x.allFinite()) return defect_here(x, u);
+  Net in_cell = x, slower = u;
+  const std::vector<Vec3> shifts = put_into_cell(in_cell);
+  for (std::size_t p = 0; p < shifts.size(); ++p)
+    particles()[p].block.rows(slower).rowwise() -= (flow_.gradient(Vec3::Zero()) * shifts[p]).transpose();
+  return defect_here(in_cell, slower);
+}
+
+/// Returns P (w - B P u) - (1 - P) u, where B v = w is the system of the velocity (solve_velocity). The load of u in a viscous membrane is added to
+/// the elastic load, so that one sum serves both. (3.14)
+Net Capsule::defect_here(const Net& x, const Net& u) {
+  if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
+    return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b, inside = u;
@@ -189,7 +199,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
     viscous_->update(x, own_elements_);
     f += viscous_load(*viscous_, inside);
   }
-  Net lacking = explicit_velocity(x, f) - inside;
+  Net lacking = explicit_velocity(x, f, double_layer_ ? inside : Net()) - inside;
   if (double_layer_) {
     const auto clock = phases_.time("velocity system");
     double_layer_->place(x);

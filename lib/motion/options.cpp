@@ -10,8 +10,8 @@ namespace tanktread::motion {
 
 void TimeOptions::declare(deck::Section& section) {
   section.key("scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
-              "`auto`: `bs3`, `tr-bdf2` or `rkc2` by the measured stiffness; `tr-bdf2`: implicit, L-stable, order 2; `bdf3`: implicit, multistep, "
-              "order 3; `bs3`: explicit, order 3; `rkc2`: explicit, stabilised, order 2, nothing assembled; `crank-nicolson`: the paper's (4.1)");
+              "`auto`: `bs3`, `tr-bdf2` or `rkc2` by the measured stiffness; `tr-bdf2`: implicit, L-stable, order 3 by "
+              "extrapolation; `bdf3`: implicit, multistep, order 3; `bs3`: explicit, order 3; `rkc2`: explicit, stabilised, order 2, nothing assembled; `crank-nicolson`: the paper's (4.1)");
   std::optional<double> end;
   section.key("final time", end, deck::positive(), "time", "the run ends here; required, but for a `prescribed` motion");
   final_time = end.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -36,7 +36,7 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("count euler step", count_euler_step,
               "`crank-nicolson`: the Euler step, which is free, counts as the first sub-iteration of the rule for the step");
   section.key("newton tolerance", newton_tolerance, deck::between(1e-12, 1.0), "1",
-              "end of the quasi-Newton iteration, in parts of the tolerance");
+              "implicit schemes: largest error of a stage that its quasi-Newton iteration leaves, as a fraction of the tolerance");
   section.key("newton iterations", newton_iterations, deck::at_least(1), "1",
               "most quasi-Newton iterations of a stage before the step is halved");
   section.key("linear tolerance", linear_tolerance, deck::between(1e-14, 0.5), "1",

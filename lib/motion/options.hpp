@@ -25,13 +25,13 @@ struct TimeOptions {
   std::string nonlinear_solver = "plain";   ///< of crank-nicolson: plain, anderson, newton-krylov
   std::optional<std::string> step_control;  ///< of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations where plain
   bool count_euler_step = true;             ///< whether the Euler step is the first sub-iteration of crank-nicolson
-  double newton_tolerance = 0.2;           ///< end of the quasi-Newton iteration, in parts of `tolerance`
+  double newton_tolerance = 0.2;           ///< error left by the quasi-Newton iteration of a stage, divided by `tolerance`
   int newton_iterations = 6;               ///< most iterations of a stage before the step is halved
   double linear_tolerance = 0.05;          ///< relative residual of its linear solves
   double contraction_limit = 0.3;          ///< contraction rate above which the frozen layer operator is assembled anew
   double largest_operator = 32;             ///< GB of the frozen operator on all ranks together beyond which `auto` does without
   int secants = 2;                         ///< corrections remembered by the quasi-Newton iteration (4.13)
-  int predictor_order = 2;                 ///< order of the polynomial through known slopes that a stage starts from
+  int predictor_order = 2;                 ///< degree of the polynomial through known slopes from which a stage starts
 
   double least_step() const { return minimum_step.value_or(1e-9 * unit); }
   bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< a frozen operator of any size (4.3)

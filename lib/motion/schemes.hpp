@@ -125,13 +125,18 @@ class CrankNicolson : public Scheme {
   std::unique_ptr<coupling::FixedPoint> solver_;  // none: plain
 };
 
-/// TR-BDF2 (Hosea & Shampine 1996) with a quasi-Newton solve on the frozen-geometry Jacobian (4.3): L-stable, second order, one step.
+/// TR-BDF2 (Hosea & Shampine 1996) with local extrapolation: one step, third order, L-stable for the exact Jacobian.
 ///
-///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)
+///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)               (4.4)
+///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)
 ///
-/// The first slope is the last one of the step before; slopes are algebraic, never evaluated again. Stages start from a polynomial
-/// through the slopes at hand. The contraction rate of the iteration is remembered across steps, so that one evaluation a stage can do;
-/// above `Time/contraction limit` the layer operator is assembled anew.
+/// b^ is of third order but not stable; e2 is its difference to b without the stiff part. With z = dt J the step multiplies a mode by
+/// R(z) - (R^ - R)/(1 - d z)^2, at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes the error of fourth order only,
+/// so its secants are left out of e1 and e2. The local error is a third of |e1|, which the extrapolated result does not exceed, plus the errors of the
+/// two stages (4.28).
+///
+/// The first slope is the last one of the previous step. Slopes follow from the stage equations and are not evaluated again. Stages start from a
+/// polynomial through the known slopes.
 class TrBdf2 : public Scheme {
  public:
   using Scheme::Scheme;
@@ -143,9 +148,14 @@ class TrBdf2 : public Scheme {
 ///
 ///   x_{n+1} - shift v(x_{n+1}) = -shift (a_0 x_n + a_1 x_{n-1} + a_2 x_{n-2}),   1/shift = sum 1/(t_{n+1} - t_{n-i})              (4.9)
 ///
-/// One stage a step, started from the cubic through the last four places; the difference to it, times shift/(t_{n+1} - t_{n-3}), is the local
-/// error. Steps grow by no more than 1.5 at a time (zero-stable below 1.53; Hairer, Norsett & Wanner, Solving ODEs I, III.5). The first three
-/// steps, and the ones after an iteration that failed again and again, are TR-BDF2's.
+/// One stage per step, started from the cubic through the last four positions; the difference to it, times shift/(t_{n+1} - t_{n-3}), is the local
+/// error. The error of a run is the sum of those of its steps, whose number grows like tolerance^(-1/4); so that it stays proportional to the
+/// tolerance, a step may err by
+///
+///   tolerance min(1, (tolerance/1e-3)^(1/3))                                                                                      (4.31)
+///
+/// (Soderlind & Wang 2006). Steps grow by no more than 1.5 at a time (zero-stable below 1.53; Hairer, Norsett & Wanner, Solving ODEs I, III.5). The
+/// first three steps, and the ones after an iteration that failed repeatedly, are TR-BDF2's.
 class Bdf3 : public Scheme {
  public:
   explicit Bdf3(const TimeOptions& options) : Scheme(options), starter_(options) {}

@@ -117,7 +117,8 @@ def conditioning(prefix, name, series):
 
 def scaled(name, old, new, unit):
     """Returns the difference of a series in every row."""
-    change = numpy.abs(new - old)
+    with numpy.errstate(invalid="ignore"):  # inf - inf, of values that are equal
+        change = numpy.abs(new - old)
     if name == "inclination":
         change = numpy.minimum(change, numpy.abs(180 - change))  # -90 and 90 degrees are the same direction
     elif name.startswith("axis_1_x"):
@@ -177,8 +178,8 @@ def loaded(outcome):
 class Comparison:
     """Compares the outcomes of one deck. `failed` is true if a difference is neither within the tolerance nor allowed."""
 
-    def __init__(self, name, outcomes, arguments, named):
-        self.name, self.remarks, found = name, [], {}
+    def __init__(self, name, ranks, outcomes, arguments, named):
+        self.name, self.ranks, self.remarks, found = name, ranks, [], {}
         runs = [loaded(outcome) for outcome in outcomes]
         self.work = [work_of(*pair) for pair in zip(outcomes, runs)]
         self.plain = bool(runs[0]) and plain(runs[0].deck)
@@ -218,11 +219,12 @@ class Comparison:
 def totals(title, comparisons):
     """Returns a line with the sums of evaluations and of seconds over some decks, and the deck with the largest ratio of each."""
     words = []
-    for what, k, least in ("velocity evaluations", EVALUATIONS, 1), ("processor seconds", SECONDS, 0):
-        known = [one for one in comparisons if min(one.work[0][k], one.work[1][k]) >= least]
+    one_rank = [one for one in comparisons if one.ranks == 1]  # processor seconds of several ranks include busy waiting
+    for what, k, measured in ("velocity evaluations", EVALUATIONS, comparisons), ("processor seconds on one rank", SECONDS, one_rank):
+        known = [one for one in measured if one.work[0][k] > 0 and one.work[1][k] > 0]
         if known:
             old, new = (sum(one.work[role][k] for one in known) for role in (0, 1))
-            top = max(known, key=lambda one: one.ratio(k))
+            top = max([one for one in known if one.work[0][k] >= 1] or known, key=lambda one: one.ratio(k))  # shorter runs are mostly noise
             words.append(f"{what} {old:.0f} and {new:.0f}, ratio {new / old:.3f}, largest {top.ratio(k):.3f} (`{top.name}`)")
     return f"\n{title} ({len(comparisons)} decks): " + "; ".join(words)
 
@@ -253,7 +255,7 @@ def main():
             for name, pair in zip(names, pairs):
                 outcomes = [future.result() for future in pair]
                 found_again += sum((outcome.directory / "outcome.json").stat().st_mtime < start for outcome in outcomes)
-                comparisons.append(Comparison(name, outcomes, arguments, named))
+                comparisons.append(Comparison(name, decks[name][1], outcomes, arguments, named))
                 print(comparisons[-1].row(), flush=True)
     print(totals("All decks", comparisons))
     print(totals("Viscosity ratio 1, no viscous membrane, no rigid body", [one for one in comparisons if one.plain]))

@@ -15,8 +15,8 @@ TEST(Secants, KnowNothingAtFirst) { EXPECT_EQ(Secants()(net(1)).norm(), 0); }
 TEST(Secants, GiveBackWhatWasLearntInWhateverSize) {
   Secants secants;
   for (unsigned k : {1u, 2u, 3u}) secants.add(1e-3 * net(k), 1e-3 * net(10 + k), 3);
-  for (unsigned k : {1u, 2u, 3u})  // to the regularisation of the fit, a few times 1e-4
-    EXPECT_LT((secants(net(k)) - net(10 + k)).norm(), 1e-3 * net(10 + k).norm());
+  for (unsigned k : {1u, 2u, 3u})  // within twice the regularisation of the fit, 1e-2
+    EXPECT_LT((secants(net(k)) - net(10 + k)).norm(), 2e-2 * net(10 + k).norm());
 }
 
 TEST(Secants, LeaveAloneWhatIsPerpendicularToAllTheyKnow) {
@@ -39,7 +39,7 @@ TEST(Secants, StayBoundedWhereCorrectionsAreParallel) {
   Secants secants;
   secants.add(net(1), net(2), 2);
   secants.add(net(1), net(3), 2);  // the same correction missed by another vector: the mean of both
-  EXPECT_LT((secants(net(1)) - 0.5 * (net(2) + net(3))).norm(), 1e-3 * net(2).norm());
+  EXPECT_LT((secants(net(1)) - 0.5 * (net(2) + net(3))).norm(), 2e-2 * net(2).norm());
 }
 
 TEST(Secants, GoOnFromTheirPairsToTheLastBit) {
