@@ -61,7 +61,8 @@ SHORTER = {name: {"Time/final time": ENDS[name]} for name in BY_TIME} | {
     "decks/sphere_held_in_throat": {"Surface/elements per side": 6, "Channel/axial elements": 80},
 }
 
-# Series that count work. The table shows their totals and ratios; they are not compared as results. Series in seconds measure the machine.
+# Series that count work. The table shows their totals and ratios; they are not compared as results. Series in seconds are left out because
+# they measure the machine. Step sizes and estimated errors are compared only if the runs have the same number of rows.
 WORK = {"rejected_steps", "iterations", "evaluations", "assemblies", "solver_iterations", "velocity_iterations", "kernel_evaluations"}
 STEPS, EVALUATIONS, ITERATIONS, KERNELS, SECONDS = range(5)
 
@@ -134,7 +135,8 @@ def differences_of(old, new):
     for name in old.series.keys() & new.series.keys():
         prefix, base = name[:name.rfind("/") + 1], name[name.rfind("/") + 1:]
         factor = conditioning(prefix, base, old.series)
-        if base not in WORK and old.units[name] != "s" and factor is not None:
+        skipped = base in WORK or old.units[name] == "s" or (base in ("time_step", "step_error") and remark)
+        if not skipped and factor is not None:
             change = scaled(base, old.series[name][i], new.series[name][j], natural_unit(old.units[name], old))
             found[name] = float(numpy.max(numpy.where(change > 0, change * factor[i], 0.0), initial=0.0))
     first, second = ((run.summary or {}).get("final", {}) for run in (old, new))
