@@ -111,6 +111,7 @@ class Capsule : public Dynamics {
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
   Net missed(const Net& dv, const Net& delta) override;
   Net defect(const Net& x, const Net& u) override;
+  bool defect_spares_system() const override { return defect_without_system(); }
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
   Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;

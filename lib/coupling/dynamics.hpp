@@ -44,6 +44,9 @@ class Dynamics {
   /// are solutions of systems B v = w it is w - B u, one sum over the surface and no system.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
+  /// Whether a velocity takes the solution of a linear system that its defect does not take.
+  virtual bool defect_spares_system() const { return false; }
+
   /// `solve` for r = shift (v - u), given the defect of u.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);

@@ -70,6 +70,8 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   Choice choice = remembered<Choice>(state.memory);
   if (dynamics.frozen_bytes() > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
     choice.scheme = rkc2;
+  } else if (dynamics.defect_spares_system()) {
+    choice.scheme = tr_bdf2;
   } else {
     const bool first = choice.points == 0;
     measure(dynamics, state, choice);
@@ -86,7 +88,7 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   const double before = choice.scheme;
   if (before == bs3 && choice.stiffness > 0 && !options_.fixed_step) inner.step = std::min(inner.step, stable / choice.stiffness);
   const StepReport report = chosen(choice).advance(dynamics, inner, limit);
-  if (choice.scheme != rkc2) {
+  if (choice.scheme != rkc2 && !dynamics.defect_spares_system()) {
     reconsider(inner, report, choice);
     if (choice.scheme != before) {
       inner.history.resize(1);

@@ -12,7 +12,6 @@ namespace {
 constexpr std::size_t places = 3;  // earlier positions that a step needs, x_n not counted
 constexpr double growth = 1.5;     // largest ratio of a step to the previous one
 constexpr int patience = 3;        // attempts before the earlier positions are discarded
-constexpr double full_share = 1e-3;  // tolerance from which on a step may err by all of it (4.31)
 
 /// (4.9) at the end dt of the step: 1/shift and a_0, a_1, a_2 for places at times[0 … 2].
 struct Differentiation {
@@ -52,7 +51,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
   const std::array<const Net*, places + 1> nets{&state.x, &state.places[0].x, &state.places[1].x, &state.places[2].x};
   std::array<double, places + 1> times{};
   for (size_t i = 0; i < places; ++i) times[i + 1] = state.places[i].time - state.time;
-  const double share = std::min(1.0, std::cbrt(options_.tolerance / full_share));
+  const double allowed = options_.tolerance * step_share(options_.tolerance, 3);
   Attempts attempts(options_, state, limit);
 
   while (attempts.report.rejected < patience) {
@@ -68,7 +67,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     attempts.report.iterations += stage.iterations;
 
     const double distance = stage.solved ? dynamics.norm(stage.y - predicted) : 0;
-    const double error = (scheme.shift / (dt - times[places]) * distance / share + stage.error) / options_.tolerance;
+    const double error = scheme.shift / (dt - times[places]) * distance / allowed + stage.error / options_.tolerance;
     const Verdict verdict = judge(dynamics, options_, state, secants, stage, error, 4, memory);
     const double factor = std::min(growth, verdict.factor);
     if (verdict.accepted) {

@@ -56,7 +56,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     auto [y, count, converged] = iterate(dynamics, state, dt, explicitly);
     attempts.report.iterations += count;
     if (!converged && options_.fixed_step) throw RunFailure("Crank-Nicolson with a fixed step did not converge");
-    const double error = known ? dynamics.norm(y - explicitly) / (3 * (1 + 1 / r)) / options_.tolerance : 0;
+    const double error = known ? dynamics.norm(y - explicitly) / (3 * (1 + 1 / r)) / (options_.tolerance * step_share(options_.tolerance, 2)) : 0;
     Net slope;
     if (converged && (error <= 1 || options_.fixed_step)) {
       dynamics.restore_volume(y);

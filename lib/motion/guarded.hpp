@@ -31,6 +31,7 @@ class GuardedDynamics : public coupling::Dynamics {
   Net correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) override;
   Net missed_of(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
+  bool defect_spares_system() const override { return motion_.defect_spares_system(); }
   Net mesh_motion(const Net& delta) override { return motion_.mesh_motion(delta); }
   void restore_volume(Net& x) override;
   void improve_start(Net& y, const Net& before, double shift) override;

@@ -15,6 +15,8 @@ double step_factor(double error, double previous, int power) {
   return std::clamp(0.9 * std::pow(1 / e, 0.7 / power) * std::pow(old / e, 0.4 / power), 0.3, 2.0);
 }
 
+double step_share(double tolerance, int order) { return std::min(1.0, std::pow(tolerance / 1e-3, 1.0 / order)); }
+
 double Attempts::next(double longest) {
   proposed_ = std::min(proposed_, longest);
   if (!options_.fixed_step && !(proposed_ >= options_.least_step()) && !(state_.time + proposed_ >= limit_))

@@ -28,6 +28,13 @@ std::vector<double> values_of(const Memory& memory) {
 /// step that the error goes with. Between 0.3 and 2. Gustafsson 1991.
 double step_factor(double error, double previous, int power);
 
+/// Returns the share of the tolerance by which a step may err, for a scheme of this order whose error estimate is of the order of its own result. The
+/// error of a run is the sum of those of its steps, whose number grows like tolerance^(-1/(order + 1)); with this share the sum stays proportional to
+/// the tolerance (Soderlind & Wang 2006):
+///
+///   min(1, (tolerance/1e-3)^(1/order))                                                                                            (4.31)
+double step_share(double tolerance, int order);
+
 /// The attempts at one step towards `limit`: their sizes, and what is reported of them.
 class Attempts {
  public:
@@ -132,7 +139,7 @@ class CrankNicolson : public Scheme {
 ///
 /// b^ is of third order but not stable; e2 is its difference to b without the stiff part. With z = dt J the step multiplies a mode by
 /// R(z) - (R^ - R)/(1 - d z)^2, at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes the error of fourth order only,
-/// so its secants are left out of e1 and e2. The local error is a third of |e1|, which the extrapolated result does not exceed, plus the errors of the
+/// so its secants are left out of e1 and e2. The local error is a quarter of |e1|, which the extrapolated result does not exceed, plus the errors of the
 /// two stages (4.28).
 ///
 /// The first slope is the last one of the previous step. Slopes follow from the stage equations and are not evaluated again. Stages start from a
@@ -149,13 +156,8 @@ class TrBdf2 : public Scheme {
 ///   x_{n+1} - shift v(x_{n+1}) = -shift (a_0 x_n + a_1 x_{n-1} + a_2 x_{n-2}),   1/shift = sum 1/(t_{n+1} - t_{n-i})              (4.9)
 ///
 /// One stage per step, started from the cubic through the last four positions; the difference to it, times shift/(t_{n+1} - t_{n-3}), is the local
-/// error. The error of a run is the sum of those of its steps, whose number grows like tolerance^(-1/4); so that it stays proportional to the
-/// tolerance, a step may err by
-///
-///   tolerance min(1, (tolerance/1e-3)^(1/3))                                                                                      (4.31)
-///
-/// (Soderlind & Wang 2006). Steps grow by no more than 1.5 at a time (zero-stable below 1.53; Hairer, Norsett & Wanner, Solving ODEs I, III.5). The
-/// first three steps, and the ones after an iteration that failed repeatedly, are TR-BDF2's.
+/// error, of which a step may have its share (4.31). Steps grow by no more than 1.5 at a time (zero-stable below 1.53; Hairer, Norsett & Wanner,
+/// Solving ODEs I, III.5). The first three steps, and the ones after an iteration that failed repeatedly, are TR-BDF2's.
 class Bdf3 : public Scheme {
  public:
   explicit Bdf3(const TimeOptions& options) : Scheme(options), starter_(options) {}
@@ -168,6 +170,7 @@ class Bdf3 : public Scheme {
 
 /// Chooses the scheme from the measured stiffness rho (4.7), which the frozen operator gives for less than an evaluation:
 ///
+///   TR-BDF2 if a velocity, which explicit schemes need, takes a linear system that the defect of a stage does not (3.14); otherwise
 ///   BS3 as long as the step that the error allows, the first one too, is stable, dt < 2.3/rho; else TR-BDF2, whose work per unit of time is counted;
 ///   back to BS3 when that is above 1.5 times 3/min(dt, 2.3/rho), and once more to TR-BDF2 when rho has changed or fifty steps have passed.
 ///

@@ -9,7 +9,7 @@ namespace tanktread::motion {
 namespace {
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
-constexpr double accuracy = 3;  // error of the second-order result divided by that of the extrapolated one, at the least
+constexpr double accuracy = 4;  // error of the second-order result divided by that of the extrapolated one, at the least
 }  // namespace
 
 StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
