@@ -210,9 +210,12 @@ class Deforming : public ParticleSystem {
     capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
   }
 
-  /// Of the fluids on the surface. In a tube it is asked for, as the slope carries what is left of the scheme's iteration, over the step.
+  /// Returns the velocity of the fluids on the surface. In a tube, whose response depends on it, the slope is evaluated if it errs by more than
+  /// the tolerance.
   Net material_velocity(const motion::State& state) {
-    if (body().wall) return capsule_->fluid_velocity(state.x, state.history.front());
+    const Net& slope = state.history.front();
+    const bool accurate = state.slope_error <= scene_.time.tolerance * scene_.rate();
+    if (body().wall && !(accurate && capsule_->adopt(state.x, slope))) return capsule_->fluid_velocity(state.x, slope);
     return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
   }
 

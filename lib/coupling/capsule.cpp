@@ -343,6 +343,19 @@ Net Capsule::velocity(const Net& x, const Net& guess) {
   return latest_.velocity = std::move(v);
 }
 
+bool Capsule::adopt(const Net& x, const Net& v) {
+  if (interface_ || tractions_ || !rigid_.empty()) return false;
+  if (same(x, latest_.x)) return true;
+  Net load = membrane_load(x, nullptr);
+  if (viscous_) {
+    viscous_->update(x, own_elements_);
+    load += viscous_load(*viscous_, v);
+  }
+  latest_ = {};
+  latest_.x = x, latest_.load = std::move(load), latest_.velocity = latest_.unknowns = v;
+  return true;
+}
+
 Net Capsule::fluid_velocity(const Net& x, const Net& guess) {
   const Net v = velocity(x, guess);
   return interface_ ? latest_.fluid : v;

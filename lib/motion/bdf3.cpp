@@ -75,6 +75,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
       state.places.pop_back();
       state.memory = values_of(Memory{error, dt});
       state.history = {stage.slope};
+      state.slope_error = stage.error / scheme.shift;
       state.secants = std::move(secants);
       const StepReport report = attempts.accept(dynamics, std::move(stage.y), error, factor);
       state.step = std::min(state.step, growth * dt);

@@ -74,6 +74,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
       state.memory = {dt, error};
     }
     state.history.insert(state.history.begin(), std::move(slope));
+    state.slope_error = 0;
     state.history.resize(by_error_ ? 2 : 1);
     return attempts.accept(dynamics, std::move(y), error, factor);
   }

@@ -59,6 +59,7 @@ void begin(coupling::Dynamics& dynamics, State& state) {
   if (!state.history.empty()) return;
   dynamics.at(state.time, state.time);
   state.history = {dynamics.velocity(state.x)};
+  state.slope_error = 0;
 }
 
 void forget(State& state) {

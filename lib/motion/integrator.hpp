@@ -27,6 +27,7 @@ struct State {
   Net x;                        ///< control net
   std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, the latest first: the first one is that at x
   std::vector<Place> places;    ///< earlier places that a multistep scheme keeps, the latest first
+  double slope_error = 0;       ///< bound of the error of the first slope, in the norm of `Time/tolerance` per unit of time
   Net direction;                ///< in which the stiffness (4.7) was found; empty where it was not sought
   std::vector<double> memory;   ///< the controller's memory, its meaning is the scheme's own
   coupling::Secants secants;    ///< what the quasi-Newton iterations have learnt of the Jacobian

@@ -95,6 +95,7 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
       memory.error = error;
       state.memory = values_of(memory);
       state.history = {slope};
+      state.slope_error = 0;
       return attempts.accept(dynamics, std::move(y), error, factor);
     }
     attempts.reject(std::min(factor, 0.8), error);

@@ -71,6 +71,7 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
     const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(std::max(error, 1e-6), -1. / 3), 0.3, 2.0) : 0.3;
     if (attempts.holds(error, "explicit")) {
       state.history = {k4};
+      state.slope_error = 0;
       return attempts.accept(dynamics, std::move(y), error, factor);
     }
     attempts.reject(std::min(factor, 0.9), error);

@@ -48,19 +48,21 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       solve(dynamics, options_, rhs3, shift, secants, third);
     }
     attempts.report.iterations += second.iterations + third.iterations;
-    double error = 0;
+    double error = 0, slope_error = 0;
     if (third.solved) {
       const Net raw = dt * ((4 * w - 1) / 3 * k1 - k2 / 3 + 2 * d / 3 * third.slope);
       const Net once = dynamics.solve(shift, raw, options_.linear_tolerance, {}), twice = dynamics.solve(shift, once, options_.linear_tolerance, {});
       error = (dynamics.norm(once) / accuracy + second.error + third.error) / options_.tolerance;
       third.y -= twice;
       third.slope -= (twice - once) / shift;
+      slope_error = (third.error + third.rate * dynamics.norm(twice)) / shift;
     }
     const auto [accepted, factor] = judge(dynamics, options_, state, secants, third, error, 3, memory);
     if (accepted) {
       state.history = {third.slope, k2, k1};
       state.secants = std::move(secants);
       state.memory = values_of(Memory{error, dt});
+      state.slope_error = slope_error;
       return attempts.accept(dynamics, std::move(third.y), error, factor);
     }
     attempts.reject(std::min(factor, 0.8), error);

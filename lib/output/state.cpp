@@ -28,6 +28,7 @@ std::vector<Net> stored(const char* name, const Checkpoint& checkpoint) {
 void store(const motion::State& state, Checkpoint& checkpoint) {
   checkpoint.numbers["time"] = state.time;
   checkpoint.numbers["proposed_step"] = state.step;
+  checkpoint.numbers["slope_error"] = state.slope_error;
   checkpoint.arrays["x"] = state.x;
   checkpoint.arrays["frozen"] = state.frozen;
   checkpoint.arrays["memory"] = Eigen::Map<const Eigen::VectorXd>(state.memory.data(), static_cast<Eigen::Index>(state.memory.size()));
@@ -46,6 +47,7 @@ motion::State stored_state(const Checkpoint& checkpoint) {
   motion::State state;
   state.time = checkpoint.numbers.at("time");
   state.step = checkpoint.numbers.at("proposed_step");
+  state.slope_error = checkpoint.numbers.at("slope_error");
   state.x = checkpoint.arrays.at("x");
   state.frozen = checkpoint.arrays.at("frozen");
   const Eigen::MatrixXd& memory = checkpoint.arrays.at("memory");
