@@ -143,7 +143,13 @@ Moment rigid_moment(const Scene& scene, const Body& body, const surface::Geometr
 
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& of_flow, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks) {
-  const FlowPlane plane = of_flow.holds_flow ? of_flow : plane_normal_to(surface::principal_axes(measures).directions.col(1));
+  FlowPlane plane = of_flow;
+  bool plane_defined = true;
+  if (!plane.holds_flow) {
+    const surface::PrincipalAxes axes = surface::principal_axes(measures);
+    plane = plane_normal_to(axes.directions.col(1));
+    plane_defined = axes.longest_defined && axes.shortest_defined;
+  }
   const std::vector<int> own = own_elements(geometry, ranks);
   std::array<surface::Range, surface::Geometry::n_extremes> extremes = geometry.extremes(x, measures.centroid, own);
   if (!plane.fixed()) {
@@ -154,7 +160,9 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
   for (size_t k = 0; k < extremes.size(); ++k) ends[2 * k] = extremes[k].smallest, ends[2 * k + 1] = extremes[k].largest;
   for (const auto& of_rank : gathered(ranks, ends))
     for (size_t k = 0; k < extremes.size(); ++k) extremes[k] = wider(extremes[k], {of_rank[2 * k], of_rank[2 * k + 1]});
-  return surface::Geometry::deformation(measures, extremes);
+  surface::Deformation result = surface::Geometry::deformation(measures, extremes);
+  if (!plane_defined) result.inclination = std::numeric_limits<double>::quiet_NaN();
+  return result;
 }
 
 Moment moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,

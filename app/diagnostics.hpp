@@ -32,7 +32,8 @@ Moment moment(const Scene& scene, const Body& body, const surface::Geometry& geo
 /// Velocity of the centroid, and tank-treading, of a surface x whose material moves by v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, Moment& now);
 
-/// D and inclination in the plane of the flow, and extents. Ranks share the elements. Collective.
+/// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane is that of the longest and the shortest
+/// semi-axis; if one of these is not distinct from the middle one, the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 

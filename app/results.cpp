@@ -16,6 +16,7 @@
 #include "app/duct_picture.hpp"
 #include "app/numbers.hpp"
 #include "app/provenance.hpp"
+#include "app/series.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/expectation.hpp"
@@ -294,8 +295,11 @@ std::string Results::finish(const Account& account, const Phases& phases) {
     summary.final.emplace_back(series.name, series.values.back());
     if (!series.si.empty()) summary.final_in_si.emplace_back(series.name, scene_.units->in_si(series.unit, series.values.back()));
   }
+  deck::UndefinedSeries undefined;
+  for (const Series& one : run_series(scene_))
+    if (!one.undefined_if.empty()) undefined[one.name] = one.undefined_if;
   std::string missed;
-  for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table)) {
+  for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table, undefined)) {
     summary.expect.push_back(verdict);
     if (verdict.passed) continue;
     const std::string found = verdict.name + ": " + verdict.reason;

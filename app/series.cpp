@@ -27,6 +27,7 @@ struct Statement {
   unsigned owners;
   double (*value)(const Moment& now, int component);
   Needs needs = Needs::nothing;
+  const char* undefined_if = "";  // condition under which the value is NaN, as a clause
 };
 
 double stresslet(const Moment& m, int component) {
@@ -49,7 +50,8 @@ constexpr Statement statements[] = {
      of_deforming, [](const Moment& m, int) { return m.shape.taylor_surface; }},
     {"inclination", "", "degree",
      "angle of the long axis of inertia with the first direction of the plane of the flow (x1), towards the second (x3)", moving,
-     [](const Moment& m, int) { return m.shape.inclination; }},
+     [](const Moment& m, int) { return m.shape.inclination; }, Needs::nothing,
+     "the two semi-axes in the plane of the flow (any two if the flow is not planar) differ by less than 1e-6 R_C"},
     {"volume", "", "length^3", "enclosed volume (P-43)", of_deforming | told_or_among_others, [](const Moment& m, int) { return m.measures.volume; }},
     {"volume_error", "", "1", "V/V0 - 1", of_deforming, [](const Moment& m, int) { return m.volume_error; }},
     {"refit_error", "", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over R_C", of_deforming,
@@ -107,8 +109,9 @@ constexpr Statement statements[] = {
      [](const Moment& m, int c) { return m.quaternion[c]; }},
     {"axis_", "1 2 3", "length", "semi-axis # of the ellipsoid with the same second moments (6.1), the longest one first", of_deforming | of_free,
      [](const Moment& m, int c) { return m.axes.lengths[c]; }},
-    {"axis_1_", axes, "1", "direction of the longest one, component #; the first that is not zero is positive. Any where two are longest",
-     of_deforming | of_free, [](const Moment& m, int c) { return m.axes.directions(c, 0); }},
+    {"axis_1_", axes, "1", "direction of the longest semi-axis, component #; the first nonzero component is positive", of_deforming | of_free,
+     [](const Moment& m, int c) { return m.axes.longest_defined ? m.axes.directions(c, 0) : std::numeric_limits<double>::quiet_NaN(); },
+     Needs::nothing, "the two longest semi-axes differ by less than 1e-6 R_C"},
     {"tank_treading_velocity", "", "length/time",
      "mean tangential velocity relative to the centroid on the curve that the plane of the flow through it cuts out (6.5); positive where the side "
      "of larger x3 moves along x1, clockwise with x1 to the right and x3 up",
@@ -226,7 +229,8 @@ std::vector<Series> stated() {
     for (int c = 0; c == 0 || components >> component; ++c) {
       description = one.description;
       if (const auto at = description.find('#'); at != description.npos) description.replace(at, 1, component);
-      all.push_back({one.name + component, one.unit, description, one.owners, one.needs, c, one.value});
+      if (*one.undefined_if) description += "; NaN if " + std::string(one.undefined_if);
+      all.push_back({one.name + component, one.unit, description, one.undefined_if, one.owners, one.needs, c, one.value});
     }
   }
   return all;
@@ -305,7 +309,7 @@ std::vector<double> row(std::span<const Series> of, const Moment& now) {
   std::vector<double> values;
   for (const Series& one : of) {
     values.push_back(one.value(now, one.component));
-    if (std::isnan(values.back())) throw RunFailure("the series " + one.name + " is not a number");
+    if (std::isnan(values.back()) && one.undefined_if.empty()) throw RunFailure("the series " + one.name + " is not a number");
   }
   return values;
 }

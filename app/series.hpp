@@ -82,7 +82,8 @@ enum class Needs {
 struct Series {
   std::string name;
   const char* unit;
-  std::string description;
+  std::string description;    ///< includes when the series is undefined
+  std::string undefined_if;   ///< condition under which the value is NaN, as a clause; empty if the series is always defined
   unsigned owners;
   Needs needs;
   int component;  ///< the number of one of several that are stated together, from 0
@@ -104,7 +105,7 @@ std::vector<Series> run_series(const Scene& scene);
 /// Those that a steady shape has beside, of a branch, and of a spectrum: `rate_1`, …
 std::vector<Series> steady_series(const Scene& scene);
 
-/// One row. Throws RunFailure, which names the series, where a value is not a number.
+/// Returns one row. Throws RunFailure, which names the series, if a value is NaN and its series is always defined.
 std::vector<double> row(std::span<const Series> of, const Moment& now);
 
 /// The value of one series in a row. Throws std::out_of_range where there is no such series.

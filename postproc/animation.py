@@ -84,9 +84,9 @@ class Film:
                 axis.plot(*drawn, color=color, linewidth=1.8 if len(names) < 9 else 0.6, drawstyle="steps-post" if name == "n_control_points" else "default")
                 marks.append(axis.plot([], [], "o", color=style.INK, markersize=4.5 if len(names) < 9 else 1.5, clip_on=False)[0])
             axis.set_ylabel(label)
-            largest = max(self.run.series[name].max() for name in names)
-            if min(self.run.series[name].min() for name in names) >= 0:
-                axis.set_ylim(0, 1.1 * max(largest, 1e-6))
+            values = numpy.concatenate([self.run.series[name][~numpy.isnan(self.run.series[name])] for name in names])
+            if len(values) and values.min() >= 0:
+                axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
         self.panels[0].tick_params(labelbottom=False)
         self.panels[1].set_xlabel(self.run.time_label)
         self.panels[1].set_xlim(self.run.time[0], self.run.time[-1])

@@ -65,8 +65,7 @@ def label(run):
 def draw_run(upper, lower, run, deformation, color):
     t = run.time
     upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
-    shaped = run.series["taylor_inertia"] > 1e-8  # a sphere has no inclination
-    lower.plot(*unbroken(t[shaped], run.series["inclination"][shaped]), color=color, zorder=3)
+    lower.plot(*unbroken(t, run.series["inclination"]), color=color, zorder=3)
     for axes, name in (upper, deformation), (lower, "inclination"):
         expected = run.value(f"Expect/{name}")
         if expected:
@@ -85,8 +84,7 @@ def draw_particles(upper, lower, run, deformation, colors):
         pen = {"color": colors[k % len(colors)] if few else colors[0], "linewidth": 1.8 if few else 0.5, "zorder": 3}
         words = f"{run.name}: {name}" if few else f"{run.name}: {len(deforming)} particles" if k == 0 else None
         upper.plot(run.time, run.series[f"{name}/{deformation}"], label=words, **pen)
-        shaped = run.series[f"{name}/taylor_inertia"] > 1e-8
-        lower.plot(*unbroken(run.time[shaped], run.series[f"{name}/inclination"][shaped]), **pen)
+        lower.plot(*unbroken(run.time, run.series[f"{name}/inclination"]), **pen)
 
 
 def unbroken(t, angle):

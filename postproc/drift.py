@@ -25,8 +25,9 @@ SERIES = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ −
 
 
 def turns(time, values, phase):
-    """Means in time over whole turns of the phase."""
+    """Returns means in time over whole turns of the phase. Rows with NaN, where a series is undefined, are left out."""
     ends = numpy.interp(360 * numpy.arange(phase.max() // 360 + 1), phase, time)
+    time, values = time[~numpy.isnan(values)], values[~numpy.isnan(values)]
     whole = numpy.concatenate([[0], numpy.cumsum((values[1:] + values[:-1]) / 2 * numpy.diff(time))])
     return numpy.diff(numpy.interp(ends, time, whole)) / numpy.diff(ends)
 
@@ -72,7 +73,7 @@ def main():
         if scale:
             values, means = values / scale - 1, means / scale - 1
         change, error = drift(means, arguments.first)
-        later, within = means[arguments.first:], values[phase > 360 * arguments.first]
+        later, within = means[arguments.first:], values[(phase > 360 * arguments.first) & ~numpy.isnan(values)]
         print(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; their means {later.min():.6g} to {later.max():.6g}, "
               f"within turns {within.min():.6g} to {within.max():.6g}")
         plot.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)

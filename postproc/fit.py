@@ -180,7 +180,10 @@ class SeriesData:
         values, times = run.series[self.series[0]], run.series["time"]
         last = 0 if self.times is None or self.places else numpy.max(self.times)
         expect(last <= times[-1] * (1 + 1e-9), f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
-        return times, values / run.series[self.series[1]] if len(self.series) > 1 else values
+        values = values / run.series[self.series[1]] if len(self.series) > 1 else values
+        defined = ~numpy.isnan(values)
+        expect(defined[-1] if self.times is None else defined.any(), f"{self.name}: {' / '.join(self.series)} is undefined (NaN) in the run")
+        return times[defined], values[defined]
 
     def predicted(self, prediction, place):
         """What the run has at the data's times."""

@@ -81,6 +81,9 @@ def in_time(study, deck, run, k, path, parsed):
             print(f"from {settings['Particle/initial shape/run']}: {outcome.message}")
             return numpy.nan
         values.append(numpy.interp(times, outcome.run.time, outcome.series[parsed.series]))
+        if numpy.isnan(values[-1]).any():
+            print(f"from {settings['Particle/initial shape/run']}: {parsed.series} is undefined (NaN)")
+            return numpy.nan
     return numpy.polyfit(times, numpy.log(abs(values[0] - values[1])), 1)[0]
 
 

@@ -96,8 +96,12 @@ def interpolated(t, values, at, order=6):
 
 
 def difference(t, values, curve_t, curve_values):
-    """Largest |values - curve| over the times that both cover. The one that is told at more times is interpolated to the times of the other."""
-    series = [(numpy.asarray(times), numpy.asarray(found)) for times, found in ((t, values), (curve_t, curve_values))]
+    """Returns the largest |values - curve| over the times that both cover. The one with more times is interpolated to the times of the other. Rows
+    with NaN, where a series is undefined, are left out. The result is 0 if no times are left."""
+    series = [(numpy.asarray(times)[~numpy.isnan(found)], numpy.asarray(found)[~numpy.isnan(found)])
+              for times, found in ((t, values), (curve_t, curve_values))]
     (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda one: -len(one[0]))
+    if not len(coarse_t):
+        return 0.0
     common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])
     return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))

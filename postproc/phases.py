@@ -43,9 +43,13 @@ Kind = collections.namedtuple("Kind", "below above tell measures series")
 
 def in_shear(series, begin):
     """`tumbles`, `both`, `treads` or None; half turns of the shape backwards, and of the membrane on it, after the share `begin` of the time."""
-    time, phase = series["time"], series["phase"]
-    turned = -numpy.unwrap(series["inclination"], period=HALF)  # of the sense of the phase
-    late = time >= time[0] + begin * (time[-1] - time[0])
+    begins = series["time"][0] + begin * numpy.ptp(series["time"])
+    defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
+    time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
+    late = time >= begins
+    if not late.any():
+        return None, numpy.nan, numpy.nan
+    turned = -numpy.unwrap(inclination, period=HALF)  # in the sense of the phase
     over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
     if over >= SWING:
         return ("both" if around >= 1 else "tumbles"), over, around
@@ -56,7 +60,7 @@ def in_capillary(series, begin):
     """`slips` or `parachute`; by how much the cell is askew in the first third of what comes after `begin`, and in the last one."""
     time = series["time"]
     away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
-    askew = numpy.hypot(away, series["taylor_inertia"] * numpy.sin(2 * numpy.radians(series["inclination"])))
+    askew = numpy.hypot(away, series["taylor_inertia"] * numpy.sin(2 * numpy.radians(numpy.nan_to_num(series["inclination"]))))  # if NaN, D is 0
     thirds = time[0] + (time[-1] - time[0]) * numpy.linspace(begin, 1, 301)
     first, middle, last = (values.max() for values in numpy.array_split(numpy.interp(thirds, time, askew), 3))
     return ("slips" if max(first, middle, last) > ASKEW or last > max(GROWS * first, STRAIGHT) else "parachute"), first, last

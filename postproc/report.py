@@ -68,7 +68,7 @@ def plain(label):
 
 def curves(run):
     """All series, those that matter first; every second, third … row of long ones."""
-    first = [name for name in FIRST if name in run.series and numpy.ptp(run.series[name]) > 1e-9]
+    first = [name for name in FIRST if name in run.series and _varies(run.series[name])]
     names = first + sorted(name for name in run.series if name not in first and name != "time")
     step = max(1, len(run.time) // 600)
     rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
@@ -77,8 +77,18 @@ def curves(run):
             "units": {name: run.units[name] for name in kept}, "meanings": {name: run.descriptions[name] for name in kept}}
 
 
+def _varies(values):
+    defined = values[~numpy.isnan(values)]
+    return len(defined) > 0 and numpy.ptp(defined) > 1e-9
+
+
 def _list(values):
     return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
+
+
+def _or_dash(value):
+    """Returns a number of the summary, or a dash if it is NaN, which JSON does not have."""
+    return "–" if value != value else value
 
 
 def of_run(directory, field):
@@ -87,7 +97,8 @@ def of_run(directory, field):
     status = summary.get("status", "not finished: this is what it has written so far")
     facts = {"status": status} | {key: run.provenance[key] for key in sorted(run.provenance)}
     sections = [("Expectations", "table", [["", "name", "value", "expected", "error"]] + [
-        ["✓" if one.get("passed") else "✗", one.get("name"), one.get("value"), one.get("expected"), one.get("error")] for one in summary.get("expect") or []])]
+        ["✓" if one.get("passed") else "✗", one.get("name"), *(_or_dash(one.get(key)) for key in ("value", "expected", "error"))]
+        for one in summary.get("expect") or []])]
     sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
                  for title, word in (("Plan", "plan"), ("Numbers of the scene", "numbers"), ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"),
                                      ("Counts", "counts"))]

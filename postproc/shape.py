@@ -141,6 +141,9 @@ def draw_sections(axis, runs, shots):
             continue
         angle = numpy.interp(shot.time, run.series["time"], run.series["inclination"])
         deformation = numpy.interp(shot.time, run.series["time"], run.series["taylor_inertia"])
+        if numpy.isnan(angle):  # two equal semi-axes
+            axis.plot([], [], color=color, linewidth=1.8, label=f"{name}t = {shot.time:g}, D = {deformation:.4f}")
+            continue
         along = numpy.array([numpy.cos(numpy.radians(angle)), numpy.sin(numpy.radians(angle))])
         reach = numpy.abs((pieces - middle) @ along).max()
         words = f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}"

@@ -179,7 +179,9 @@ def recorded(outcome, columns):
         elif take == "all":
             row[name] = values
         else:
-            row[name] = float(numpy.interp(at, outcome.series["time"], values)) if at is not None else float(TAKES[take](values))
+            defined = values if take == "last" else values[~numpy.isnan(values)]  # a series is NaN where it is undefined
+            row[name] = numpy.interp(at, outcome.series["time"], values) if at is not None else TAKES[take](defined) if len(defined) else numpy.nan
+            row[name] = float(row[name])
     return row
 
 

@@ -50,7 +50,7 @@ DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pre
 
 
 class Run:
-    """`series`, `units`, `descriptions` by name, `<particle>/<name>` of one of several particles; `deck`, the effective deck as nested dicts; `provenance`; `summary` (None before the end)."""
+    """`series`, `units`, `descriptions` by name, `<particle>/<name>` of one of several particles (a series is NaN where it is undefined, as its description states); `deck`, the effective deck as nested dicts; `provenance`; `summary` (None before the end)."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)

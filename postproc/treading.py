@@ -59,7 +59,8 @@ def at_rate(arguments, rate, viscosity):
     time, phase, inclination = (run.series[name] for name in ("time", "phase", "inclination"))
     begin = numpy.interp(phase[-1] - 360, phase, time)
     times = numpy.linspace(begin, time[-1], 401)
-    around = numpy.interp(times, time, inclination)
+    defined = ~numpy.isnan(inclination)
+    around = numpy.interp(times, time[defined], inclination[defined])
     return 2 * numpy.pi / (time[-1] - begin), around.mean(), around.min(), around.max()
 
 

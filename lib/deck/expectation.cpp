@@ -41,7 +41,7 @@ namespace {
 /// Times that differ by less are the same.
 double slack(double time) { return 1e-9 * std::max(1.0, std::abs(time)); }
 
-Verdict verdict(const Expectation& e, const SeriesTable& series) {
+Verdict verdict(const Expectation& e, const SeriesTable& series, const UndefinedSeries& undefined) {
   Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
               e.not_binding};
   const auto values = series.find(e.series), times = series.find("time");
@@ -61,7 +61,9 @@ Verdict verdict(const Expectation& e, const SeriesTable& series) {
   }
   out.error = std::abs(out.value - e.value) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
   out.passed = out.error <= e.tolerance;  // false for not-a-number
-  if (!out.passed)
+  if (const auto condition = undefined.find(e.series); std::isnan(out.value) && condition != undefined.end())
+    out.reason = e.series + " is undefined " + (e.at ? "at the time " + number_text(*e.at) : "at the end") + ", because " + condition->second;
+  else if (!out.passed)
     out.reason = e.series + " is " + number_text(out.value) + ", expected " + number_text(e.value) + " within " + number_text(e.tolerance) +
                  (e.kind == "relative" ? " (relative)" : "");
   return out;
@@ -88,10 +90,14 @@ std::vector<std::string> too_late(const std::vector<Expectation>& expectations, 
 }
 
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t) {
-  const std::size_t rows = times.size(), points = std::min<std::size_t>(4, rows);
+  const std::size_t rows = times.size();
   const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
   if (above < rows && times[above] == t) return values[above];
-  const std::size_t first = std::min(above < 2 ? 0 : above - 2, rows - points);
+  std::size_t begin = above, end = above;  // of the rows without NaN around t
+  while (begin > 0 && above - begin < 4 && !std::isnan(values[begin - 1])) --begin;
+  while (end < rows && end - above < 4 && !std::isnan(values[end])) ++end;
+  if (begin == above || end == above) return std::numeric_limits<double>::quiet_NaN();
+  const std::size_t points = std::min<std::size_t>(4, end - begin), first = std::clamp(above < 2 ? 0 : above - 2, begin, end - points);
   double sum = 0;
   for (std::size_t i = first; i < first + points; ++i) {
     double weight = 1;
@@ -102,9 +108,9 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
   return sum;
 }
 
-std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series) {
+std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined) {
   std::vector<Verdict> out;
-  for (const Expectation& expectation : expectations) out.push_back(verdict(expectation, series));
+  for (const Expectation& expectation : expectations) out.push_back(verdict(expectation, series, undefined));
   return out;
 }
 

@@ -50,11 +50,15 @@ struct Verdict {
 /// Series by name, rows in order of time, with the series `time` among them.
 using SeriesTable = std::map<std::string, std::vector<double>>;
 
-/// One verdict an expectation, never fewer: a missing series, or a time that was not reached, is a failure.
-/// Between rows the value is that of the cubic through the four rows around the time.
-std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series);
+/// For each series that may be NaN, the condition under which it is, as a clause. The names are those of a SeriesTable.
+using UndefinedSeries = std::map<std::string, std::string>;
 
-/// The polynomial of degree <= 3 through the (at most four) points nearest to t, at t; `times` ascending, not empty, holding t in their range.
+/// Returns one verdict per expectation. A missing series, a time that was not reached, and a time at which the series is undefined are failures.
+/// Between rows the value is that of the cubic through the four rows around the time.
+std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined = {});
+
+/// Returns the value at t of the polynomial of degree <= 3 through the (at most four) points nearest to t. `times` ascend and t is in their range.
+/// Values that are NaN, and what lies beyond them, are not used. The result is NaN if a row next to t is.
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t);
 
 }  // namespace tanktread::deck

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -150,10 +151,16 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
   result.taylor_inertia = (longest - shortest) / (longest + shortest);
   result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
   if (result.inclination < -90 + 1e-6) result.inclination += 180;  // upright: rounding is not to choose the end that points up
+  const double to_semi_axis = std::sqrt(5 / measures.volume);
+  if (!distinct(to_semi_axis * longest, to_semi_axis * shortest, measures.volume)) result.inclination = std::numeric_limits<double>::quiet_NaN();
 
   result.taylor_surface = (extremes[0].largest - extremes[0].smallest) / (extremes[0].largest + extremes[0].smallest);
   for (int c = 0; c < 3; ++c) result.lengths[c] = extremes[1 + c].largest - extremes[1 + c].smallest;
   return result;
+}
+
+bool distinct(double longer, double shorter, double volume) {
+  return longer - shorter >= 1e-6 * std::cbrt(3 * volume / (4 * std::numbers::pi));
 }
 
 PrincipalAxes principal_axes(const Measures& measures) {
@@ -167,6 +174,8 @@ PrincipalAxes principal_axes(const Measures& measures) {
     for (int c = 2; c >= 0; --c)
       if (direction[c] != 0) axes.directions.col(k) = std::copysign(1.0, direction[c]) * direction;
   }
+  axes.longest_defined = distinct(axes.lengths[0], axes.lengths[1], measures.volume);
+  axes.shortest_defined = distinct(axes.lengths[1], axes.lengths[2], measures.volume);
   return axes;
 }
 

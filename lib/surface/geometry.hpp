@@ -34,10 +34,16 @@ struct Measures {
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
+/// Returns whether two semi-axes of a body differ by at least 1e-6 R_C, where R_C is the radius of the sphere of equal volume. If they do not, each
+/// direction between them is a semi-axis, and the computed one is round-off.
+bool distinct(double longer, double shorter, double volume);
+
 /// Semi-axes of the ellipsoid with the same second moments (6.1).
 struct PrincipalAxes {
-  Vec3 lengths = Vec3::Zero();     ///< the longest first
-  Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along them, the first component of each that is not zero positive
+  Vec3 lengths = Vec3::Zero();     ///< in descending order
+  Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along the semi-axes; the first nonzero component of each is positive
+  bool longest_defined = false;    ///< the longest and the middle semi-axis are distinct
+  bool shortest_defined = false;   ///< the middle and the shortest semi-axis are distinct
 };
 PrincipalAxes principal_axes(const Measures& measures);
 
@@ -66,7 +72,8 @@ Vec3 lowest(const Patches& surface, int c);
 /// has a simple extremum; no symmetry is assumed. Of a whole surface, the wider of its parts; of nothing when the plane misses it.
 Range section_distances(const Patches& surface, const Vec3& centre);
 
-/// What the series report (6.2). D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90.
+/// What the series report (6.2). D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90. The inclination is NaN if the two
+/// semi-axes in that plane are not distinct.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3

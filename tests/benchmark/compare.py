@@ -117,7 +117,7 @@ def conditioning(prefix, name, series):
 
 
 def scaled(name, old, new, unit):
-    """Returns the difference of a series in every row."""
+    """Returns the difference of a series in every row; infinity where only one is NaN."""
     with numpy.errstate(invalid="ignore"):  # inf - inf, of values that are equal
         change = numpy.abs(new - old)
     if name == "inclination":
@@ -138,6 +138,7 @@ def differences_of(old, new):
         skipped = base in WORK or old.units[name] == "s" or (base in ("time_step", "step_error") and remark)
         if not skipped and factor is not None:
             change = scaled(base, old.series[name][i], new.series[name][j], natural_unit(old.units[name], old))
+            change[numpy.isinf(change) & (factor[i] < 2e-6)] = 0  # the axes are equal, and only one of the programs writes NaN for this
             found[name] = float(numpy.max(numpy.where(change > 0, change * factor[i], 0.0), initial=0.0))
     first, second = ((run.summary or {}).get("final", {}) for run in (old, new))
     for name in (first.keys() | second.keys()) - old.series.keys() - new.series.keys() - WORK - {"wall_seconds"}:

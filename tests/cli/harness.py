@@ -44,6 +44,16 @@ def close(value, expected, tolerance, what="value"):
     check(abs(value - expected) <= tolerance, f"{what} is {value!r}, expected {expected!r} within {tolerance!r}")
 
 
+def difference(a, b, what="series", weight=1):
+    """Returns the largest weight * |a - b| of two series, divided by the largest |a| if that is above 1. Fails the test unless the series are NaN
+    in the same rows: directions of equal semi-axes are undefined."""
+    import numpy
+
+    check(a.shape == b.shape and (numpy.isnan(a) == numpy.isnan(b)).all(), f"{what}: other rows, or NaN in other rows: {a} and {b}")
+    defined = ~numpy.isnan(a)
+    return numpy.max(weight * abs(a - b), initial=0, where=defined) / numpy.max(abs(a), initial=1, where=defined)
+
+
 def deck(text, name="deck.yaml"):
     """Writes a deck into the test's directory."""
     path = pathlib.Path(name)

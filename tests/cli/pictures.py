@@ -125,6 +125,23 @@ def an_axis_that_turns_over_is_no_vertical_line():
     check(numpy.isnan(angle[2]) and numpy.isnan(t[2]) and len(angle) == 5, angle)
 
 
+def rows_where_a_series_is_undefined_are_left_out():
+    import literature
+
+    t, angle = numpy.linspace(0, 1, 21), numpy.linspace(45, 25, 21)
+    close(literature.difference(t, numpy.where(t < 0.1, numpy.nan, angle), t, angle), 0, 1e-9, "a difference")
+    check(literature.difference(t, numpy.nan * t, t, angle) == 0, "nothing to compare")
+    deck(DECK.replace("shape: sphere }", "shape: sphere, motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", ""))
+    run("deck.yaml", "--output", "sphere", "--quiet")
+    check("NaN if" in _script("read.py", "sphere"), "the description says when there is no inclination")
+    _script("animation.py", "sphere", "-o", "sphere.gif", "--width", "240")
+    _script("report.py", "sphere")
+    deck(DECK)
+    run("deck.yaml", "--output", "capsule", "--quiet")
+    _script("shape.py", "capsule", "--time", "0")
+    _script("deformation.py", "capsule")
+
+
 def a_deck_is_run_when_it_has_no_results():
     deck(DECK)
     with mock.patch.object(tanktread, "PROGRAM", PROGRAM):

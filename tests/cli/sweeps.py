@@ -74,6 +74,9 @@ def tumbling_is_told_from_treading_by_shape_and_membrane():
     check(told(20 + swung, swung) is None, "nothing went around")
     check(told(-numpy.maximum(shape, 200), numpy.maximum(shape, 200) + swung) == "tumbles", "late")
     check(told(-numpy.minimum(shape, 200), shape) == "treads", "it has stopped tumbling")
+    round_at_first = numpy.where(t < 1, numpy.nan, 0)
+    check(told(round_at_first - shape, shape + swung) == "tumbles" and told(round_at_first + 20, shape) == "treads", "a sphere has no inclination")
+    check(told(numpy.nan * t, shape) is None, "it stays a sphere")
 
 
 def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
@@ -92,6 +95,7 @@ def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
     check(told(0 * t, 0.1 * growing)[0] == told(0.002 * growing, 0 * t, True)[0] == "slips", "it turns away from it; it only leaves it")
     check(told(0.06 * (1 + numpy.sin(t)), 0 * t)[0] == "slips", "it swings about it")
     check(told(0.02, 2 + 0 * t)[0] == "parachute", "it stays a little askew")
+    check(told(0.02, numpy.nan * t)[0] == "parachute" and told(0.2, numpy.nan * t)[0] == "slips", "a sphere has no inclination")
     check(told(0.2, 20 + 0 * t)[0] == "slips" and told(0.08, 0 * t, swollen=3)[0] == "parachute", "it stays beside it; in any unit of length")
     check(told(0.0002 * growing, 0 * t)[0] == "parachute", "that is its mesh")
     check(told(0.15 * numpy.exp(-((t - 112) / 8)**2), 0 * t)[0] == "slips", "it turned over in between")

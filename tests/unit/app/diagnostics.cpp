@@ -11,6 +11,7 @@
 #include "app/flow_plane.hpp"
 #include "app/run_totals.hpp"
 #include "base/errors.hpp"
+#include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 
@@ -34,6 +35,36 @@ TEST(Series, ThatAreNotANumberEndTheRun) {
   } catch (const RunFailure& failure) {
     EXPECT_NE(std::string(failure.what()).find("drag_error"), std::string::npos);
   }
+}
+
+TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
+  Moment now;
+  now.shape.inclination = std::numeric_limits<double>::quiet_NaN();
+  now.axes.lengths = Vec3(2, 1, 1);
+  now.axes.directions = Mat3::Identity();
+  std::set<std::string> undefined;
+  for (const Series& one : all_series()) {
+    if (one.undefined_if.empty()) continue;
+    undefined.insert(one.name);
+    EXPECT_TRUE(std::isnan(row({&one, 1}, now)[0])) << one.name;
+    EXPECT_NE(one.description.find("; NaN if " + one.undefined_if), std::string::npos) << one.name;
+  }
+  EXPECT_EQ(undefined, (std::set<std::string>{"inclination", "axis_1_x1", "axis_1_x2", "axis_1_x3"}));
+  now.axes.longest_defined = true;
+  const auto first = std::ranges::find(all_series(), "axis_1_x1", &Series::name);
+  EXPECT_EQ(row({&*first, 1}, now)[0], 1);
+}
+
+/// The inclination of an ellipsoid in a flow.
+double inclination(const Vec3& semi_axes, const stokes::FlowOptions& flow) {
+  const spline::TMesh mesh = spline::cube(4);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  surface::ParticleShape shape;
+  shape.shape = "ellipsoid";
+  shape.semi_axes = semi_axes;
+  const surface::Geometry geometry(space);
+  const Net x = surface::initial_shape(space, mesh, shape);
+  return deformation(geometry, flow_plane(flow), x, geometry.measures(x), coupling::Ranks()).inclination;
 }
 
 stokes::FlowOptions linear(std::initializer_list<double> rows) {
@@ -70,6 +101,16 @@ TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
   const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
   EXPECT_FALSE(plane.holds_flow);
   EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // about the vorticity
+}
+
+TEST(Inclination, IsUndefinedIfThePlaneOfANonplanarFlowIs) {
+  const stokes::FlowOptions planar = linear({0, 0, 1, 0, 0, 0, 0, 0, 0}), other = linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2});
+  EXPECT_NEAR(inclination(Vec3(3, 2, 1), planar), 0, 1e-9);
+  EXPECT_NEAR(inclination(Vec3(3, 2, 1), other), 0, 1e-9);
+  EXPECT_NEAR(inclination(Vec3(2, 1, 1), planar), 0, 1e-9);
+  EXPECT_TRUE(std::isnan(inclination(Vec3(2, 1, 1), other)));
+  EXPECT_TRUE(std::isnan(inclination(Vec3(2, 2, 1), other)));
+  EXPECT_TRUE(std::isnan(inclination(Vec3(1, 2, 1), planar)));
 }
 
 // A pole has one tangent only that is not zero.

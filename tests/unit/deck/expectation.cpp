@@ -108,6 +108,32 @@ TEST(Verdicts, AreNeverFewerThanDeclared) {
   EXPECT_EQ(all[1].reason, "the results do not reach the time 2.1");
 }
 
+TEST(Interpolation, LeavesOutWhatIsUndefined) {
+  const double nan = std::nan("");
+  const std::vector<double> times = {0, 1, 2, 3, 4, 5, 6}, values = {nan, 1, 8, 27, nan, 125, 216};  // t^3
+  EXPECT_TRUE(std::isnan(interpolated(times, values, 0)));
+  EXPECT_TRUE(std::isnan(interpolated(times, values, 0.5))) << "next to an undefined row";
+  EXPECT_TRUE(std::isnan(interpolated(times, values, 3.5)));
+  EXPECT_EQ(interpolated(times, values, 3), 27);
+  EXPECT_NEAR(interpolated(times, values, 1.5), (3 * 1 + 6 * 8 - 27) / 8., 1e-14) << "a parabola through three rows";
+  EXPECT_NEAR(interpolated(times, values, 5.5), (125 + 216) / 2., 1e-13) << "a line through two";
+}
+
+TEST(Verdicts, SayWhereASeriesIsUndefined) {
+  const SeriesTable table = {{"time", {0, 1, 2}}, {"angle", {std::nan(""), 10, 20}}, {"gap", {1, 1, std::nan("")}}};
+  const auto all = verdicts(
+      expectations("    early: {series: angle, value: 1, tolerance: 1e70, at: 0.5}\n    late: {series: angle, value: 20, tolerance: 1}\n"
+                   "    last: {series: gap, value: 1, tolerance: 1}\n"),
+      table, {{"angle", "two axes are equal"}, {"gap", "two bodies are none"}});
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_TRUE(std::isnan(all[0].value));
+  EXPECT_EQ(all[0].reason, "angle is undefined at the time 0.5, because two axes are equal");
+  EXPECT_TRUE(all[1].passed);
+  EXPECT_EQ(all[1].reason, "");
+  EXPECT_EQ(all[2].reason, "gap is undefined at the end, because two bodies are none");
+}
+
 TEST(Verdicts, FailOnWhatIsNotANumber) {
   EXPECT_FALSE(verdicts(expectations("    a: {value: 1, tolerance: 1e70}\n"), {{"time", {0.0}}, {"a", {std::nan("")}}})[0].passed);
 }

@@ -120,6 +120,39 @@ TEST(Deformation, AnUprightParticleIsInclinedBy90DegreesWhateverTheRounding) {
   }
 }
 
+TEST(Deformation, InclinationIsUndefinedIfTheTwoSemiAxesInThePlaneAreEqual) {
+  const CubeMesh cube(3);  // fits a sphere with semi-axes that are equal to round-off; on four elements they differ by 2.5e-7
+  for (const double radius : {1.0, 4e-6}) {
+    const auto inclination = [&](const Vec3& axes) {
+      ParticleShape shape;
+      shape.shape = "ellipsoid";
+      shape.semi_axes = radius * axes;
+      return Geometry(cube.space).deformation(cube.shape(shape)).inclination;
+    };
+    EXPECT_TRUE(std::isnan(inclination(Vec3(1, 1, 1))));
+    EXPECT_TRUE(std::isnan(inclination(Vec3(1 + 0.8e-6, 1, 1))));
+    EXPECT_NEAR(inclination(Vec3(1 + 1.2e-6, 1, 1)), 0, 1e-3);  // round-off of the moments over the difference
+    EXPECT_NEAR(inclination(Vec3(1, 1, 1 + 1.2e-6)), 90, 1e-3);
+    EXPECT_TRUE(std::isnan(inclination(Vec3(1, 2, 1)))) << "the axes in the plane are equal";
+    EXPECT_NEAR(inclination(Vec3(1, 1, 0.5)), 0, 1e-9) << "only the plane's own axes matter";
+  }
+}
+
+TEST(PrincipalAxes, AreDefinedIfTheyDiffer) {
+  const CubeMesh cube(4);
+  const auto axes = [&](const Vec3& lengths) {
+    ParticleShape shape;
+    shape.shape = "ellipsoid";
+    shape.semi_axes = lengths;
+    return principal_axes(Geometry(cube.space).measures(cube.shape(shape)));
+  };
+  const PrincipalAxes sphere = axes(Vec3(1, 1, 1)), prolate = axes(Vec3(1, 2, 1)), oblate = axes(Vec3(1, 2, 2)), all = axes(Vec3(1, 2, 3));
+  EXPECT_FALSE(sphere.longest_defined || sphere.shortest_defined);
+  EXPECT_TRUE(prolate.longest_defined && !prolate.shortest_defined);
+  EXPECT_TRUE(!oblate.longest_defined && oblate.shortest_defined);
+  EXPECT_TRUE(all.longest_defined && all.shortest_defined);
+}
+
 TEST(Deformation, ExtentsAreAlsoFoundOnSidesAndCornersOfElements) {
   // The poles x_i = +-a_i of an aligned ellipsoid are element corners for even n, element middles for odd n.
   for (const int n : {5, 6}) {
