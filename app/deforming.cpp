@@ -214,7 +214,8 @@ class Deforming : public ParticleSystem {
   /// the tolerance.
   Net material_velocity(const motion::State& state) {
     const Net& slope = state.history.front();
-    const bool accurate = state.slope_error <= scene_.time.tolerance * scene_.rate();
+    const double rate = capsule_->flow().amplitude() * scene_.rate();
+    const bool accurate = state.slope_error <= scene_.time.tolerance * std::abs(rate);
     if (body().wall && !(accurate && capsule_->adopt(state.x, slope))) return capsule_->fluid_velocity(state.x, slope);
     return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
   }

@@ -100,7 +100,8 @@ std::string series_manual() {
       "these names. D, inclination and tank-treading are measured in the plane of the flow, which the plan names: x1 x3 but for a `linear` "
       "flow "
       "in another plane, whose two directions then stand for x1 and x3. A series whose description has the words `NaN if` may be undefined: it is "
-      "NaN under that condition, and an `Expect` at such a time is missed. NaN in any other series ends the run.\n\n| series | unit | of | what it is |\n|---|---|---|---|\n";
+      "NaN under that condition, and an `Expect` at such a time is missed. NaN in any other series ends the run.\n\n"
+      "| series | unit | of | what it is |\n|---|---|---|---|\n";
   for (const Series& one : all_series()) text += line(one.name, one.unit, owners(one), one.description);
   text += "\n## Fields\n\n`/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the picture.\n" + table("field", fields);
   text += "\n## The empty tube\n\n`duct.h5`, of a run in a tube.\n\n| array | unit | what it is |\n|---|---|---|\n";

@@ -45,8 +45,8 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
   }
 }
 
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error, int power,
-              const Memory& memory) {
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
+              int power, const Memory& memory) {
   // A fresh operator helps only if the shape has changed; the rest of the contraction rate is the part left out of (4.3).
   const double changed = dynamics.distance(state.frozen, state.x);
   if (last.solved ? last.rate > options.contraction_limit && changed > worth_assembling : changed > 0) {

@@ -43,8 +43,8 @@ struct Verdict {
 /// of the step. Restores the volume of an accepted end; an attempt for which that fails is rejected. Assembles the layer operators anew at state.x,
 /// and forgets the secants, if the iteration failed or contracted too slowly and the shape has changed since the last time. Throws RunFailure if a
 /// step of fixed size was not solved.
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error, int power,
-              const Memory& memory);
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
+              int power, const Memory& memory);
 
 /// Returns the value at t of the polynomial through nets[i] at times[i].
 Net interpolated(std::span<const double> times, std::span<const Net* const> nets, double t);

@@ -1,5 +1,5 @@
-// Time/tolerance bounds the error of a whole run, for every scheme and viscosity ratio: a capsule in simple shear, Ca = 0.3, against an explicit scheme
-// with a much smaller tolerance on the same mesh. Errors of D at times half a unit apart.
+// Time/tolerance bounds the error of a whole run for every scheme and viscosity ratio: a capsule in simple shear, Ca = 0.3, compared with an explicit
+// scheme with a much smaller tolerance on the same mesh. The error of D is taken at times half a unit apart.
 
 #include <algorithm>
 #include <cmath>
@@ -44,12 +44,15 @@ double error_over_tolerance(const Scene& scene, const std::vector<double>& refer
   return largest / tolerance;
 }
 
-// The reference errs by less than a twentieth of the bound: bs3 at 1e-6 errs by 1e-6.
+// The reference, bs3 at 1e-6, errs by 1e-6: less than a twentieth of each bound.
 TEST(TimeTolerance, BoundsTheErrorOfARunForEveryViscosityRatio) {
   for (const char* ratio : {"0.2", "1", "5", "20"}) {
     const Scene scene{.ratio = ratio};
     const std::vector<double> reference = deformations(scene, "bs3", 1e-6);
-    for (const char* scheme : {"tr-bdf2", "bdf3", "auto"}) EXPECT_LT(error_over_tolerance(scene, reference, scheme, 1e-4), 2) << scheme << " " << ratio;
+    for (const char* scheme : {"tr-bdf2", "bdf3", "auto"}) {
+      EXPECT_LT(error_over_tolerance(scene, reference, scheme, 1e-4), 2) << scheme << " " << ratio;
+      if (scene.ratio != "1") EXPECT_LT(error_over_tolerance(scene, reference, scheme, 1e-5), 4) << scheme << " " << ratio;
+    }
   }
 }
 
