@@ -7,6 +7,7 @@
 
 #include "coupling/nonlinear.hpp"
 #include "deck/section.hpp"
+#include "motion/fixed_point_error.hpp"
 
 namespace tanktread::motion {
 
@@ -14,7 +15,7 @@ void SteadyOptions::declare(deck::Section& section) {
   section.key("method", method, deck::Choice{"anderson", "newton-krylov"},
               "of NOX, with Solvers/NOX: the fixed point of implicit steps accelerated, or found by Newton's method with Solvers/steady");
   section.key("tolerance", tolerance, deck::between(1e-13, 1e-2), "1",
-              "correction that is left: root mean square displacement of the control points over R_C");
+              "estimated error of the shape (4.32): root mean square displacement of the control points over R_C");
   section.key("iterations", iterations, deck::between(1, 100000), "1", "most iterations of NOX");
   section.key("step", step, deck::positive(), "time",
               "the implicit step that preconditions; if not given, half of one over the rate of the flow, or of the membrane where nothing flows");
@@ -94,19 +95,21 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   approach(equations, x);
   dynamics.freeze(x);
   Net best = x;
-  double rest = std::numeric_limits<double>::infinity();
+  double rest = std::numeric_limits<double>::infinity(), latest = rest;
   const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";
+  const int depth = coupling::FixedPoint::deep(x.size());
+  FixedPointError error(depth);
   const auto corrected = [&](const Net& y) -> Net {
     const Net r = equations.residual(y), delta = equations.precondition(y, r);
-    const double size = dynamics.norm(delta);
-    if (size < rest) rest = size, best = y;
+    latest = dynamics.norm(delta);
+    if (delta.allFinite()) latest = std::max(latest, dynamics.norm(error(y, delta)));
+    if (latest < rest) rest = latest, best = y;
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  const coupling::FixedPoint::Norm left = [&](const Net& r) { return dynamics.norm(equations.precondition(best, r)); };  // correction that r asks for
-  const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), coupling::FixedPoint::deep(x.size()));
-  const coupling::FixedPoint::Norm none;
-  const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, bare ? left : none);
+  const coupling::FixedPoint::Norm left = [&](const Net&) { return latest; };
+  const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);
+  const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, left);
   x = std::move(best);
   dynamics.restore_volume(x);
   return {found.iterations, found.converged, rest};

@@ -21,7 +21,7 @@ namespace tanktread::motion {
 struct SteadyOptions {
   bool present = false;             ///< whether the deck has this list
   std::string method = "anderson";  ///< anderson, newton-krylov
-  double tolerance = 1e-8;          ///< of the correction that is left, in the norm of `Time/tolerance`
+  double tolerance = 1e-8;          ///< of the estimated error of the shape (4.32), in the norm of `Time/tolerance`
   int iterations = 100;             ///< most
   std::optional<double> step;       ///< of the implicit step that preconditions, in time; empty: half of one over the rate of the scene
 
@@ -32,7 +32,7 @@ struct SteadyOptions {
 struct SteadyReport {
   int iterations = 0;
   bool converged = false;
-  double rest = 0;  ///< the correction that was left
+  double rest = 0;  ///< estimated error of the shape
 };
 
 /// What a shape x at rest obeys that x0 leads to: with Q the projection onto what leads from one such shape to others, the rigid motions about the

@@ -1,0 +1,94 @@
+// Searches for shapes at rest: how far from them they end.
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "motion/fixed_point_error.hpp"
+#include "motion/steady.hpp"
+
+namespace tanktread::motion {
+namespace {
+
+constexpr double slow = 0.02;  ///< a mode of this rate decays by 1 % in an implicit step of the search
+
+/// Points that go to the origin, the first at the rate `slow`, the others at rates between 1 and 2, faster where they are farther away. The frozen
+/// Jacobian is 0.
+class Slow : public coupling::Dynamics {
+ public:
+  Net velocity(const Net& x) override {
+    Net v(x.rows(), 3);
+    for (int i = 0; i < x.rows(); ++i) {
+      const double rate = i == 0 ? slow : 1 + i / static_cast<double>(x.rows());
+      v.row(i) = -rate * (1 + x.row(i).squaredNorm()) * x.row(i);
+    }
+    return v;
+  }
+  void freeze(const Net&) override {}
+  void linearise(const Net&) override {}
+  Net solve(double, const Net& r, double, const coupling::Secants&) override { return r; }
+  Net missed(const Net& dv, const Net&) override { return 0 * dv; }
+  void restore_volume(Net&) override {}
+  double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
+};
+
+Net start() {
+  Net x(40, 3);
+  for (int i = 0; i < x.size(); ++i) x.data()[i] = 0.01 * std::cos(i);
+  return x;
+}
+
+// Affine, all directions seen: exact but for round-off, over 1 - rho = 0.01.
+TEST(FixedPointError, IsExactForAnAffineMap) {
+  Net x(2, 3);
+  x << 1, 2, 3, -1, 0.5, 2;
+  Net rates(2, 3);
+  rates << 0.01, 0.01, 0.5, 0.5, 0.01, 0.9;
+  FixedPointError error(10);
+  Net found;
+  for (int k = 0; k < 4; ++k) {  // three different rates: three secants
+    const Net f = -rates.cwiseProduct(x);
+    found = error(x, f);
+    if (k < 3) x += f;
+  }
+  EXPECT_NEAR((found - x).norm() / x.norm(), 0, 1e-10);
+}
+
+// The correction alone is a hundredth of the error. Within a factor of 2, because the map is not affine.
+TEST(FixedPointError, SeesTheErrorOfAModeThatDecaysSlowly) {
+  Slow motion;
+  FixedPointError error(10);
+  Net x = start();
+  for (int k = 0; k < 60; ++k) {
+    const Net f = 0.5 * motion.velocity(x), found = error(x, f);
+    if (k >= 10) {
+      EXPECT_GT(motion.norm(found), 0.5 * motion.norm(x)) << k;
+      EXPECT_LT(motion.norm(found), 2 * motion.norm(x)) << k;
+    }
+    x += f;
+  }
+}
+
+class Steady : public testing::TestWithParam<const char*> {};
+
+// The error left is at most twice the tolerance; judged by the correction it was up to 35 times. Looser tolerances than a hundredth of the first
+// error are met before the slow mode shows.
+TEST_P(Steady, EndsWhereTheErrorIsTheTolerance) {
+  Slow motion;
+  for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
+    SteadyEquations equations(motion, {}, 0.5, start());
+    SteadyOptions options;
+    options.method = GetParam(), options.tolerance = tolerance;
+    Net x = start();
+    const SteadyReport report = find_steady(equations, options, {}, x);
+    ASSERT_TRUE(report.converged) << tolerance;
+    EXPECT_LE(report.rest, tolerance);
+    EXPECT_LE(motion.norm(x), 2 * tolerance);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"), [](const auto& info) { return info.param[0] == 'a' ? "Anderson" : "Newton"; });
+
+}  // namespace
+}  // namespace tanktread::motion
