@@ -105,8 +105,8 @@ class Capsule : public Dynamics {
   Net velocity(const Net& x, const Net& guess);
   void at(double time, double start) override;
 
-  /// Stores v as the velocity at x, as if it had been evaluated: the slope of an implicit scheme, whose error is known. Returns false if the unknowns do
-  /// not follow from v: control points that slide, rigid bodies.
+  /// Stores v as the velocity at x, as if it had been evaluated: the slope of an implicit scheme, whose error is known. Returns false if the unknowns
+  /// do not follow from v: control points that slide, rigid bodies.
   bool adopt(const Net& x, const Net& v);
   double next_kink(double time) const override { return flow_.next_kink(time); }
   void freeze(const Net& x) override;

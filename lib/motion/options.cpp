@@ -10,7 +10,8 @@ namespace tanktread::motion {
 
 void TimeOptions::declare(deck::Section& section) {
   section.key("scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
-              "`auto`: `bs3`, `tr-bdf2` or `rkc2` by the measured stiffness, `tr-bdf2` if a velocity takes a linear system (viscosity ratio other than 1); "
+              "`auto`: `bs3`, `tr-bdf2` or `rkc2` by the measured stiffness, `tr-bdf2` if a velocity takes a linear system (viscosity ratio other "
+              "than 1); "
               "`tr-bdf2`: implicit, L-stable, order 3 by extrapolation; `bdf3`: implicit, multistep, order 3; `bs3`: explicit, order 3; "
               "`rkc2`: explicit, stabilised, order 2, nothing assembled; `crank-nicolson`: the paper's (4.1)");
   std::optional<double> end;

@@ -139,8 +139,8 @@ class CrankNicolson : public Scheme {
 ///
 /// b^ is of third order but not stable; e2 is its difference to b without the stiff part. With z = dt J the step multiplies a mode by
 /// R(z) - (R^ - R)/(1 - d z)^2, at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes the error of fourth order only,
-/// so its secants are left out of e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors of
-/// the two stages (4.28).
+/// so its secants are left out of e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors
+/// of the two stages (4.28).
 ///
 /// The first slope is the last one of the previous step. Slopes follow from the stage equations and are not evaluated again. Stages start from a
 /// polynomial through the known slopes.

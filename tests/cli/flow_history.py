@@ -37,7 +37,8 @@ def _row(results):
 
 def _same(one, other, tolerance=0.0, but=()):
     for name, value in _row(one).items():
-        if name not in but:
+        undefined = value != value and _row(other)[name] != _row(other)[name]  # NaN in both: a direction of equal semi-axes
+        if name not in but and not undefined:
             close(_row(other)[name], value, tolerance * max(1, abs(value)), f"{name} of {other}")
 
 

@@ -65,8 +65,8 @@ TEST(Corotation, DeformationIsWhatRemainsOfAStretch) {
   EXPECT_GT(deformation, 0.5 * (stretched - from).norm());
 }
 
-// A sphere is rotated and then stretched a little. The operators assembled before are as good as those assembled on the new shape. Without the rotation
-// the result differs by a tenth.
+// A sphere is rotated and then stretched a little. The operators assembled before are as good as those assembled on the new shape. Without the
+// rotation the result differs by a tenth.
 TEST(Corotation, OperatorsOfATurnedCapsuleAreThoseAssembledThere) {
   for (const char* frozen : {"nodal", "assembled"})
     for (const double ratio : {1.0, 5.0}) {

@@ -88,7 +88,8 @@ TEST_P(Steady, EndsWhereTheErrorIsTheTolerance) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"), [](const auto& info) { return info.param[0] == 'a' ? "Anderson" : "Newton"; });
+INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"),
+                         [](const auto& info) { return info.param[0] == 'a' ? "Anderson" : "Newton"; });
 
 }  // namespace
 }  // namespace tanktread::motion
