@@ -23,7 +23,8 @@ void PeriodicOptions::declare(deck::Section& section) {
   section.key("turn", turn, deck::between(-360, 360), "degrees",
               "about x2, by which the shape is turned when it is back: 180 after half a round of a membrane in shear, which is half the work");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
-              "what the shape misses of being back: root mean square displacement of the control points over R_C; some ten times Time/tolerance");
+              "what the shape misses of being back: root mean square displacement of the control points over R_C; some ten times Time/tolerance. "
+              "Where disturbances decay within a period the shape found errs by less than a hundredth of it");
   section.key("iterations", iterations, deck::between(1, 1000), "1", "most iterations of NOX, a period each");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
               "displacements whose returns the multipliers are made of, at the largest, with Spectrum");
