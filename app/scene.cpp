@@ -187,10 +187,8 @@ void check_size(const Scene& scene) {
                 formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
                 points(scene), bytes);
   if (!scene.tube.present || (scene.tube.channel && scene.solvers.wall != "factored")) return;
-  const double of_wall = doubles * coupling::Ranks().size();  // the factors, on each rank
   check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
-              formatted("give at most %.0f control points", std::floor(std::sqrt(most_bytes / of_wall))),
-              wall_points(scene), of_wall);
+              formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
 }
 
 /// Vectors that every rank keeps for the iterative solver, and the matrix of their products.
@@ -226,6 +224,8 @@ void check_motion(const Scene& scene) {
     throw UserError("Adaptation/film resolution is for several particles, or beside a wall: there are no films between others.");
   if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed && scene.runs_in_time())
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
+  if (scene.periodic.present && std::isnan(scene.periodic.period))
+    throw UserError("Periodic/period is missing: the expected one, in the deck's unit of time.");
 }
 
 /// Whether a flow with the same gradient everywhere has a vorticity.
@@ -514,6 +514,8 @@ bool Scene::lands_on_snapshots() const {
 }
 
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
+
+double most_wall_points() { return std::floor(std::sqrt(most_bytes / (doubles * coupling::Ranks().size()))); }
 
 bool may_change_on_resume(const std::string& path) {
   if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Wall/contact gap" || path == "Contact/limit") return true;

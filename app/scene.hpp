@@ -131,6 +131,9 @@ struct Scene : ParticleKind {
   double snapshot_interval() const;  ///< simulated time between snapshots
 };
 
+/// Of a tube's wall, whose factors each rank keeps: the most control points for which those of all ranks take no more memory than is allowed.
+double most_wall_points();
+
 /// Whether the key at this path may differ when a run goes on: one that the checkpoint is not made of.
 bool may_change_on_resume(const std::string& path);
 

@@ -54,6 +54,13 @@ motion::TimeOptions time_options(const Scene& scene) {
   return time;
 }
 
+/// As if alone: the first particle that deforms, or the first one if all are rigid.
+Scene first_deforming(const Scene& scene) {
+  std::vector<Scene> all = scene.alone();
+  const auto found = std::ranges::find_if(all, [](const Scene& one) { return !one.particle.rigid(); });
+  return std::move(found == all.end() ? all.front() : *found);
+}
+
 /// A run between its first and its last step.
 class Run {
  public:
@@ -74,7 +81,7 @@ class Run {
     while (reason.empty() && state_.time < scene_.time.final_time) {
       reason = step();
       if (interrupted_) break;
-      progress.show({state_.time, totals_.step, report_.iterations, scene_.particle.rigid() ? 0 : largest("taylor_inertia")});
+      progress.show({state_.time, totals_.step, report_.iterations, first_.particle.rigid() ? 0 : largest("taylor_inertia")});
       if (!reason.empty() || snapshot_due_) save_or_fail();
     }
     progress.close();
@@ -277,14 +284,14 @@ class Run {
 
   /// The mesh's quality. Throws RunFailure when an element is folded.
   void judge() {
-    if (scene_.particle.rigid()) return;
+    if (first_.particle.rigid()) return;
     const auto clock = phases_.time("soundness");
     quality_ = soundness(particle_->bezier(), state_.x, ranks_);
   }
 
   /// What the step has come near to.
   void warn_of_limits() {
-    if (scene_.particle.rigid()) return;
+    if (first_.particle.rigid()) return;
     StepFindings signs;
     signs.time = state_.time;
     signs.step = report_.step;
@@ -418,8 +425,8 @@ class Run {
   output::Entries<double> earlier_seconds_;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
   surface::Quality quality_;
-  Scene first_ = scene_.alone().front();
-  Warnings warnings_{first_};  // of several particles by the numbers of the first
+  Scene first_ = first_deforming(scene_);
+  Warnings warnings_{first_};  // of several particles by the numbers of the first that deforms
 };
 
 }  // namespace

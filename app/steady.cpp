@@ -13,8 +13,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/SVD>
-
+#include "app/free_motions.hpp"
 #include "app/particle_system.hpp"
 #include "app/plan.hpp"
 #include "app/results.hpp"
@@ -43,38 +42,6 @@ coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
   return a;
 }
 
-/// The rigid motions about the origin that change nothing of flow, weight, forces on patches and walls: the flow's Lie derivative along them is 0.
-std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const Body& body) {
-  if (scene.tube.channel) return {};
-  if (body.wall) return {coupling::unit_motion(0)};
-  const double size = body.radius;
-  Net places(4, 3);
-  places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
-  const Net v = body.flow.velocities(places);
-  const std::vector<Mat3> gradients = body.flow.gradients(places);
-  std::vector<Vec3> forces{scene.body_force()};
-  for (const membrane::PatchForce& one : scene.membrane.forces.all) forces.push_back(one.force);
-  Eigen::MatrixXd change(12 + 3 * static_cast<Eigen::Index>(forces.size()), 6);
-  for (int k = 0; k < 6; ++k) {
-    const coupling::RigidMotion motion = coupling::unit_motion(k);
-    const double unit = k < 3 ? 1 : 1 / size;
-    const Net moved = coupling::rigid_velocity(places, motion, Vec3::Zero());
-    for (int i = 0; i < 4; ++i)
-      change.block<3, 1>(3 * i, k) =
-          unit * (gradients[static_cast<std::size_t>(i)] * moved.row(i).transpose() - motion.angular_velocity.cross(Vec3(v.row(i).transpose())));
-    for (std::size_t f = 0; f < forces.size(); ++f)
-      change.block<3, 1>(12 + 3 * static_cast<Eigen::Index>(f), k) = motion.angular_velocity.cross(forces[f]);
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
-  std::vector<coupling::RigidMotion> free;
-  for (int k = 0; k < 6; ++k) {
-    if (svd.singularValues()[k] > 1e-9 * std::max(scene.rate(), svd.singularValues()[0])) continue;
-    const Eigen::VectorXd motion = svd.matrixV().col(k);
-    free.push_back({motion.head<3>(), motion.tail<3>() / size});
-  }
-  return free;
-}
-
 /// A scene, of a branch at one value of the parameter, and its motion.
 struct System {
   System(Scene of, coupling::Ranks& ranks, Phases& phases) : scene(std::move(of)), particle(deforming(scene, ranks, phases)) {
@@ -84,7 +51,7 @@ struct System {
   /// With the mesh that the particle has by now, and a shape on it.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told_to_stop);
-    equations.emplace(*motion, free_motions(scene, particle->body()), scene.steady.step.value_or(0.5 / scene.rate()), x);
+    equations.emplace(*motion, free_motions(scene, particle->body().flow, particle->body().radius), scene.steady.step.value_or(0.5 / scene.rate()), x);
   }
 
   Scene scene;

@@ -95,7 +95,12 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
                               period, x1.minCoeff(), x1.maxCoeff()));
   surface::TubeOptions options = scene.tube;
   const double chain = length + 2 * images * period, alone = surface::tube_length({}, outline.radius(), length);
-  options.axial_elements += static_cast<int>(std::ceil((chain - length) / alone * options.axial_elements));
+  const double along_chain = std::ceil((chain - length) / alone * options.axial_elements), most = most_wall_points() / options.azimuthal_elements;
+  if (options.axial_elements + along_chain > most)
+    throw UserError(formatted("Tube/periodic length = %.4g with %d copies at either side asks for %.3g elements along the wall, but at most %.0f fit "
+                              "into memory: give a shorter one.",
+                              period, images, options.axial_elements + along_chain, most));
+  options.axial_elements += static_cast<int>(along_chain);
   double along = surface::tube_length(scene.tube, outline.radius(), chain);
   if (images > 0 && options.grading == 1) along = surface::repeat_elements(options, along, period);
   auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, chain / 2));

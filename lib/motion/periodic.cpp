@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -19,7 +20,9 @@
 namespace tanktread::motion {
 
 void PeriodicOptions::declare(deck::Section& section) {
-  section.key("period", period, deck::positive(), "time", "expected; the one that is found lies between half and one and a half of it");
+  std::optional<double> expected;
+  section.key("period", expected, deck::positive(), "time", "expected (required); the one that is found lies between half and one and a half of it");
+  period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
               "about x2, by which the shape is turned when it is back: 180 after half a round of a membrane in shear, which is half the work");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",

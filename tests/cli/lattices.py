@@ -49,6 +49,22 @@ def the_same_lattice_by_other_cells_is_the_same():
     check(abs(beyond - one).max() < 1e-8, "in another cell:", beyond - one)
 
 
+def gaps_reach_beyond_the_nearest_cells():
+    """The long axis of the body points to its image one cell along x1 and two along x3. Their tips are |[2, 0, 4]| - 2 x 2.1 apart, to the error of
+    the mesh at the tips. The images in the nearest cells are beside it, where the gap is larger by half."""
+    text = """
+Tanktread:
+  Flow: {type: quiescent}
+  Domain: {side lengths: [2, 2, 2]}
+  Particles:
+    needle: {motion: free, shape: spheroid, semi-axes: [2.1, 0.2, 0.2], orientation: [0, -63.434949, 0], Surface: {elements per side: 6}}
+  Time: {scheme: bs3, fixed step: 0.001, final time: 0.001}
+"""
+    run(deck(text), "--output", "needle", "--quiet")
+    gap = series("needle", "smallest_gap")[0]
+    check(abs(gap - (20**0.5 - 4.2)) < 5e-3, gap)
+
+
 def ranks_agree():
     one, two = _row("on_one"), _row("on_two", ranks=2)
     check(abs(two - one).max() < 1e-10, two - one)

@@ -116,6 +116,21 @@ Tanktread:
     _same("plain", "inflated", 1e-13)
 
 
+def a_rigid_body_that_comes_first_hides_no_warning():
+    """The volume of the drop, which nothing keeps, is lost by more than 1e-3, because its steps are long."""
+    text = """
+Tanktread:
+  Flow: {type: uniaxial extension}
+  Particles:
+    ball: {motion: free, center: [0.0, 4.0, 0.0], radius: 0.5, Surface: {elements per side: 3}}
+    drop: {center: [0.0, 0.0, 0.0], Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 3}}
+  Volume: {constraint: flux}
+  Time: {scheme: bs3, fixed step: 0.3, final time: 1.2}
+"""
+    said = run(deck(text), "--quiet", "--output", "volume").stderr
+    check("of the volume is lost" in said, said)
+
+
 def one_far_away_changes_nothing():
     alone = """
 Tanktread:

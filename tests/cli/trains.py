@@ -84,6 +84,7 @@ def the_plan_says_what_is_around_several():
 def mistakes_are_told():
     refused(["Tube/periodic length", "0.7", "long"], deck(ONE), "--set", "Tube/periodic length=0.7")
     refused(["Tube/images", "0"], deck(ONE), "--set", "Tube/images=0")
+    refused(["Tube/periodic length", "copies", "memory"], deck(ONE), "--set", "Tube/periodic length=1e9")
     refused(["Tube/images", "Tube/periodic length", "not given"], deck(ONE.replace("periodic length: 2.0, ", "")))
 
 

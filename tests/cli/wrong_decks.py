@@ -33,6 +33,7 @@ SETTINGS = [
     (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
     (["Solvers/rigid bodies=third kind"], ["Solvers/rigid bodies", "first kind"]),
     (["Solvers/rigid bodies=first kind"], ["Solvers/rigid bodies", "Particle deforms"]),
+    (["Periodic/turn=180"], ["Periodic/period", "missing"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
     (["Spectrum/number=4", "Particle/motion=free"], ["Spectrum", "Particle/motion", "rigid"]),
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),

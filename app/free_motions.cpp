@@ -1,0 +1,46 @@
+#include "app/free_motions.hpp"
+
+#include <algorithm>
+
+#include <Eigen/SVD>
+
+namespace tanktread {
+
+std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size) {
+  if (scene.tube.channel) return {};
+  if (scene.tube.present) return {coupling::unit_motion(0)};
+  Net places(4, 3);
+  places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
+  const Net v = flow.velocities(places);
+  const std::vector<Mat3> gradients = flow.gradients(places);
+  std::vector<Vec3> directions;  // of the forces that are not 0
+  const auto add = [&](const Vec3& force) {
+    if (force.norm() > 0) directions.push_back(force.normalized());
+  };
+  for (const Scene& one : scene.alone()) {
+    add(one.body_force());
+    for (const membrane::PatchForce& patch : one.membrane.forces.all) add(patch.force);
+  }
+  Eigen::MatrixXd change(12 + 3 * static_cast<Eigen::Index>(directions.size()), 6);
+  for (int k = 0; k < 6; ++k) {
+    const coupling::RigidMotion motion = coupling::unit_motion(k);
+    const double unit = k < 3 ? 1 : 1 / size;
+    const Net moved = coupling::rigid_velocity(places, motion, Vec3::Zero());
+    for (int i = 0; i < 4; ++i)
+      change.block<3, 1>(3 * i, k) =
+          unit * (gradients[static_cast<std::size_t>(i)] * moved.row(i).transpose() - motion.angular_velocity.cross(Vec3(v.row(i).transpose())));
+    for (std::size_t f = 0; f < directions.size(); ++f)
+      change.block<3, 1>(12 + 3 * static_cast<Eigen::Index>(f), k) =
+          scene.rate() * unit * motion.angular_velocity.cross(directions[f]);
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
+  std::vector<coupling::RigidMotion> free;
+  for (int k = 0; k < 6; ++k) {
+    if (svd.singularValues()[k] > 1e-9 * std::max(scene.rate(), svd.singularValues()[0])) continue;
+    const Eigen::VectorXd motion = svd.matrixV().col(k);
+    free.push_back({motion.head<3>(), motion.tail<3>() / size});
+  }
+  return free;
+}
+
+}  // namespace tanktread
