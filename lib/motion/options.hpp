@@ -31,7 +31,7 @@ struct TimeOptions {
   double contraction_limit = 0.3;          ///< contraction rate above which the frozen layer operator is assembled anew
   double largest_operator = 32;             ///< GB of the frozen operator on all ranks together beyond which `auto` does without
   int secants = 2;                         ///< corrections remembered by the quasi-Newton iteration (4.13)
-  int predictor_order = 1;                 ///< degree of the polynomial through known slopes from which a stage starts
+  int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes from which a stage of tr-bdf2 starts
 
   double least_step() const { return minimum_step.value_or(1e-9 * unit); }
   bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< a frozen operator of any size (4.3)

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "motion/quasi_newton.hpp"
@@ -9,13 +10,26 @@ namespace tanktread::motion {
 namespace {
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
+constexpr double worth_an_order = 0.7;  // a higher order is taken if it reduces the error of the prediction by this factor
 constexpr double accuracy = 4;  // error of the second-order result divided by that of the extrapolated one, at the least
+
+/// Of the polynomials through known slopes: the orders that would have predicted the slopes of the second and the third stage best.
+struct Orders {
+  double second = 1, third = 1;
+};
+
+/// What State::memory holds.
+struct Remembered {
+  Memory step;
+  Orders orders;
+};
+
 }  // namespace
 
 StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
   if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
-  const Memory memory = remembered<Memory>(state.memory);
+  const auto [memory, known] = remembered<Remembered>(state.memory);
   coupling::Secants secants = state.secants;
   Attempts attempts(options_, state, limit);
 
@@ -25,24 +39,33 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     std::vector<double> times{0, (2 * d - 1) * memory.step, -memory.step};  // of the slopes, from the start of this step
     std::vector<const Net*> slopes;
     for (const Net& slope : state.history) slopes.push_back(&slope);
-    const auto predicted = [&](double time) {
-      const std::size_t n = std::min<std::size_t>(slopes.size(), options_.predictor_order + 1);
+    const auto predicted = [&](double time, std::size_t order) {
+      const std::size_t n = std::min({slopes.size(), static_cast<std::size_t>(options_.predictor_order) + 1, order + 1});
       return interpolated(times, std::span(slopes).first(n), time);
     };
+    const auto best_order = [&](double time, const Net& slope) {
+      double least = std::numeric_limits<double>::infinity(), best = 0;
+      for (std::size_t order = 0; order < slopes.size(); ++order)
+        if (const double miss = dynamics.norm(predicted(time, order) - slope); miss < worth_an_order * least)
+          least = miss, best = static_cast<double>(order);
+      return best;
+    };
+    Orders orders;
 
     Stage second, third;
     const Net rhs2 = state.x + shift * k1;
-    second.y = rhs2 + shift * predicted(2 * d * dt);
+    second.y = rhs2 + shift * predicted(2 * d * dt, static_cast<std::size_t>(known.second));
     dynamics.improve_start(second.y, state.x, shift);
     dynamics.at(state.time + 2 * d * dt, state.time);
     solve(dynamics, options_, rhs2, shift, secants, second);
     const Net& k2 = second.slope;
     if (second.solved) {
+      orders.second = best_order(2 * d * dt, k2);
       times.insert(times.begin(), 2 * d * dt);
       slopes.insert(slopes.begin(), &k2);
       const Net rhs3 = state.x + dt * w * (k1 + k2);
       third.rate = second.rate;
-      third.y = rhs3 + shift * predicted(dt);
+      third.y = rhs3 + shift * predicted(dt, static_cast<std::size_t>(known.third));
       dynamics.improve_start(third.y, second.y, shift);
       dynamics.at(state.time + dt, state.time);
       solve(dynamics, options_, rhs3, shift, secants, third);
@@ -50,6 +73,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     attempts.report.iterations += second.iterations + third.iterations;
     double error = 0, slope_error = 0;
     if (third.solved) {
+      orders.third = best_order(dt, third.slope);
       const Net raw = dt * ((4 * w - 1) / 3 * k1 - k2 / 3 + 2 * d / 3 * third.slope);
       const Net once = dynamics.solve(shift, raw, options_.linear_tolerance, {}), twice = dynamics.solve(shift, once, options_.linear_tolerance, {});
       error = (dynamics.norm(once) / accuracy + second.error + third.error) / options_.tolerance;
@@ -61,7 +85,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     if (accepted) {
       state.history = {third.slope, k2, k1};
       state.secants = std::move(secants);
-      state.memory = values_of(Memory{error, dt});
+      state.memory = values_of(Remembered{{error, dt}, orders});
       state.slope_error = slope_error;
       return attempts.accept(dynamics, std::move(third.y), error, factor);
     }
