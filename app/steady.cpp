@@ -51,7 +51,8 @@ struct System {
   /// With the mesh that the particle has by now, and a shape on it.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told_to_stop);
-    equations.emplace(*motion, free_motions(scene, particle->body().flow, particle->body().radius), scene.steady.step.value_or(0.5 / scene.rate()), x);
+    const Body& body = particle->body();
+    equations.emplace(*motion, free_motions(scene, body.flow, body.radius), scene.steady.step.value_or(0.5 / scene.rate()), x);
   }
 
   Scene scene;

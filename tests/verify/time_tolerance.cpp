@@ -19,7 +19,7 @@ struct Scene {
   int n = 4;         ///< elements per side
   double end = 2.5;
   std::string ratio = "1";
-  std::string more;  ///< another setting
+  std::string more = "";  ///< another setting
 };
 
 std::vector<double> deformations(const Scene& scene, const std::string& scheme, double tolerance) {
@@ -51,7 +51,8 @@ TEST(TimeTolerance, BoundsTheErrorOfARunForEveryViscosityRatio) {
     const std::vector<double> reference = deformations(scene, "bs3", 1e-6);
     for (const char* scheme : {"tr-bdf2", "bdf3", "auto"}) {
       EXPECT_LT(error_over_tolerance(scene, reference, scheme, 1e-4), 2) << scheme << " " << ratio;
-      if (scene.ratio != "1") EXPECT_LT(error_over_tolerance(scene, reference, scheme, 1e-5), 4) << scheme << " " << ratio;
+      if (scene.ratio == "1") continue;
+      EXPECT_LT(error_over_tolerance(scene, reference, scheme, 1e-5), 4) << scheme << " " << ratio;
     }
   }
 }

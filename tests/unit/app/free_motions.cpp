@@ -19,8 +19,9 @@ std::size_t free_number(const std::string& lists) {
 }
 
 const std::string still_fluid = "  Flow: {type: quiescent}\n", with_gravity = "  Flow: {type: quiescent, gravity: [0, 0, -1]}\n",
-                  capsule = "Membrane: {shear modulus: 1}", pulled = "Membrane: {shear modulus: 1, forces: {tip: {direction: [1, 0, 0], radius: 0.5, "
-                                                                     "force: [1, 0, 0]}, tail: {direction: [-1, 0, 0], radius: 0.5, force: [-1, 0, 0]}}}";
+                  capsule = "Membrane: {shear modulus: 1}",
+                  pulled = "Membrane: {shear modulus: 1, forces: {tip: {direction: [1, 0, 0], radius: 0.5, force: [1, 0, 0]}, "
+                           "tail: {direction: [-1, 0, 0], radius: 0.5, force: [-1, 0, 0]}}}";
 
 std::string one_particle(const std::string& particle, const std::string& membrane) { return "  Particle: {" + particle + "}\n  " + membrane + "\n"; }
 
