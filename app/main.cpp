@@ -235,6 +235,10 @@ int guarded(int argc, char** argv, bool speaks, std::string& message) {
     return code;
   } catch (const motion::Stopped&) {
     return report("stopped by a signal before there was anything to keep", stopped);
+  } catch (const UserErrors& errors) {
+    for (const std::string& sentence : errors.all) report(sentence.c_str(), mistake);
+    message = one_line(errors.what());
+    return mistake;
   } catch (const UserError& error) {
     return report(error.what(), mistake);
   } catch (const std::exception& error) {

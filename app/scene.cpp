@@ -236,13 +236,21 @@ bool turns(const Scene& scene) {
   return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
 }
 
+std::string contradiction(const std::string& one, const std::string& other, const std::string& why) {
+  return one + " and " + other + " contradict each other: " + why + ".";
+}
+
 /// Throws UserError for two choices that cannot be made together.
 void refuse(bool both, const std::string& one, const std::string& other, const std::string& why) {
-  if (both) throw UserError(one + " and " + other + " contradict each other: " + why + ".");
+  if (both) throw UserError(contradiction(one, other, why));
 }
 
 /// Every pair of choices, of whatever lists, that cannot be made together.
 void check_contradictions(const Scene& scene) {
+  std::vector<std::string> found;
+  const auto refuse = [&found](bool both, const std::string& one, const std::string& other, const std::string& why) {
+    if (both) found.push_back(contradiction(one, other, why));
+  };
   const ParticleOptions& particle = scene.particle;
   const bool rigid = particle.rigid(), told = particle.motion == Motion::prescribed, alone = scene.name.empty(), held = particle.drift == "held";
   const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
@@ -259,7 +267,7 @@ void check_contradictions(const Scene& scene) {
   refuse(steady && scene.tube.channel && scene.flow.held == "flow rate", sought, "Flow/held `flow rate`",
          "what is carried along in a channel rests only where a pressure drop does not push it through");
   refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
-  if (scene.continuation.present && !scene.steady.present) throw UserError("Continuation needs a list Steady: it continues steady shapes.");
+  if (scene.continuation.present && !scene.steady.present) found.emplace_back("Continuation needs a list Steady: it continues steady shapes.");
   refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
   refuse(steady && scene.domain.present, sought, "Domain", "the lattice moves along with the flow");
   refuse(steady && adapts && !scene.steady.present, sought, "Adaptation/enabled", "the mesh stays what it is");
@@ -333,6 +341,7 @@ void check_contradictions(const Scene& scene) {
   refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
   refuse(held && (tube || rigid), "Particle/drift `held`", tube ? confined : motion,
          "it is for particles that deform in a flow whose gradient is the same everywhere");
+  require_none(std::move(found));
 }
 
 /// The balance of power is that of all particles (6.11).
@@ -372,6 +381,9 @@ void check_several(const Scene& scene) {
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
     try {
       one.check();
+    } catch (UserErrors& errors) {
+      for (std::string& sentence : errors.all) sentence.insert(0, list + ": ");
+      throw UserErrors(errors.all);
     } catch (const UserError& error) {
       throw UserError(list + ": " + error.what());
     }

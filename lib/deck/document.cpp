@@ -1,6 +1,8 @@
 #include "deck/document.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <Teuchos_ParameterList.hpp>
 
@@ -99,7 +101,15 @@ Document::Document(Document&&) noexcept = default;
 
 Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting, {}})); }
 
-void Document::finish() const { refuse_unknown_keys(held_->root, held_->root); }
+bool Document::wrong_values() const { return !mistakes(held_->root).empty(); }
+
+void Document::refuse_wrong_values() const { require_none(mistakes(held_->root)); }
+
+void Document::finish() const {
+  std::vector<std::string> all = mistakes(held_->root);
+  std::ranges::copy(unknown_keys(held_->root, held_->root), std::back_inserter(all));
+  require_none(std::move(all));
+}
 
 std::string Document::effective() const { return std::string(root_name) + ":\n" + yaml_text(held_->root, 1); }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/errors.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::deck {
@@ -13,7 +14,7 @@ namespace tanktread::deck {
 /// A deck: reads into options structs by their `declare`, and keeps what they stated.
 ///
 ///   Document deck = read({"deck.yaml", "overlay.yaml"}, {"Time/final time=3"});
-///   deck.declare(scene);                  // throws UserError on wrong values and unknown keys
+///   deck.declare(scene);                  // throws UserErrors with all wrong values and unknown keys
 ///   std::cout << deck.effective();        // YAML with the value of every key; read again, it gives the same scene bit for bit
 class Document {
  public:
@@ -25,7 +26,12 @@ class Document {
   template <class Options>
   void declare(Options& options) {
     Section root = begin();
-    options.declare(root);
+    try {
+      options.declare(root);
+    } catch (const UserError&) {
+      if (!wrong_values()) throw;  // otherwise it may follow from a default that stands for a wrong value
+      refuse_wrong_values();
+    }
     finish();
   }
 
@@ -46,6 +52,8 @@ class Document {
 
  private:
   Section begin();
+  bool wrong_values() const;
+  void refuse_wrong_values() const;
   void finish() const;
   struct Held;
   std::unique_ptr<Held> held_;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include <Teuchos_ParameterList.hpp>
 
-#include "base/errors.hpp"
 #include "deck/synonyms.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
@@ -31,10 +31,10 @@ std::string elsewhere(const List& list, const std::string& key) {
   return {};
 }
 
-[[noreturn]] void refuse(const List& list, const List& root, const std::string& key) {
+std::string unknown_key(const List& list, const List& root, const std::string& key) {
   const std::vector<std::string> names = names_in(list);
   const std::string path = list.path_of(key), what = path + " is not a key of the deck", missing = missing_feature(path);
-  if (!missing.empty()) throw UserError(what + ": " + missing + ".");
+  if (!missing.empty()) return what + ": " + missing + ".";
   std::string meant = guess(key, names);
   if (!meant.empty()) meant = list.path_of(meant);
   for (const std::string& name : {list.path_of(key), key})
@@ -42,20 +42,28 @@ std::string elsewhere(const List& list, const std::string& key) {
   const std::string last = meant.substr(meant.rfind('/') + 1);
   if (meant.find(" or ") == meant.npos && std::ranges::find(names, last) != names.end()) meant = list.path_of(last);
   if (meant.empty()) meant = elsewhere(root, key);
-  if (!meant.empty()) throw UserError(what + "; was " + meant + " meant?");
-  throw UserError(what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".");
+  if (!meant.empty()) return what + "; was " + meant + " meant?";
+  return what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".";
 }
 
 }  // namespace
 
-void refuse_unknown_keys(const List& list, const List& root) {
-  if (list.foreign) return;
+std::vector<std::string> mistakes(const List& list) {
+  std::vector<std::string> all = list.mistakes;
+  for (const auto& inner : list.lists) std::ranges::copy(mistakes(*inner), std::back_inserter(all));
+  return all;
+}
+
+std::vector<std::string> unknown_keys(const List& list, const List& root) {
+  std::vector<std::string> all;
+  if (list.foreign) return all;
   if (list.given) {
     const std::vector<std::string> names = names_in(list);
     for (const auto& item : *list.given)
-      if (std::find(names.begin(), names.end(), item.first) == names.end()) refuse(list, root, item.first);
+      if (std::ranges::find(names, item.first) == names.end()) all.push_back(unknown_key(list, root, item.first));
   }
-  for (const auto& inner : list.lists) refuse_unknown_keys(*inner, root);
+  for (const auto& inner : list.lists) std::ranges::copy(unknown_keys(*inner, root), std::back_inserter(all));
+  return all;
 }
 
 std::string yaml_text(const List& list, int depth) {

@@ -28,6 +28,7 @@ struct List {
   std::shared_ptr<Teuchos::ParameterList> merged;  ///< that with what it shares with other lists, where it does
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
+  std::vector<std::string> mistakes;   ///< a sentence for each value that is refused; its key keeps the default
   std::vector<std::string> mentioned;  ///< names of lists that may stand here, but do not
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< set when the list belongs to another library
 
@@ -42,8 +43,11 @@ struct Section::State {
   std::shared_ptr<const Units> units = {};
 };
 
-/// Throws UserError at the first key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists.
-void refuse_unknown_keys(const List& list, const List& root);
+/// The mistakes of a list and all below, each list's own first.
+std::vector<std::string> mistakes(const List& list);
+
+/// A sentence for each key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists.
+std::vector<std::string> unknown_keys(const List& list, const List& root);
 
 /// The values of a list and all below as YAML, indented by `depth` steps.
 std::string yaml_text(const List& list, int depth);

@@ -123,7 +123,11 @@ template <class Field, class Read>
 void state(List& list, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
            const Read& read) {
   Entry entry{std::string(name), Held<Field>::text(field), values, std::string(unit), std::string(meaning), {}};
-  if (const Teuchos::ParameterEntry* given = list.given ? list.given->getEntryPtr(entry.key) : nullptr) field = read(list.path_of(name), *given);
+  if (const Teuchos::ParameterEntry* given = list.given ? list.given->getEntryPtr(entry.key) : nullptr) try {
+      field = read(list.path_of(name), *given);
+    } catch (const UserError& error) {
+      list.mistakes.emplace_back(error.what());
+    }
   entry.value = Held<Field>::text(field);
   list.entries.push_back(std::move(entry));
 }
@@ -222,8 +226,10 @@ Section Section::enter(std::string_view name, std::string_view meaning) {
   inner->path = outer.path_of(name);
   inner->meaning = meaning;
   if (const auto* entry = outer.given ? outer.given->getEntryPtr(inner->name) : nullptr) {
-    if (!entry->isList()) throw UserError(inner->path + " must be a list of keys, but is " + description(*entry) + ".");
-    inner->given = &Teuchos::getValue<Teuchos::ParameterList>(*entry);
+    if (entry->isList())
+      inner->given = &Teuchos::getValue<Teuchos::ParameterList>(*entry);
+    else
+      outer.mistakes.push_back(inner->path + " must be a list of keys, but is " + description(*entry) + ".");
   }
   outer.lists.push_back(std::move(inner));
   return Section(std::make_shared<State>(State{outer.lists.back().get(), state_->documenting, state_->units}));

@@ -24,8 +24,8 @@ def _words(settings):
     return [word for setting in settings for word in ("--set", setting)]
 
 
-def _refused(words, *settings):
-    refused(words, deck(DECK), *_words(settings))
+def _refused(words, *settings, mistakes=1):
+    refused(words, deck(DECK), *_words(settings), mistakes=mistakes)
 
 
 def what_is_no_channel_is_refused():
@@ -42,8 +42,9 @@ def what_is_no_channel_is_refused():
     _refused(["Channel/outline", "eight.csv", "crosses itself"], "Channel/section=file", "Channel/outline=eight.csv")
     _refused(["Channel/repulsion range", "belong together"], "Channel/repulsion=10")
     _refused(["Channel/repulsion", "round"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
-    for setting in "Membrane/load=strong", "Particle/motion=free":
-        _refused(["Channel/repulsion", setting.split("=")[1], "contradict"], "Channel/repulsion=10", "Channel/repulsion range=0.01", setting)
+    for setting, mistakes in ("Membrane/load=strong", 1), ("Particle/motion=free", 2):  # the latter also contradicts Membrane
+        _refused(["Channel/repulsion", setting.split("=")[1], "contradict"], "Channel/repulsion=10", "Channel/repulsion range=0.01", setting,
+                 mistakes=mistakes)
     _refused(["does not fit", "0.7"], "Particle/radius=0.75", "Particle/center=[0, 0, 0]")
     _refused(["too close to an end", "1.7"], "Particle/center=[-1.6, 0, 0]")
     _refused(["Channel/contact gap", "0.9"], "Particle/center=[-1.0, 0.0, 0.4]", "Channel/contact gap=0.9")

@@ -77,16 +77,18 @@ def run(*arguments, code=0, ranks=1, timeout=600):
     return result
 
 
-def refused(words, *arguments):
-    """Runs the program and fails the test unless it says one sentence that holds the words, exits with code 2 and writes nothing."""
+def refused(words, *arguments, mistakes=1):
+    """Runs the program and fails the test unless it says one sentence for each mistake, of which the first holds the words, exits with code 2 and
+    writes nothing."""
     result = run(*arguments, "--output", "refused", code=2)
     lines = result.stderr.splitlines()
-    check(len(lines) == 1, f"{len(lines)} lines on standard error:\n{result.stderr}")
+    check(len(lines) == mistakes, f"{len(lines)} lines on standard error:\n{result.stderr}")
     for word in words:
         check(word in lines[0], f"no '{word}' in: {lines[0]}")
-    for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp", "filesystem error"):
-        check(word not in lines[0], f"'{word}' in: {lines[0]}")
-    check(len(lines[0]) < 400, f"{len(lines[0])} characters: {lines[0]}")
+    for line in lines:
+        for word in ("terminate", "Traceback", "Throw", "std::", "Teuchos::", ".cpp", "filesystem error"):
+            check(word not in line, f"'{word}' in: {line}")
+        check(len(line) < 400, f"{len(line)} characters: {line}")
     check(result.stdout == "", f"on standard output: {result.stdout}")
     check(not pathlib.Path("refused").exists(), "results were written")
 

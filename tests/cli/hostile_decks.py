@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Whatever a deck holds, --check ends soon: with the plan, or with one sentence and exit code 2.
+# Whatever a deck holds, --check ends soon: with the plan, or with a sentence for each mistake and exit code 2.
 #
 # By hand: hostile_decks.py <tanktread> <source directory> --count 5000 --seed 7 makes other mutations of the shipped decks.
 import argparse
@@ -172,8 +172,8 @@ def _fault(name):
         return f"exit code {result.returncode}: {said[:500]}"
     if result.returncode == 0:
         return f"an error was said, but exit code 0: {said[:500]}" if lines else ""
-    if len(lines) != 1 or not lines[0].startswith("tanktread: ") or len(lines[0]) > 1100:
-        return f"not one sentence of the program's: {said[:500]}"
+    if not lines or any(not line.startswith("tanktread: ") or len(line) > 1100 for line in lines):
+        return f"not a sentence of the program's for each mistake: {said[:500]}"
     traces = [trace for trace in TRACES if trace in lines[0]]
     return f"{traces} in: {lines[0][:500]}" if traces else ""
 

@@ -14,7 +14,7 @@ GOOD = """Tanktread:
   Time: {final time: 0.01}
 """
 
-# (settings over the good deck, what the sentence must hold: path, rule, value)
+# (settings over the good deck, what the sentence must hold: path, rule, value; how many mistakes, if not one)
 SETTINGS = [
     # unknown keys, with a guess
     (["Flow/shaer rate=1"], ["Flow/shaer rate", "not a key", "Flow/shear rate"]),
@@ -35,7 +35,7 @@ SETTINGS = [
     (["Solvers/rigid bodies=first kind"], ["Solvers/rigid bodies", "Particle deforms"]),
     (["Periodic/turn=180"], ["Periodic/period", "missing"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
-    (["Spectrum/number=4", "Particle/motion=free"], ["Spectrum", "Particle/motion", "rigid"]),
+    (["Spectrum/number=4", "Particle/motion=free"], ["Spectrum", "Particle/motion", "rigid"], 2),  # and Membrane
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),
     (["Spectrum/number=0"], ["Spectrum/number", "0"]),
     (["Flow/gravity=[0, -1]"], ["Flow/gravity", "three numbers"]),
@@ -215,12 +215,32 @@ def _imported(file):
 def wrong_settings_arerefused():
     path = deck(GOOD)
     check(len(SETTINGS) + len(TEXTS) >= 30, "fewer than thirty wrong decks")
-    for settings, words in SETTINGS:
-        refused(words, path, *[word for setting in settings for word in ("--set", setting)])
+    for settings, words, *mistakes in SETTINGS:
+        refused(words, path, *[word for setting in settings for word in ("--set", setting)], mistakes=(*mistakes, 1)[0])
+
+
+def all_mistakes_are_told_at_once():
+    """A line each: wrong values, unknown keys, a list that is none; then, once these are mended, contradictions."""
+    def told(*settings):
+        lines = run(deck(GOOD), *[word for setting in settings for word in ("--set", setting)], "--output", "refused", code=2).stderr.splitlines()
+        check(all(line.startswith("tanktread: ") and line.endswith((".", "?")) for line in lines), lines)
+        return lines
+
+    lines = told("Flow/shaer rate=1", "Membrane/law=rubber", "Particle/radius=-1", "Zebra/stripes=1", "Flow/history=3")
+    for word in ("Flow/shaer rate is not a key", "Membrane/law must be", "Particle/radius must be", "Zebra is not a key", "Flow/history must be a list"):
+        check(sum(word in line for line in lines) == 1, word, lines)
+    check(len(lines) == 5, lines)
+    lines = told("Volume/constraint=none", "Membrane/load measure=reference", "Particle/motion=free", "Particle/viscosity ratio=2")
+    for word in ("Membrane and Particle/motion", "Volume and Particle/motion", "Particle/viscosity ratio and Particle/motion"):
+        check(any(word in line for line in lines), word, lines)
+    several = GOOD.replace("  Membrane: {law: neo-Hookean, capillary number: 0.3}\n  Surface: {elements per side: 3}\n",
+                           "  Particles: {one: {radius: -1, Membrane: {law: rubber}}, two: {center: [4, 0, 0], shape: cube}}\n")
+    lines = run(deck(several), "--output", "refused", code=2).stderr.splitlines()
+    check(len(lines) == 3 and all("Particles/" in line for line in lines), lines)
 
 
 def solvers_and_their_lists_are_tried_before_a_run():
-    for settings, words in [entry for entry in SETTINGS if "Solvers/" in entry[0][-1]]:
+    for settings, words, *_ in [entry for entry in SETTINGS if "Solvers/" in entry[0][-1]]:
         refused(words, deck(GOOD), "--check", *[word for setting in settings for word in ("--set", setting)])
     for settings in (["Solvers/iterative solver=BICGSTAB"], ["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Orthogonalization=ICGS"],
                      ["Solvers/direct solver=KLU2"], ["Time/scheme=crank-nicolson", "Time/nonlinear solver=newton-krylov", "Solvers/NOX/Line Search/Method=Backtrack"],
