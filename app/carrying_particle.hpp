@@ -21,6 +21,7 @@ class CarryingParticle : public ParticleSystem {
   const surface::BezierMap& bezier() const override { return particle_->bezier(); }
   bool resume(Resumed& resumed) override;
   void store(output::Checkpoint& checkpoint) const override { particle_->store(checkpoint); }
+  void forget_recycled() override { particle_->forget_recycled(); }
   bool adapt(motion::State& state, RunTotals& totals) override;
   std::vector<Warning> remarks() override { return particle_->remarks(); }
   coupling::Work work() const override { return particle_->work(); }

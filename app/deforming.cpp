@@ -60,6 +60,7 @@ class Deforming : public ParticleSystem {
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
+  void forget_recycled() override { capsule_->forget_recycled(); }
 
   bool hold_apart(motion::State& state, double step) override {
     if (!scene_.contact.limiter) return true;

@@ -39,12 +39,17 @@ class Free : public ParticleSystem {
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
     phase_angle_ = resumed.totals.phase_angle.at(0);
+    free_->start_from({resumed.checkpoint.arrays.at("start place"), resumed.checkpoint.arrays.at("start unknowns")});
     return false;
   }
   void store(output::Checkpoint& checkpoint) const override {
     checkpoint.arrays["unstressed"] = body_.unstressed;
     checkpoint.arrays["initial"] = body_.rest;
+    const coupling::LoneRigidBody::Start start = free_->start();
+    checkpoint.arrays["start place"] = start.place;
+    checkpoint.arrays["start unknowns"] = start.unknowns;
   }
+  void forget_recycled() override { free_->forget_recycled(); }
   bool adapt(motion::State&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }

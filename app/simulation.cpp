@@ -313,9 +313,11 @@ class Run {
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     particle_->dynamics().at(pictured.time, began_);
+    const SurfacePicture picture = particle_->picture(pictured);  // evaluates, and what the next solution starts from is stored after it
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
-    results_.save(std::move(checkpoint), state_, totals_, particle_->picture(pictured), pictured.time);
+    results_.save(std::move(checkpoint), state_, totals_, picture, pictured.time);
+    particle_->forget_recycled();
   }
 
   void save_or_fail() {

@@ -627,6 +627,11 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   return solution;
 }
 
+void Capsule::forget_recycled() const {
+  for (const Krylov* solver : {&velocity_solver_, &step_solver_, &inner_solver_}) solver->forget();
+  if (tube_) tube_->forget_recycled();
+}
+
 /// v, f^D, dp and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f; the start is what it would be without a wall.
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };

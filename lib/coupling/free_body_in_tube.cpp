@@ -27,14 +27,36 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
     solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
     return solution_;
   }
-  Net f;
-  RigidMotion own;
-  body_.wall() ? solve_beside_wall(place, f, own) : solve_in_tube(place, f, own);
+  if (body_.wall()) {
+    Net f;
+    RigidMotion own;
+    solve_beside_wall(place, f, own);
+    keep(place, f, own);
+  } else {
+    solve_in_tube(place);
+    keep(place, density_of_unknowns(), motion_of_unknowns());
+  }
+  return solution_;
+}
+
+void FreeBodyInTube::keep(const Net& place, const Net& f, const RigidMotion& own) const {
+  const Mat3 turn = rotation_of(place);
   place_ = place;
   solution_.motion = {turn * own.velocity, turn * own.angular_velocity};
   solution_.density = f * turn.transpose();
   solution_.stresslet = -turn * body_.stresslet(f, centre_) * turn.transpose();
-  return solution_;
+}
+
+void FreeBodyInTube::start_from(const Start& start) {
+  if (body_.wall() || start.place.size() == 0) return;
+  unknowns_ = start.unknowns;
+  body_.place(surface(start.place), rotation_of(start.place));
+  keep(start.place, density_of_unknowns(), motion_of_unknowns());
+}
+
+void FreeBodyInTube::forget_recycled() const {
+  krylov_.forget();
+  body_.forget_recycled();
 }
 
 double FreeBodyInTube::pressure_drop(const Net& place) const {
@@ -42,8 +64,17 @@ double FreeBodyInTube::pressure_drop(const Net& place) const {
   return body_.pressure_drop(f) + body_.lacking_pressure(flow_, f);
 }
 
+Net FreeBodyInTube::density_of_unknowns() const {
+  return viscosity_ / radius_ * Eigen::Map<const Net>(unknowns_.data(), surface_.rows(), 3);
+}
+
+RigidMotion FreeBodyInTube::motion_of_unknowns() const {
+  const auto motion = unknowns_.tail<6>();
+  return {motion.head<3>(), motion.tail<3>() / radius_};
+}
+
 /// Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
-void FreeBodyInTube::solve_in_tube(const Net& place, Net& f, RigidMotion& own) const {
+void FreeBodyInTube::solve_in_tube(const Net& place) const {
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();
   const double unit = viscosity_ / radius_, force_unit = 6 * std::numbers::pi * viscosity_ * radius_;
@@ -60,8 +91,6 @@ void FreeBodyInTube::solve_in_tube(const Net& place, Net& f, RigidMotion& own) c
   const SolveReport report = krylov_.solve({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, {}}, rhs, unknowns_, tolerance_);
   iterations_ += report.iterations;
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
-  f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);
-  own = motion_of(unknowns_.data() + 3 * n);
 }
 
 /// f of the body at rest and of six unit motions; their sum has the force and torque given, but for what collocation lacks of them, which one more

@@ -136,6 +136,8 @@ Krylov::Krylov(const IterativeOptions& options) : impl_(std::make_unique<Impl>()
 
 Krylov::~Krylov() = default;
 
+void Krylov::forget() const { impl_->chosen.forget(); }
+
 SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
   impl_->prepare(impl_->chosen.join(system));
   const auto unknowns = vector_of(impl_->space, x), right = vector_of(impl_->space, b);

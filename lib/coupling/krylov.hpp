@@ -57,6 +57,9 @@ class Krylov {
   /// when it stops short, or breaks down, the solution then not a number; see the report.
   SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
+  /// Forgets what the preconditioner `recycled` knows of earlier solves, which no checkpoint holds.
+  void forget() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

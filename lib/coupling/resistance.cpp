@@ -195,4 +195,9 @@ Mat3 Resistance::stresslet(const Net& f, const Vec3& centre) const {
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }
 
+void Resistance::forget_recycled() const {
+  krylov_.forget();
+  if (tube_) tube_->forget_recycled();
+}
+
 }  // namespace tanktread::coupling

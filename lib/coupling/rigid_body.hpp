@@ -57,6 +57,15 @@ class LoneRigidBody : public Dynamics {
   virtual Mat3 stresslet(const Net& place) const = 0;     ///< int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< that the body adds, in a tube
 
+  /// What the next solution starts from, beside the place; of no size if that is nothing. A run that goes on from it is the same to the last bit.
+  struct Start {
+    Net place;                 ///< of the solution before
+    Eigen::VectorXd unknowns;  ///< of it
+  };
+  virtual Start start() const { return {}; }
+  virtual void start_from(const Start&) {}
+  virtual void forget_recycled() const {}  ///< what the solver knows of earlier solves and no start holds
+
   Net surface(const Net& place) const;            ///< control net of the surface in space
   const Vec3& centre() const { return centre_; }  ///< at the initial place
   long evaluations() const { return evaluations_; }
@@ -110,6 +119,9 @@ class FreeBodyInTube : public LoneRigidBody {
   Net force_density(const Net& place) const override { return solution(place).density; }
   Mat3 stresslet(const Net& place) const override { return solution(place).stresslet; }
   double pressure_drop(const Net& place) const override;
+  Start start() const override { return {place_, unknowns_}; }
+  void start_from(const Start& start) override;
+  void forget_recycled() const override;
   long solver_iterations() const { return iterations_; }
 
  private:
@@ -119,7 +131,10 @@ class FreeBodyInTube : public LoneRigidBody {
     Mat3 stresslet;
   };
   const Solution& solution(const Net& place) const;
-  void solve_in_tube(const Net& place, Net& f, RigidMotion& own) const;
+  void keep(const Net& place, const Net& f, const RigidMotion& own) const;
+  void solve_in_tube(const Net& place) const;
+  Net density_of_unknowns() const;
+  RigidMotion motion_of_unknowns() const;
   void solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const;
 
   Resistance& body_;

@@ -152,6 +152,7 @@ class Tube {
   bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
+  void forget_recycled() const { wall_->forget_recycled(); }  ///< of the wall's iterative solver
   const stokes::DuctFlow& flow() const { return *flow_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both surfaces, the assembly of the wall included
 

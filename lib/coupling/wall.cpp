@@ -158,6 +158,10 @@ Net Wall::solve(const Net& rhs) const {
   return f;
 }
 
+void Wall::forget_recycled() const {
+  if (krylov_) krylov_->forget();
+}
+
 Net Wall::iterated(const Net& rhs) const {
   const Eigen::VectorXd b = fundamental(rhs);
   const auto through = [&](const std::function<void(const Net&, Net&)>& map) {

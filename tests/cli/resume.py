@@ -96,6 +96,26 @@ def a_run_that_is_killed_again_and_again_arrives_at_the_same_end():
     _same_bits("whole", "killed")
 
 
+def what_solvers_start_from_belongs_to_the_checkpoint():
+    """Scenes whose solutions depend on the solves before: a free body in a tube, and recycled products. Pictures are made between two steps."""
+    body = "Particle: {motion: free, radius: 0.5, center: [0, 0.2, 0.1]}\n  Surface: {elements per side: 3}"
+    capsule = ("Particle: {radius: 0.5, viscosity ratio: 5}\n  Membrane: {law: neo-Hookean, shear modulus: 5}\n  Surface: {elements per side: 3}\n"
+               "  Solvers: {velocity: {preconditioner: recycled}}")
+    for name, particle in ("body", body), ("capsule", capsule):
+        deck(f"""
+Tanktread:
+  Flow: {{type: duct}}
+  Tube: {{section: circle, azimuthal elements: 8, axial elements: 8}}
+  {particle}
+  Time: {{scheme: bs3, fixed step: 0.01, final time: 0.4}}
+  Output: {{interval: 0.025}}
+""", f"{name}.yaml")
+        run(f"{name}.yaml", "--output", f"whole_{name}", "--quiet")
+        _kill_after(f"killed_{name}", 20, f"{name}.yaml", "--output", f"killed_{name}", "--quiet")
+        run("--resume", f"killed_{name}", "--quiet")
+        _same_bits(f"whole_{name}", f"killed_{name}")
+
+
 def other_ranks_go_on_to_the_same_end_within_1e_10():
     deck(DECK)
     run("deck.yaml", "--output", "whole", "--quiet")
