@@ -56,7 +56,8 @@ Units::Units(const UnitOptions& options) : options_(options) {
   if (!system_) throw UserError("Units: UDUNITS finds no table of units, in Debian the package libudunits2-data.");
   const auto check = [this](const char* key, const std::string& text, const char* si) {
     if (!(ratio(parsed(system_, text), parsed(system_, si)) > 0))
-      throw UserError("Units/" + std::string(key) + " must be a number and a unit of " + key + ", say 1 " + si + ", but is " + in_quotes(shortened(text, 80)) + ".");
+      throw UserError("Units/" + std::string(key) + " must be a number and a unit of " + key + ", say 1 " + si + ", but is " +
+                      in_quotes(shortened(text, 80)) + ".");
   };
   check("length", options.length, "m");
   check("time", options.time, "s");
