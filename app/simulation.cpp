@@ -313,7 +313,8 @@ class Run {
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const motion::State& pictured = pictured_ ? *pictured_ : state_;
     particle_->dynamics().at(pictured.time, began_);
-    const SurfacePicture picture = particle_->picture(pictured);  // evaluates, and what the next solution starts from is stored after it
+    const SurfacePicture picture = particle_->picture(pictured);
+    if (pictured_) settle();  // the picture has taken work, and the next solution starts from its own
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture, pictured.time);

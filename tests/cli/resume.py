@@ -69,9 +69,9 @@ def _kill_when(holds, *arguments):
         if holds():
             break
         time.sleep(0.001)
-    check(process.poll() is None, f"the run ended before it was to be killed: {process.communicate()}")
     process.send_signal(signal.SIGKILL)
-    process.communicate()
+    said = process.communicate()
+    check(process.returncode == -signal.SIGKILL, f"the run ended before it was to be killed: {said}")
 
 
 def a_killed_run_goes_on_to_the_same_last_bit_under_every_scheme():
