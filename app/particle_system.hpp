@@ -42,7 +42,8 @@ class ParticleSystem {
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now
   virtual void store(output::Checkpoint& checkpoint) const = 0;                  ///< adds what `resume` takes beside state and totals
-  virtual void forget_recycled() {}  ///< what solvers know of earlier solves and no checkpoint holds: a run that goes on is then the same
+  /// Discards the products that preconditioners `recycled` keep from earlier solves. No checkpoint holds them; after each one a run does without.
+  virtual void forget_recycled() {}
   /// After a step of this size: moves what it left too close apart, if the deck asks for that; whether that could be done.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< that hold now

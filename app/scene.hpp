@@ -131,7 +131,8 @@ struct Scene : ParticleKind {
   double snapshot_interval() const;  ///< simulated time between snapshots
 };
 
-/// Of a tube's wall, whose factors each rank keeps: the most control points for which those of all ranks take no more memory than is allowed.
+/// The largest number of control points that the wall of a tube may have. Each rank keeps the factors of the wall; those of all ranks together must
+/// fit into the memory allowed.
 double most_wall_points();
 
 /// Whether the key at this path may differ when a run goes on: one that the checkpoint is not made of.

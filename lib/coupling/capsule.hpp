@@ -192,7 +192,7 @@ class Capsule : public Dynamics {
   const surface::Geometry& geometry() const { return geometry_; }
   const Phases& layer_phases() const { return layer_.phases(); }  ///< where the time of the single layer goes
   stokes::Measure measure() const { return parameters_.strong_load ? stokes::Measure::current : parameters_.measure; }  ///< of the load
-  void forget_recycled() const;  ///< what `Solvers/<system>/preconditioner: recycled` knows of earlier solves
+  void forget_recycled() const;  ///< discards what preconditioners `recycled` keep from earlier solves
   const Work& work() const { return work_; }
   Work& work() { return work_; }
 

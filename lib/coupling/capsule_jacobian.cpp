@@ -25,6 +25,7 @@ void Capsule::freeze(const Net& at) {
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
   frozen_at_ = at;
+  corotation_ = {};
   stokes::Layer& layer = site_layer_ ? *site_layer_ : layer_;
   const auto assemble = [&](std::span<const int> targets, auto&&... of) { layer.assemble(targets, of...); };
   layer.place(x, stokes::Measure::reference);

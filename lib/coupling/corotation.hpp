@@ -26,7 +26,7 @@ class Corotation {
   Net back(const Net& f) const;    ///< Q^T f
   Net forth(const Net& f) const;  ///< Q f
 
-  /// to - from without the best rigid motion of each particle.
+  /// Returns the displacement to - from less the rigid motion of each particle that fits it best.
   static Net deformation(std::span<const Particle> particles, const Net& from, const Net& to);
 
  private:

@@ -76,7 +76,7 @@ class Dynamics {
   /// and what is extrapolated from it grows from step to step.
   virtual Net symmetric(Net rate) const { return rate; }
 
-  /// By how far a shape differs from an earlier one, for operators that were assembled there: the norm of the displacement.
+  /// How much a shape differs from the one on which operators were assembled: by default the norm of the displacement.
   virtual double distance(const Net& from, const Net& to) const { return norm(to - from); }
 
   /// The norm of `Time/tolerance`: root mean square of the control points' displacement over R_C.

@@ -57,7 +57,7 @@ class Krylov {
   /// when it stops short, or breaks down, the solution then not a number; see the report.
   SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
-  /// Forgets what the preconditioner `recycled` knows of earlier solves, which no checkpoint holds.
+  /// Discards the products that the preconditioner `recycled` keeps from earlier solves. No checkpoint holds them.
   void forget() const;
 
  private:

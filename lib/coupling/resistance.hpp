@@ -85,7 +85,7 @@ class Resistance {
   stokes::Evaluations kernel_evaluations() const;  ///< of everything so far
   int last_iterations() const { return last_iterations_; }
   long solver_iterations() const { return iterations_; }
-  void forget_recycled() const;  ///< what the iterative solvers, that of the wall too, know of earlier solves
+  void forget_recycled() const;  ///< discards what preconditioners `recycled`, that of the wall too, keep from earlier solves
   const Net& surface() const { return surface_; }
 
  private:

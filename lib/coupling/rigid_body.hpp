@@ -57,14 +57,15 @@ class LoneRigidBody : public Dynamics {
   virtual Mat3 stresslet(const Net& place) const = 0;     ///< int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< that the body adds, in a tube
 
-  /// What the next solution starts from, beside the place; of no size if that is nothing. A run that goes on from it is the same to the last bit.
+  /// The latest solution, from which the iterative solver starts the next one. A checkpoint holds it, so that a resumed run is the same to the last
+  /// bit. Both are empty if no iterative solver is used.
   struct Start {
-    Net place;                 ///< of the solution before
-    Eigen::VectorXd unknowns;  ///< of it
+    Net place;                 ///< where the body was
+    Eigen::VectorXd unknowns;  ///< of the linear system there
   };
   virtual Start start() const { return {}; }
   virtual void start_from(const Start&) {}
-  virtual void forget_recycled() const {}  ///< what the solver knows of earlier solves and no start holds
+  virtual void forget_recycled() const {}  ///< discards the products that the preconditioner `recycled` keeps from earlier solves
 
   Net surface(const Net& place) const;            ///< control net of the surface in space
   const Vec3& centre() const { return centre_; }  ///< at the initial place

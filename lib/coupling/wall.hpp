@@ -69,7 +69,7 @@ class Wall {
 
   Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, its means as of `collocated`
   Net solve(const Net& rhs) const;  ///< A^-1 rhs
-  void forget_recycled() const;                 ///< what the iterative solver knows of earlier solves
+  void forget_recycled() const;                 ///< discards what the preconditioner keeps from earlier solves
 
   /// What has with every rhs the product that `weights` has with solve(rhs). Of what is factored.
   Net solve_transposed(const Net& weights) const;

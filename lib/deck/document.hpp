@@ -14,7 +14,7 @@ namespace tanktread::deck {
 /// A deck: reads into options structs by their `declare`, and keeps what they stated.
 ///
 ///   Document deck = read({"deck.yaml", "overlay.yaml"}, {"Time/final time=3"});
-///   deck.declare(scene);                  // throws UserErrors with all wrong values and unknown keys
+///   deck.declare(scene);                  // throws UserErrors with all wrong values, and unknown keys if all were read
 ///   std::cout << deck.effective();        // YAML with the value of every key; read again, it gives the same scene bit for bit
 class Document {
  public:

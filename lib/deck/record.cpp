@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <iterator>
+#include <set>
+#include <utility>
 
 #include <Teuchos_ParameterList.hpp>
 
@@ -48,9 +49,26 @@ std::string unknown_key(const List& list, const List& root, const std::string& k
 
 }  // namespace
 
+namespace {
+
+/// Appends the sentences of all lists in this one; of lists that are alike those that differ by more than the list's path.
+template <class Sentences>
+void add_inner(const List& list, const Sentences& sentences, std::vector<std::string>& all) {
+  std::set<std::string> told;
+  for (const auto& inner : list.lists)
+    for (std::string& sentence : sentences(*inner)) {
+      std::string without_path = sentence;
+      for (std::size_t at; list.alike && (at = without_path.find(inner->path + "/")) != std::string::npos;)
+        without_path.erase(at, inner->path.size());
+      if (!list.alike || told.insert(without_path).second) all.push_back(std::move(sentence));
+    }
+}
+
+}  // namespace
+
 std::vector<std::string> mistakes(const List& list) {
   std::vector<std::string> all = list.mistakes;
-  for (const auto& inner : list.lists) std::ranges::copy(mistakes(*inner), std::back_inserter(all));
+  add_inner(list, [](const List& inner) { return mistakes(inner); }, all);
   return all;
 }
 
@@ -62,7 +80,7 @@ std::vector<std::string> unknown_keys(const List& list, const List& root) {
     for (const auto& item : *list.given)
       if (std::ranges::find(names, item.first) == names.end()) all.push_back(unknown_key(list, root, item.first));
   }
-  for (const auto& inner : list.lists) std::ranges::copy(unknown_keys(*inner, root), std::back_inserter(all));
+  add_inner(list, [&root](const List& inner) { return unknown_keys(inner, root); }, all);
   return all;
 }
 

@@ -29,6 +29,7 @@ struct List {
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mistakes;   ///< a sentence for each value that is refused; its key keeps the default
+  bool alike = false;                  ///< whether lists in this one share keys by `like` and `defaults`
   std::vector<std::string> mentioned;  ///< names of lists that may stand here, but do not
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< set when the list belongs to another library
 
@@ -43,10 +44,10 @@ struct Section::State {
   std::shared_ptr<const Units> units = {};
 };
 
-/// The mistakes of a list and all below, each list's own first.
+/// The mistakes of a list and all below, each list's own first. What lists that share keys have in common is told once.
 std::vector<std::string> mistakes(const List& list);
 
-/// A sentence for each key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists.
+/// A sentence for each key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists. The same holds.
 std::vector<std::string> unknown_keys(const List& list, const List& root);
 
 /// The values of a list and all below as YAML, indented by `depth` steps.

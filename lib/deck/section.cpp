@@ -250,6 +250,7 @@ void Section::mention(std::string_view list) { state_->list->mentioned.emplace_b
 
 void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike) {
   List& list = *state_->list;
+  list.alike = alike;
   if (alike) list.mentioned.emplace_back("defaults");
   std::vector<std::string> names;
   if (list.given)

@@ -77,7 +77,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
       state.history = {stage.slope};
       state.slope_error = stage.error / scheme.shift;
       state.secants = std::move(secants);
-      const StepReport report = attempts.accept(dynamics, std::move(stage.y), error, factor);
+      const StepReport report = attempts.accept(dynamics, std::move(stage.y), error, factor, step_share(options_.tolerance, 3));
       state.step = std::min(state.step, growth * dt);
       return report;
     }

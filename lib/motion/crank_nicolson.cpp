@@ -76,7 +76,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     state.history.insert(state.history.begin(), std::move(slope));
     state.slope_error = 0;
     state.history.resize(by_error_ ? 2 : 1);
-    return attempts.accept(dynamics, std::move(y), error, factor);
+    return attempts.accept(dynamics, std::move(y), error, factor, step_share(options_.tolerance, 2));
   }
 }
 

@@ -22,6 +22,8 @@ class FixedPointError {
   /// Takes x_k and f_k, finite; returns the estimate of x_k - x*. Cost: a least-squares problem of m columns, no evaluation.
   Net operator()(const Net& x, const Net& f);
 
+  bool known() const { return before_.size() > 1; }  ///< whether the latest estimate is more than the correction
+
  private:
   int most_;
   std::deque<std::pair<Net, Net>> before_;  // x_j, f_j, the latest last

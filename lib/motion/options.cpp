@@ -50,8 +50,8 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("secants", secants, deck::between(0, 20), "1",
               "implicit schemes: quasi-Newton corrections remembered, from which is learnt what the Jacobian leaves out (4.13)");
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
-              "`tr-bdf2`: largest order of the extrapolation of slopes that a stage starts from; of the orders up to it the one that would have "
-              "predicted the same stage of the step before best");
+              "`tr-bdf2`: largest order of the extrapolation of slopes that a stage starts from. Each step takes the order that would have "
+              "predicted the step before best");
 }
 
 void TimeOptions::check() const {

@@ -9,7 +9,6 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double unobserved = 0.5;        // contraction rate assumed before one is observed
 constexpr double worth_assembling = 0.3;  // change of shape since the last assembly
 }  // namespace
 
@@ -31,7 +30,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     if (!std::isfinite(size)) return;
     stage.y += delta;
     if (k > 0 && previous > 0) stage.rate = std::max(options.linear_tolerance, size / previous);
-    const double rate = stage.rate > 0 ? stage.rate : unobserved;
+    const double rate = stage.rate_or_assumed();
     if (rate >= 1) return;
     stage.error = rate / (1 - rate) * size;
     if (stage.error < options.newton_tolerance * options.tolerance) {
@@ -49,7 +48,7 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
               int power, const Memory& memory) {
   // A fresh operator helps only if the shape has changed; the rest of the contraction rate is the part left out of (4.3).
   const double changed = dynamics.distance(state.frozen, state.x);
-  if (last.solved ? last.rate > options.contraction_limit && changed > worth_assembling : changed > 0) {
+  if (last.solved ? last.rate > options.contraction_limit && changed > worth_assembling : state.frozen != state.x) {
     dynamics.freeze(state.frozen = state.x);
     secants = state.secants = {};
   }

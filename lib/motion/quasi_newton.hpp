@@ -21,6 +21,8 @@ struct Stage {
   double error = 0;     ///< bound of the distance of the result to the exact solution of the stage, in the norm of `Time/tolerance`
   int iterations = 0;   ///< evaluations of the defect
   bool solved = false;
+
+  double rate_or_assumed() const { return rate > 0 ? rate : 0.5; }
 };
 
 /// Solves a stage by quasi-Newton iteration with the frozen-geometry Jacobian (4.3), whose membrane tangent H is updated in every iteration, and the

@@ -96,7 +96,7 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
       state.memory = values_of(memory);
       state.history = {slope};
       state.slope_error = 0;
-      return attempts.accept(dynamics, std::move(y), error, factor);
+      return attempts.accept(dynamics, std::move(y), error, factor, step_share(options_.tolerance, 2));
     }
     attempts.reject(std::min(factor, 0.8), error);
     if (memory.age > 0) measure(dynamics, state, memory, attempts.report);

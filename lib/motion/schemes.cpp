@@ -41,9 +41,9 @@ void Attempts::reject(double part, double error) {
   ++report.rejected;
 }
 
-StepReport Attempts::accept(const coupling::Dynamics& dynamics, Net y, double error, double factor) {
+StepReport Attempts::accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share) {
   report.step = size_;
-  report.error = error * options_.tolerance;
+  report.error = error * share * options_.tolerance;
   report.displacement = dynamics.norm(y - state_.x);
   state_.x = std::move(y);
   state_.time = size_ == limit_ - state_.time ? limit_ : state_.time + size_;

@@ -55,7 +55,8 @@ class Attempts {
 
   /// Ends the step at y: place, time and next step of the state, `factor` times this one, and the report. A step cut short to meet the limit says
   /// nothing against the longer one. The scheme's history and memory are its own.
-  StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor);
+  /// `error`: over the tolerance times `share` (4.31).
+  StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share = 1);
 
   StepReport report;  ///< the scheme counts `iterations`
 
@@ -138,7 +139,7 @@ class CrankNicolson : public Scheme {
 ///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)
 ///
 /// b^ is of third order but not stable; e2 is its difference to b without the stiff part. With z = dt J the step multiplies a mode by
-/// R(z) - (R^ - R)/(1 - d z)^2, at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes the error of fourth order only,
+/// R(z) + (R^ - R)/(1 - d z)^2, at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes the error of fourth order only,
 /// so its secants are left out of e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors
 /// of the two stages (4.28).
 ///

@@ -15,7 +15,7 @@ void SteadyOptions::declare(deck::Section& section) {
   section.key("method", method, deck::Choice{"anderson", "newton-krylov"},
               "of NOX, with Solvers/NOX: the fixed point of implicit steps accelerated, or found by Newton's method with Solvers/steady");
   section.key("tolerance", tolerance, deck::between(1e-13, 1e-2), "1",
-              "estimated error of the shape (4.32): root mean square displacement of the control points over R_C");
+              "estimated error of the shape (4.32), on a branch the last correction: root mean square displacement of the control points over R_C");
   section.key("iterations", iterations, deck::between(1, 100000), "1", "most iterations of NOX");
   section.key("step", step, deck::positive(), "time",
               "the implicit step that preconditions; if not given, half of one over the rate of the flow, or of the membrane where nothing flows");
@@ -107,7 +107,9 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  const coupling::FixedPoint::Norm left = [&](const Net&) { return latest; };
+  const coupling::FixedPoint::Norm left = [&](const Net&) {  // a first correction is no estimate, unless it is 0
+    return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
+  };
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, left);
   x = std::move(best);

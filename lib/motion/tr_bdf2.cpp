@@ -79,7 +79,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       error = (dynamics.norm(once) / accuracy + second.error + third.error) / options_.tolerance;
       third.y -= twice;
       third.slope -= (twice - once) / shift;
-      slope_error = (third.error + third.rate * dynamics.norm(twice)) / shift;
+      slope_error = (third.error + third.rate_or_assumed() * dynamics.norm(twice)) / shift;
     }
     const auto [accepted, factor] = judge(dynamics, options_, state, secants, third, error, 3, memory);
     if (accepted) {

@@ -233,6 +233,10 @@ def all_mistakes_are_told_at_once():
     lines = told("Volume/constraint=none", "Membrane/load measure=reference", "Particle/motion=free", "Particle/viscosity ratio=2")
     for word in ("Membrane and Particle/motion", "Volume and Particle/motion", "Particle/viscosity ratio and Particle/motion"):
         check(any(word in line for line in lines), word, lines)
+    shared = GOOD.replace("  Membrane: {law: neo-Hookean, capillary number: 0.3}\n  Surface: {elements per side: 3}\n",
+                          "  Particles: {defaults: {radius: -1, colour: 3}, one: {}, two: {center: [4, 0, 0]}, three: {like: two}}\n")
+    lines = run(deck(shared), "--output", "refused", code=2).stderr.splitlines()
+    check(len(lines) == 2 and "radius" in lines[0] and "colour" in lines[1], lines)
     several = GOOD.replace("  Membrane: {law: neo-Hookean, capillary number: 0.3}\n  Surface: {elements per side: 3}\n",
                            "  Particles: {one: {radius: -1, Membrane: {law: rubber}}, two: {center: [4, 0, 0], shape: cube}}\n")
     lines = run(deck(several), "--output", "refused", code=2).stderr.splitlines()

@@ -88,6 +88,18 @@ TEST_P(Steady, EndsWhereTheErrorIsTheTolerance) {
   }
 }
 
+// Only the slow mode is left at the start: its correction is a tenth of the tolerance, its error ten times the tolerance.
+TEST_P(Steady, DoesNotTrustTheFirstCorrection) {
+  Slow motion;
+  Net x = Net::Zero(40, 3);
+  x(0, 0) = 1e-4 * std::sqrt(40.0);
+  SteadyEquations equations(motion, {}, 0.5, x);
+  SteadyOptions options;
+  options.method = GetParam(), options.tolerance = 1e-5;
+  ASSERT_TRUE(find_steady(equations, options, {}, x).converged);
+  EXPECT_LE(motion.norm(x), 2e-5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"),
                          [](const auto& info) { return info.param[0] == 'a' ? "Anderson" : "Newton"; });
 
