@@ -351,7 +351,6 @@ void check_power(const Scene& scene) {
   refuse(scene.particle.rigid(), word, "Particle/motion " + text(scene.particle.motion), "nothing deforms");
   refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, "Flow/type `" + scene.flow.type + "`",
          "it is for flows of one gradient, and for tubes");
-  refuse(!scene.runs_in_time(), word, scene.sought(), "it is of rows of a run in time");
   refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
   refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
 }

@@ -36,6 +36,20 @@ def what_is_not_dissipated_is_stored():
     close(stored, energy[-1] - energy[0], 5e-3 * energy[-1], "the energy stored")
 
 
+def a_steady_shape_stores_nothing():
+    """A drop at rest in an extension, and a capsule whose membrane treads: the flow's power is dissipated, to the error of the mesh."""
+    extension = CAPSULE.replace("simple shear", "uniaxial extension").replace("capillary number: 0.3", "law: surface tension, capillary number: 0.05")
+    for name, text in ("drop", extension), ("capsule", CAPSULE.replace("ratio: 5.0", "ratio: 1.0")):
+        deck(text.replace("Time: {final time: 1.0, tolerance: 1.0e-5}", "Steady: {tolerance: 1.0e-8}").replace("interval: 0.5, ", ""))
+        errors = []
+        for n in (4, 8):
+            run("deck.yaml", "--output", f"{name}_{n}", "--quiet", "--set", f"Surface/elements per side={n}")
+            errors.append(abs(series(f"{name}_{n}", "power_residual")[-1]))
+        check(errors[0] < 2e-3 and errors[1] < errors[0] / 3, f"the residual of the {name} does not fall with the mesh", errors)
+        power = series(f"{name}_8", "flow_power")[-1]
+        close(series(f"{name}_8", "fluid_dissipation")[-1], power, 1e-3 * power, f"what the fluids dissipate around the {name}")
+
+
 TUBE = """
 Tanktread:
   Flow: {type: duct}
