@@ -111,12 +111,13 @@ def nobody_needs_to_listen():
 
 
 def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
-    short = ["Time/scheme=auto", "Particle/viscosity ratio=5", "Solvers/Belos/Maximum Iterations=7", "Time/initial step=3", "Time/final time=3",
+    # an explicit scheme: implicit stages take no solution of the system of the velocity
+    short = ["Time/scheme=bs3", "Particle/viscosity ratio=5", "Solvers/Belos/Maximum Iterations=8", "Time/initial step=3", "Time/final time=3",
              "Output/interval=3"]
     said = _fails(*short)
     check("did not bring the velocity at viscosity ratio 5" in said, said)
     times = series("out", "time")
-    check(times[-1] > 1, f"ended at {times[-1]}, though seven iterations are enough until 1.8")
+    check(times[-1] > 1, f"ended at {times[-1]}, though eight iterations are enough until 1.5")
     newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1].name
     check(newest == f"snapshot_{len(times) - 1:06d}.hdf", f"{newest} is not of the last of {len(times)} rows")
 
