@@ -58,8 +58,9 @@ void add_inner(const List& list, const Sentences& sentences, std::vector<std::st
   for (const auto& inner : list.lists)
     for (std::string& sentence : sentences(*inner)) {
       std::string without_path = sentence;
-      for (std::size_t at; list.alike && (at = without_path.find(inner->path + "/")) != std::string::npos;)
-        without_path.erase(at, inner->path.size());
+      for (const char* after : {"/", " "})
+        for (std::size_t at; list.alike && (at = without_path.find(inner->path + after)) != std::string::npos;)
+          without_path.erase(at, inner->path.size());
       if (!list.alike || told.insert(without_path).second) all.push_back(std::move(sentence));
     }
 }
