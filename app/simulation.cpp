@@ -221,7 +221,7 @@ class Run {
       if (scene_.time.fixed_step) throw RunFailure("after a step of fixed size particles are too close for Contact/limiter to hold them apart");
       Net frozen = std::move(state_.frozen);
       state_ = before;
-      if (state_.frozen != frozen) state_.secants = {};  // they belong to the operators before
+      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the operators before
       state_.frozen = std::move(frozen);
       state_.step = report_.step / 2;
     }

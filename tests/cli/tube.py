@@ -80,7 +80,9 @@ def _compare(one, other, tolerance):
         if name.startswith(("solver", "velocity_iter")):
             continue
         a, b = series(one, name), series(other, name)
-        off = difference(a, b, name)
+        # the direction of the longest axis is as uncertain as the shape, over the relative difference of the axes
+        weight = 1 - series(one, "axis_2") / series(one, "axis_1") if name.startswith("axis_1_x") else 1
+        off = difference(a, b, name, weight)
         check(off <= tolerance, f"{name} differs by {off:.2e}")
 
 
@@ -93,7 +95,8 @@ def two_ranks_give_the_answer_of_one():
 
 def every_form_of_the_block_system_gives_the_same_run():
     for ratio in 1, 5:
-        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10"]
+        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10",
+                 "Time/newton tolerance=1e-5", "Time/linear tolerance=1e-6"]
         run(deck(DECK), *_words(fixed), "--output", "schur", "--overwrite", "--quiet")
         for form in "block triangular", "block diagonal", "block":
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]

