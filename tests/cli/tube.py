@@ -75,9 +75,9 @@ def a_wrong_outline_is_refused_with_its_numbers():
     _refused(["outline.csv", "2"], *as_file)
 
 
-def _compare(one, other, tolerance):
+def _compare(one, other, tolerance, but=()):
     for name in _names(one):
-        if name.startswith(("solver", "velocity_iter")):
+        if name.startswith(("solver", "velocity_iter", *but)):
             continue
         a, b = series(one, name), series(other, name)
         # the direction of the longest axis is as uncertain as the shape, over the relative difference of the axes
@@ -96,13 +96,13 @@ def two_ranks_give_the_answer_of_one():
 def every_form_of_the_block_system_gives_the_same_run():
     for ratio in 1, 5:
         fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10",
-                 "Time/newton tolerance=1e-5", "Time/linear tolerance=1e-6"]
+                 "Time/tolerance=1e-8", "Time/linear tolerance=1e-8", "Time/newton iterations=20"]
         run(deck(DECK), *_words(fixed), "--output", "schur", "--overwrite", "--quiet")
         for form in "block triangular", "block diagonal", "block":
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
-            _compare("schur", "blocks", 1e-6)  # the tolerance of the iteration of the implicit step
+            _compare("schur", "blocks", 1e-6, ("evaluations", "iterations"))  # above what stages and linear solves leave
 
 
 def a_run_goes_on_in_the_tube_to_the_same_last_bit():
