@@ -81,7 +81,7 @@ def _compare(one, other, tolerance, but=()):
             continue
         a, b = series(one, name), series(other, name)
         # the direction of the longest axis is as uncertain as the shape, over the relative difference of the axes
-        weight = 1 - series(one, "axis_2") / series(one, "axis_1") if name.startswith("axis_1_x") else 1
+        weight = 1 - series(one, "axis_2") / series(one, "axis_1") if name.startswith(("axis_1_x", "inclination")) else 1
         off = difference(a, b, name, weight)
         check(off <= tolerance, f"{name} differs by {off:.2e}")
 
