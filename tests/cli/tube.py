@@ -102,7 +102,7 @@ def every_form_of_the_block_system_gives_the_same_run():
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
-            _compare("schur", "blocks", 1e-6, ("evaluations", "iterations"))  # above what stages and linear solves leave
+            _compare("schur", "blocks", 1e-5, ("evaluations", "iterations"))  # velocities: what stages leave, over the shift of a step
 
 
 def a_run_goes_on_in_the_tube_to_the_same_last_bit():
