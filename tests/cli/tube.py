@@ -101,7 +101,7 @@ def every_form_of_the_block_system_gives_the_same_run():
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
-            _compare("schur", "blocks", 1e-4, ("evaluations", "iterations"))  # Time/tolerance: rows take slopes for velocities
+            _compare("schur", "blocks", 5e-4, ("evaluations", "iterations"))  # rows take slopes for velocities: Time/tolerance, times the ratio
 
 
 def a_run_goes_on_in_the_tube_to_the_same_last_bit():
