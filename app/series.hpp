@@ -71,8 +71,8 @@ enum Owner : unsigned {
   of_spectrum = 256, of_branch = 512, of_surfactant = 1024, of_folds = 2048, of_periodic = 4096
 };
 
-/// What a scene must have beside; `lattice`: one of any directions, `cell`: of three; `exact`: an exact solution of a prescribed body is
-/// known; `exact_force`, `exact_torque`, `exact_pressure`: this quantity of it is not 0.
+/// Condition on the scene under which a series exists. `lattice`: the scene repeats in any directions; `cell`: in three; `exact`: an exact solution
+/// of a prescribed body is known; `exact_force`, `exact_torque`, `exact_pressure`: this quantity of it is not 0.
 enum class Needs {
   nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, lattice, cell, cell_strain, adaptation, exact, exact_force,
   exact_torque, exact_pressure, limiter, power, membrane

@@ -54,7 +54,7 @@ motion::TimeOptions time_options(const Scene& scene) {
   return time;
 }
 
-/// As if alone: the first particle that deforms, or the first one if all are rigid.
+/// Returns the scene of the first particle that deforms, as if it were alone; of the first one if all are rigid.
 Scene first_deforming(const Scene& scene) {
   std::vector<Scene> all = scene.alone();
   const auto found = std::ranges::find_if(all, [](const Scene& one) { return !one.particle.rigid(); });

@@ -245,6 +245,7 @@ class Capsule : public Dynamics {
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
+  bool flows_by_system() const;
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }

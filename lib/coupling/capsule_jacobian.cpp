@@ -64,7 +64,7 @@ void Capsule::linearise(const Net& x) {
   if (area_) area_->place(x);
   if (interface_) {
     interface_->linearise(x, flux_vector(x));
-  } else if (parameters_.volume.constraint != "none" && (defect_without_system() || std::ranges::any_of(particles(), keeps_area))) {
+  } else if (parameters_.volume.constraint != "none" && (flows_by_system() || std::ranges::any_of(particles(), keeps_area))) {
     flux_ = flux_vector(x);
     flux_response_ = symmetric(solved(mass_.reference(), flux_));
   }
@@ -172,8 +172,12 @@ Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& 
   return stiff_system(shift, interface_ ? r : frozen_viscous(r), tolerance, secants);
 }
 
+/// Returns whether all points move with the fluid and its velocity is the solution of a system: then the Jacobian has the projection P in every form
+/// of the system, because the extrapolation (4.30) makes the Jacobian a part of the result.
+bool Capsule::flows_by_system() const { return (viscous_ || double_layer_) && !interface_ && rigid_.empty(); }
+
 /// Returns whether the defect of a velocity is computed by (3.14), without solving for the velocity.
-bool Capsule::defect_without_system() const { return (viscous_ || double_layer_) && !interface_ && schur() && rigid_.empty(); }
+bool Capsule::defect_without_system() const { return flows_by_system() && schur(); }
 
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_without_system()) return velocity(x) - u;

@@ -101,8 +101,6 @@ Document::Document(Document&&) noexcept = default;
 
 Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting, {}})); }
 
-bool Document::wrong_values() const { return !mistakes(held_->root).empty(); }
-
 void Document::refuse_wrong_values() const { require_none(mistakes(held_->root)); }
 
 void Document::finish() const {

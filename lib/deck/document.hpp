@@ -29,8 +29,8 @@ class Document {
     try {
       options.declare(root);
     } catch (const UserError&) {
-      if (!wrong_values()) throw;  // otherwise it may follow from a default that stands for a wrong value
-      refuse_wrong_values();
+      refuse_wrong_values();  // the error may follow from a default that stands for a wrong value
+      throw;
     }
     finish();
   }
@@ -52,7 +52,6 @@ class Document {
 
  private:
   Section begin();
-  bool wrong_values() const;
   void refuse_wrong_values() const;
   void finish() const;
   struct Held;

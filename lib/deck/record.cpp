@@ -47,10 +47,6 @@ std::string unknown_key(const List& list, const List& root, const std::string& k
   return what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".";
 }
 
-}  // namespace
-
-namespace {
-
 /// Appends the sentences of all lists in this one; of lists that are alike those that differ by more than the list's path.
 template <class Sentences>
 void add_inner(const List& list, const Sentences& sentences, std::vector<std::string>& all) {

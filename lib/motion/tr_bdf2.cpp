@@ -13,12 +13,12 @@ const double w = std::sqrt(2.0) / 4;
 constexpr double worth_an_order = 0.7;  // a higher order is taken if it reduces the error of the prediction by this factor
 constexpr double accuracy = 4;  // error of the second-order result divided by that of the extrapolated one, at the least
 
-/// Of the polynomials through known slopes: the orders that would have predicted the slopes of the second and the third stage best.
+/// Orders of the extrapolations of slopes that would have predicted the second and the third stage of a step best.
 struct Orders {
   double second = 1, third = 1;
 };
 
-/// What State::memory holds.
+/// Content of State::memory. Memory comes first, where Bdf3 reads it.
 struct Remembered {
   Memory step;
   Orders orders;

@@ -29,9 +29,9 @@ import numpy  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
 
 import tanktread  # noqa: E402
+import time_tolerance  # noqa: E402
 
 RATIO, SIDE, SHEAR, OBLATE = "Particle/viscosity ratio", "Surface/elements per side", "shear_neo_hookean", "oblate_shear"
-TIGHT = {"Quadrature/tolerance": 1e-6, "Time/tolerance": 1e-6}
 
 DEFORMED = {  # name: (deck, settings); shapes whose velocity is looked at
     "capsule in shear": (SHEAR, {SIDE: 6, "Time/final time": 3}),
@@ -49,7 +49,7 @@ DEFORMED = {  # name: (deck, settings); shapes whose velocity is looked at
                                                "Particles/first/center": [-1.5, 0, 0.25], "Particles/second/center": [1.5, 0, -0.25],
                                                "Time/final time": 4}),
 }
-ADAPT = {"Adaptation/enabled": True, **TIGHT, "Quadrature/tolerance": 1e-5, "Time/tolerance": 1e-5}
+ADAPT = {"Adaptation/enabled": True, "Quadrature/tolerance": 1e-5, "Time/tolerance": 1e-5}
 ADAPTED = {
     "Skalak, planar hyperbolic": ("hyperbolic_skalak", {"Time/final time": 6}),
     "the same, Ca = 0.45": ("hyperbolic_skalak_ca0.45", {"Time/final time": 6}),
@@ -122,11 +122,10 @@ def mean_size(difference):
     return float(numpy.sqrt(numpy.mean(numpy.sum(difference**2, axis=1))))
 
 
-def table(first, columns, scenes, cells, runs):
-    """Prints one row a scene; `cells` returns the row's texts."""
-    print(f"| {first} | " + " | ".join(columns) + " |\n" + "|---" * (len(columns) + 1) + "|")
-    for name, row in zip(scenes, runs.study.map(lambda name: cells(scenes[name]), list(scenes))):
-        print(f"| {name} | " + " | ".join(row) + " |", flush=True)
+def table(first, tolerances, scenes, cells, runs):
+    """Prints one row a scene, one column a tolerance; `cells` returns the row's texts."""
+    rows = runs.study.map(lambda name: [name, *cells(scenes[name])], list(scenes))
+    time_tolerance.table([first, *(numpy.format_float_scientific(one, trim="-", exp_digits=1) for one in tolerances)], rows)
     print()
 
 
@@ -144,7 +143,7 @@ def of_velocity(runs, key, tolerances, reference, scenes):
         found = [runs.velocity(base, f"{key[0]}_{one:g}", {key: one}) for one in tolerances]
         return [ratio(None if one is None or exact is None else mean_size(one - exact), tolerance) for one, tolerance in zip(found, tolerances)]
 
-    table(f"error/`{key}` at", [f"{one:.0e}".replace("e-0", "e-") for one in tolerances], scenes, cells, runs)
+    table(f"error/`{key}` at", tolerances, scenes, cells, runs)
 
 
 def quadrature(runs):
@@ -158,7 +157,7 @@ def solvers(runs):
 
 def distance(one, other):
     """Returns the largest distance of the nodes of one snapshot from the surface of another: to tangent planes of a fine grid on each cell."""
-    grid = numpy.array([other.sampled(other.points, 32)])[0]
+    grid = other.sampled(other.points, 32)
     cells = numpy.repeat(numpy.arange(len(other.cells)), 33 * 33)
     t, s = (numpy.tile(axis.ravel(), len(other.cells)) for axis in numpy.meshgrid(numpy.linspace(0, 1, 33), numpy.linspace(0, 1, 33), indexing="ij"))
     nearest = cKDTree(grid.reshape(-1, 3)).query(one.points)[1]
@@ -181,7 +180,7 @@ def adaptation(runs):
         points = [int(one.series["n_control_points"][-1]) for one in found]
         return [f"{ratio(distance(end, ends[-1]) / found[-1].run.radius, one)} ({n})" for end, one, n in zip(ends, tolerances, points)]
 
-    table(f"error/`{key}` (control points) at", ["1.6e-3", "4e-4", "1e-4"], ADAPTED, cells, runs)
+    table(f"error/`{key}` (control points) at", tolerances, ADAPTED, cells, runs)
 
 
 def of_shape(runs, key, tolerances, reference, scenes, also):
@@ -194,7 +193,7 @@ def of_shape(runs, key, tolerances, reference, scenes, also):
         return ["" if one is None else f"{ratio(mean_size(one.run.snapshots()[-1].points - exact) / one.run.radius, tolerance)} ({one.final['iterations']:g})"
                 for one, tolerance in zip(found, tolerances)]
 
-    table(f"error/`{key}` (iterations of NOX) at", [f"{one:.0e}".replace("e-0", "e-") for one in tolerances], scenes, cells, runs)
+    table(f"error/`{key}` (iterations of NOX) at", tolerances, scenes, cells, runs)
 
 
 def steady(runs):

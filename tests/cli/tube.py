@@ -75,14 +75,12 @@ def a_wrong_outline_is_refused_with_its_numbers():
     _refused(["outline.csv", "2"], *as_file)
 
 
-def _compare(one, other, tolerance, but=()):
+def _compare(one, other, tolerance):
     for name in _names(one):
-        if name.startswith(("solver", "velocity_iter", *but)):
+        if name.startswith(("solver", "velocity_iter")):
             continue
         a, b = series(one, name), series(other, name)
-        # the direction of the longest axis is as uncertain as the shape, over the relative difference of the axes
-        weight = 1 - series(one, "axis_2") / series(one, "axis_1") if name.startswith(("axis_1_x", "inclination")) else 1
-        off = difference(a, b, name, weight)
+        off = difference(a, b, name)
         check(off <= tolerance, f"{name} differs by {off:.2e}")
 
 
@@ -95,13 +93,14 @@ def two_ranks_give_the_answer_of_one():
 
 def every_form_of_the_block_system_gives_the_same_run():
     for ratio in 1, 5:
-        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10"]
+        fixed = ["Time/fixed step=0.025", "Time/final time=0.05", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10",
+                 "Time/tolerance=1e-8", "Time/newton iterations=20"]  # the forms take different iterates of a stage
         run(deck(DECK), *_words(fixed), "--output", "schur", "--overwrite", "--quiet")
         for form in "block triangular", "block diagonal", "block":
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
-            _compare("schur", "blocks", 5e-4, ("evaluations", "iterations"))  # rows take slopes for velocities: Time/tolerance, times the ratio
+            _compare("schur", "blocks", 1e-6)  # a stage errs by 2e-9, its stresslet by a hundred times as much
 
 
 def a_run_goes_on_in_the_tube_to_the_same_last_bit():

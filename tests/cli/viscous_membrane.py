@@ -27,11 +27,11 @@ def _rate(results):
 
 def a_sphere_relaxes_at_the_rate_of_linear_theory():
     """Of the second harmonic, viscosities 1: 0.22457708 with eta_s = 0.5, 0.24835904 without, by the 2 x 2 system of two displacements.
-    The mesh errs by 3e-5, which bs3, bdf3 and tr-bdf2 at tighter tolerances agree on."""
+    Schemes agree to 3e-6 and the mesh errs by 1.3e-5; with 6 elements a side it errs by 3e-5."""
     for viscosity, expected in (0.5, 0.22457708), (0.0, 0.24835904):
-        run(deck(DECK), "--set", f"Membrane/shear viscosity={viscosity}", "--output", f"at_{viscosity}", "--quiet")
+        run(deck(DECK), "--set", f"Membrane/shear viscosity={viscosity}", "--set", "Surface/elements per side=8", "--output", f"at_{viscosity}", "--quiet")
         found = _rate(f"at_{viscosity}")
-        check(abs(found - expected) < 4e-5, f"rate {found:.6f} where theory gives {expected:.6f}")
+        check(abs(found - expected) < 2e-5, f"rate {found:.6f} where theory gives {expected:.6f}")
 
 
 def what_the_membrane_dissipates_comes_from_its_energy():
@@ -91,15 +91,14 @@ def _agree(one, other, tolerance):
 
 def two_processes_do_what_one_does_and_a_run_goes_on():
     words = ["--set", "Time/fixed step=0.1", "--set", "Particle/viscosity ratio=2", "--set", "Solvers/tolerance=1e-12", "--set", "Output/interval=0.3"]
-    words += ["--set", "Flow/type=simple shear", "--set", "Surface/elements per side=4", "--quiet"]
+    words += ["--set", "Flow/type=simple shear", "--set", "Surface/elements per side=4", "--set", "Time/newton tolerance=1e-3", "--quiet"]
     for kind, more in ("flows", []), ("forgets", ["--set", "Membrane/relaxation time=0.5", "--set", "Time/scheme=bs3"]):
         for ranks in 1, 2:
             run(deck(DECK), *words, *more, "--set", "Time/final time=0.6", "--output", f"{kind}_on_{ranks}", ranks=ranks)
         _agree(f"{kind}_on_1", f"{kind}_on_2", 1e-10)
         run(deck(DECK), *words, *more, "--set", "Time/final time=0.3", "--output", f"{kind}_in_parts")
         run("--resume", f"{kind}_in_parts", "--set", "Time/final time=0.6", "--quiet")
-        # the time of 0.3 is met by another sum of steps; what is left of the iterations of a stage makes 1e-15 of the step 1e-11 of a series
-        _agree(f"{kind}_on_1", f"{kind}_in_parts", 1e-10)
+        _agree(f"{kind}_on_1", f"{kind}_in_parts", 1e-12)  # the time of 0.3 is met by another sum of steps
 
 
 def a_deck_that_makes_no_sense_is_refused():

@@ -10,13 +10,14 @@
 
 #include "base/errors.hpp"
 #include "coupling/ranks.hpp"
+#include "explicit_motion.hpp"
 #include "motion/integrator.hpp"
 
 namespace tanktread::motion {
 namespace {
 
 /// x' = -x, whose velocity `fails` may refuse.
-class Decay : public coupling::Dynamics {
+class Decay : public ExplicitMotion {
  public:
   std::function<void(const Net& x)> fails = [](const Net&) {};
   double size = 1;  // of the norm
@@ -24,11 +25,7 @@ class Decay : public coupling::Dynamics {
     fails(x);
     return -x;
   }
-  void freeze(const Net&) override {}
-  void linearise(const Net&) override {}
   Net solve(double shift, const Net& r, double, const coupling::Secants&) override { return r / (1 + shift); }
-  Net missed(const Net& dv, const Net&) override { return 0 * dv; }
-  void restore_volume(Net&) override {}
   double norm(const Net& d) const override { return size * d.norm(); }
 };
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
+#include "explicit_motion.hpp"
 #include "motion/periodic.hpp"
 
 namespace tanktread::motion {
@@ -15,7 +16,7 @@ constexpr double inward = 0.15, damping = 0.1, frequency = 1.3;
 
 /// One control point on its way to the unit circle in x1 x3, which it goes round: with r and y = x2, r' = inward r (1 - r^2), y' = -damping y.
 /// Over a period T the multipliers are exp(-2 inward T) and exp(-damping T).
-class Cycle : public coupling::Dynamics {
+class Cycle : public ExplicitMotion {
  public:
   Net velocity(const Net& x) override {
     const double a = inward * (1 - x(0, 0) * x(0, 0) - x(0, 2) * x(0, 2));
@@ -23,11 +24,6 @@ class Cycle : public coupling::Dynamics {
     v << a * x(0, 0) - frequency * x(0, 2), -damping * x(0, 1), a * x(0, 2) + frequency * x(0, 0);
     return v;
   }
-  void freeze(const Net&) override {}
-  void linearise(const Net&) override {}
-  Net solve(double, const Net& r, double, const coupling::Secants&) override { return r; }
-  Net missed(const Net& dv, const Net&) override { return 0 * dv; }
-  void restore_volume(Net&) override {}
   double norm(const Net& d) const override { return d.norm(); }
 };
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "explicit_motion.hpp"
 #include "motion/fixed_point_error.hpp"
 #include "motion/steady.hpp"
 
@@ -15,7 +16,7 @@ constexpr double slow = 0.02;  ///< a mode of this rate decays by 1 % in an impl
 
 /// Points that go to the origin, the first at the rate `slow`, the others at rates between 1 and 2, faster where they are farther away. The frozen
 /// Jacobian is 0.
-class Slow : public coupling::Dynamics {
+class Slow : public ExplicitMotion {
  public:
   Net velocity(const Net& x) override {
     Net v(x.rows(), 3);
@@ -25,11 +26,6 @@ class Slow : public coupling::Dynamics {
     }
     return v;
   }
-  void freeze(const Net&) override {}
-  void linearise(const Net&) override {}
-  Net solve(double, const Net& r, double, const coupling::Secants&) override { return r; }
-  Net missed(const Net& dv, const Net&) override { return 0 * dv; }
-  void restore_volume(Net&) override {}
   double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
 };
 
