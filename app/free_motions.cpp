@@ -43,4 +43,13 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   return free;
 }
 
+double steady_step(const Scene& scene) {
+  constexpr double most_relaxation_times = 10;
+  if (scene.steady.step) return *scene.steady.step;
+  double step = 0.5 / scene.rate();
+  for (const Scene& one : scene.alone())
+    if (!one.particle.rigid()) step = std::min(step, most_relaxation_times * one.flow.viscosity * one.radius() / one.modulus());
+  return step;
+}
+
 }  // namespace tanktread

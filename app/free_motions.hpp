@@ -1,5 +1,5 @@
 #pragma once
-// Rigid motions that a steady search leaves free.
+// What a steady search takes from the scene: the rigid motions that it leaves free, and the step of its iteration.
 
 #include <vector>
 
@@ -12,5 +12,9 @@ namespace tanktread {
 /// The rigid motions about the origin that change neither the flow nor the weights, patch forces and walls: the Lie derivative of the flow along
 /// them is 0, and no force of any particle turns. `size`: a length of the particles, R_C. Q of (4.17) projects onto them.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size);
+
+/// Returns Steady/step, or its default. The default is bounded by the relaxation times of the membranes because the iteration amplifies errors of the
+/// velocity in motions that no membrane opposes by the step over these times.
+double steady_step(const Scene& scene);
 
 }  // namespace tanktread

@@ -287,10 +287,10 @@ Net Capsule::membrane_load(const Net& x, Net* other) {
     return solved(collocation_, std::move(t));
   }
   Net d = energy_gradient(x);
+  if (!together) return measured_load(x, std::move(d));
   const auto projection = phases_.time("projection");
-  if (parameters_.measure != stokes::Measure::reference) return mass_.solve(mass_matrix_.update(x), d);
   Net* const both[] = {&d, other};
-  solve(mass_.reference(), std::span(both).first(together ? 2 : 1));
+  solve(mass_.reference(), both);
   return d;
 }
 
@@ -347,10 +347,7 @@ bool Capsule::adopt(const Net& x, const Net& v) {
   if (interface_ || tractions_ || !rigid_.empty()) return false;
   if (same(x, latest_.x)) return true;
   Net load = membrane_load(x, nullptr);
-  if (viscous_) {
-    viscous_->update(x, own_elements_);
-    load += viscous_load(*viscous_, v);
-  }
+  if (viscous_) viscous_->update(x, own_elements_), load += viscous_load(x, v);
   latest_ = {};
   latest_.x = x, latest_.load = std::move(load), latest_.velocity = latest_.unknowns = v;
   return true;
@@ -415,7 +412,7 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   if (viscous_) viscous_->update(x, own_elements_);
   if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
   latest_.unknowns = v;
-  if (viscous_) latest_.load += viscous_load(*viscous_, symmetric(v));
+  if (viscous_) latest_.load += viscous_load(x, symmetric(v));
   if (!rigid_.empty()) {
     latest_.unknowns = symmetric(v);
     latest_.load += rigid_.completing_load(v);
@@ -517,16 +514,19 @@ bool Capsule::in_front_of_wall(const Net& x) {
   return true;
 }
 
-/// M0^-1 C v, with C as it was updated last.
-Net Capsule::viscous_load(const membrane::ViscousLoad& c, const Net& v) {
-  Net load;
-  {
-    const auto clock = phases_.time("membrane");
-    c.apply(v, load);
-    replicate_sums(load);
-  }
+/// Returns the load of the virtual work d on the surface at x: per unstressed area (3.7), or per current area (3.6).
+Net Capsule::measured_load(const Net& x, Net d) {
   const auto clock = phases_.time("projection");
-  return solved(mass_.reference(), std::move(load));
+  return measure() == stokes::Measure::reference ? solved(mass_.reference(), std::move(d)) : mass_.solve(mass_matrix_.update(x), d);
+}
+
+/// Returns C v, with C as it was updated last.
+Net Capsule::viscous_work(const membrane::ViscousLoad& c, const Net& v) {
+  const auto clock = phases_.time("membrane");
+  Net work;
+  c.apply(v, work);
+  replicate_sums(work);
+  return work;
 }
 
 void Capsule::note_tractions() {
@@ -584,7 +584,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   const auto load_of = [&](const Net& v) {  // what the velocity adds to the load, empty where it adds nothing
     Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
-    if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(*viscous_, v)) : viscous_load(*viscous_, v);
+    if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
     return load;
   };
   const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
@@ -705,7 +705,7 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
     moment = rigid_.load_moment(p);
   } else {
     Net work = own(energy_gradient(x));
-    if (viscous_) work += own(viscous_work(x, slope));
+    if (viscous_) work += own(viscous_work(x, interface_ ? fluid_velocity(x) : slope));
     moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
     if (!particle.body_force.isZero(0) || pulled(particle) || pressed_.size() > 0)  // about the centroid
       moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
@@ -721,20 +721,18 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
 }
 
-/// C v at x, kept until another is asked for: every particle of a row of the series asks for the same.
+/// Returns C v at x, which is kept until another x or v is asked for: every particle of a row of the series asks for the same.
 const Net& Capsule::viscous_work(const Net& x, const Net& v) {
   if (same(x, viscous_at_) && same(v, viscous_of_)) return viscous_work_;
   viscous_->update(x, own_elements_);
-  viscous_->apply(v, viscous_work_);
-  replicate_sums(viscous_work_);
   viscous_at_ = x, viscous_of_ = v;
-  return viscous_work_;
+  return viscous_work_ = viscous_work(*viscous_, v);
 }
 
-double Capsule::membrane_dissipation(const Net& x, const Net& v, std::size_t p) {
+double Capsule::membrane_dissipation(const Net& x, const Net& slope, std::size_t p) {
   if (!viscous_) return 0;
-  const spline::Block& block = particles()[p].block;
-  return block.rows(v).cwiseProduct(block.rows(viscous_work(x, v))).sum();
+  const Net v = interface_ ? fluid_velocity(x) : slope;
+  return particles()[p].block.rows(v).cwiseProduct(particles()[p].block.rows(viscous_work(x, v))).sum();
 }
 
 stokes::Evaluations Capsule::kernel_evaluations() const {

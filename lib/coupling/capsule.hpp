@@ -78,7 +78,8 @@ struct CapsuleParameters {
 /// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
 /// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
 ///
-/// A viscous membrane's load M0^{-1} C v (3.10) is part of B: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                           (3.11)
+/// The load M0^{-1} C v (3.10) of a viscous membrane or interface, v the fluids' velocity, is part of B: with M of the current surface in place of
+/// M0 if loads are measured there, B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                        (3.11)
 ///
 /// Rigid bodies among them move rigidly (RigidParticles): in their rows the unknown is w of (2.23), and in Jacobian and stiff steps they only follow.
 /// Where all are rigid, their tractions may be solved for instead (RigidTractions).
@@ -138,6 +139,9 @@ class Capsule : public Dynamics {
   /// Whether control points slide along the interface, so that their velocity is not the fluids'.
   bool slides() const { return interface_.has_value(); }
 
+  /// Returns whether a membrane or interface is viscous, so that the load depends on the velocity.
+  bool viscous() const { return viscous_.has_value(); }
+
   /// The fluids' velocity on the surface at x: `velocity`, unless control points slide.
   Net fluid_velocity(const Net& x, const Net& guess = {});
 
@@ -165,8 +169,9 @@ class Capsule : public Dynamics {
     return rigid_;
   }
 
-  /// v.C v of particle p: the power that its membrane's viscosity (3.10) turns into heat at x, where its material points move by v. Collective.
-  double membrane_dissipation(const Net& x, const Net& v, std::size_t p = 0);
+  /// Returns v.C v of particle p, the power that the viscosity (3.10) of its membrane or interface turns into heat at x. The fluids' velocity v is
+  /// `slope`, or is evaluated if control points slide along an interface. Collective.
+  double membrane_dissipation(const Net& x, const Net& slope, std::size_t p = 0);
 
   /// The energy of what the membrane of particle p resists as a whole, at x (3.26), (3.27). Collective.
   double whole_membrane_energy(const Net& x, std::size_t p);
@@ -232,7 +237,9 @@ class Capsule : public Dynamics {
   Net without_flux(Net rate) const;
   Net inflation(const Net& c);
   Net frozen_single_layer(const Net& f);
-  Net viscous_load(const membrane::ViscousLoad& c, const Net& v);
+  Net measured_load(const Net& x, Net d);
+  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }  // where C was updated
+  Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
   const Net& viscous_work(const Net& x, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta);

@@ -146,7 +146,7 @@ Net Capsule::frozen_viscous(const Net& v) {
     hv = corotation_.forth(hv);
   }
   if (viscous_) {
-    load = viscous_load(*linearised_viscous_, deforming);
+    load = solved(mass_.reference(), viscous_work(*linearised_viscous_, deforming));
     hv -= frozen_single_layer(load) / parameters_.viscosity;
   }
   rigid_.clear(hv);
@@ -202,7 +202,7 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
   if (constrained) constrain(inside, b, c);
   if (viscous_) {
     viscous_->update(x, own_elements_);
-    f += viscous_load(*viscous_, inside);
+    f += viscous_load(x, inside);
   }
   Net lacking = explicit_velocity(x, f, double_layer_ ? inside : Net()) - inside;
   if (double_layer_) {

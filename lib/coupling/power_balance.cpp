@@ -43,7 +43,7 @@ PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const N
 }
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
-  const Net load = capsule_.load(x), v = capsule_.slides() ? capsule_.fluid_velocity(x) : slope;
+  const Net load = capsule_.load(x), v = capsule_.slides() || capsule_.viscous() ? capsule_.fluid_velocity(x) : slope;
   const RigidParticles rigid = capsule_.rigid_at(x);
   const Net& measured = capsule_.measure() == stokes::Measure::reference ? unstressed_ : x;
   const Net work = mass_.update(measured) * load, inside = density(v, rigid);

@@ -100,10 +100,13 @@ Eigen::VectorXd MassMatrix::row_sums(const Net& x) const {
 
 void MassMatrix::release() {
   slots_.clear();
+  updated_.resize(0, 3);
   Eigen::SparseMatrix<double>().swap(matrix_);
 }
 
 const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
+  if (updated_.rows() == x.rows() && updated_ == x) return matrix_;
+  updated_ = x;
   if (slots_.empty()) {
     matrix_ = pattern(*space_);
     for (const Group& g : groups_) slots_.push_back(slots_of(g, matrix_, *space_));

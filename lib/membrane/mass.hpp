@@ -18,7 +18,7 @@ class MassMatrix {
   /// `order` Gauss points per direction at degree 3, one more for each degree beyond. `space` must outlive this.
   explicit MassMatrix(const spline::Space& space, int order = 4);
 
-  /// The matrix of the surface x; valid until the next update.
+  /// Returns the matrix of the surface x, valid until the next update. If x is that of the latest update, nothing is computed.
   const Eigen::SparseMatrix<double>& update(const Net& x);
 
   /// Its row sums, int N_A dGamma of the surface x, without the matrix.
@@ -33,6 +33,7 @@ class MassMatrix {
   std::vector<std::vector<Pack>> values_;  // N_A at Gauss points, a group; of each extraction [A n_gauss + q]
   std::vector<std::vector<int>> slots_;    // of (A, B <= A) and of (B, A) among the entries, a group; [(batch pairs + pair) pack_lanes() + lane]
   Eigen::SparseMatrix<double> matrix_;
+  Net updated_;  // x of the latest update
 };
 
 }  // namespace tanktread::membrane

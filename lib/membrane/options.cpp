@@ -110,9 +110,9 @@ void Options::declare(deck::Section& section) {
               "N0/(8 pi R): the difference of the areas of leaves without stress over that of a sphere of the area A0 = 4 pi R^2; if not given, the "
               "unstressed surface's own");
   section.key("shear viscosity", shear_viscosity, deck::not_negative(), "viscosity x length",
-              "eta_s: of the surface, in parallel with its elasticity (3.10); makes the velocity the solution of a system");
+              "eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10); the velocity then solves a system");
   section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
-              "kappa_s: the same against a change of area");
+              "kappa_s: resistance of the membrane or interface to the rate at which its area changes");
   section.key("relaxation time", relaxation_time, deck::positive(), "time",
               "T: the membrane forgets within it what its viscosity resists: springs eta_s/T and kappa_s/T in series with the dashpots, a Maxwell "
               "element (3.23) beside the elastic membrane; if not given, the dashpots are alone (Kelvin and Voigt). For explicit schemes");
@@ -157,14 +157,14 @@ void Options::check() const {
     throw UserError("Membrane/area difference modulus needs Membrane/bending modulus or Membrane/bending number.");
   if (leaf_difference && leaf_modulus == 0) throw UserError("Membrane/area difference needs Membrane/area difference modulus.");
   forces.check();
+  if (relaxation_time && law == "surface tension")
+    throw UserError("Membrane/relaxation time and Membrane/law `surface tension` contradict each other: the viscosity of a fluid interface has no "
+                    "memory, because the interface has no stress-free shape.");
   if (relaxation_time && !viscous())
     throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");
   if (viscous()) {
     const std::string key = std::string("Membrane/") + (shear_viscosity > 0 ? "shear" : "dilatational") + " viscosity";
-    if (law == "surface tension")
-      throw UserError(key + " and Membrane/law `surface tension` contradict each other: an interface has no material points.");
-    if (load == "strong" || load_measure == "current")
-      throw UserError(key + " needs Membrane/load `weak` and Membrane/load measure `reference`.");
+    if (load == "strong") throw UserError(key + " and Membrane/load `strong` contradict each other: viscosity is part of the weak load.");
   }
   if (!forces.all.empty() && law == "surface tension")
     throw UserError("Membrane/forces and Membrane/law `surface tension` contradict each other: nothing holds on to a fluid interface.");

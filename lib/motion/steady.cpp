@@ -18,7 +18,8 @@ void SteadyOptions::declare(deck::Section& section) {
               "estimated error of the shape (4.32), on a branch the last correction: root mean square displacement of the control points over R_C");
   section.key("iterations", iterations, deck::between(1, 100000), "1", "most iterations of NOX");
   section.key("step", step, deck::positive(), "time",
-              "the implicit step that preconditions; if not given, half of one over the rate of the flow, or of the membrane where nothing flows");
+              "the implicit step that preconditions; if not given, half of one over the rate of the flow (of the membrane where nothing flows), at "
+              "most ten times viscosity x R_C/modulus of each membrane");
 }
 
 namespace {

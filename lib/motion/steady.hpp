@@ -23,7 +23,7 @@ struct SteadyOptions {
   std::string method = "anderson";  ///< anderson, newton-krylov
   double tolerance = 1e-8;          ///< of the estimated error of the shape (4.32), in the norm of `Time/tolerance`
   int iterations = 100;             ///< most
-  std::optional<double> step;       ///< of the implicit step that preconditions, in time; empty: half of one over the rate of the scene
+  std::optional<double> step;       ///< of the implicit step that preconditions, in time; empty: chosen from the rates of flow and membranes
 
   void declare(deck::Section& section);
 };

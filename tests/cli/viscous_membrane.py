@@ -104,8 +104,7 @@ def two_processes_do_what_one_does_and_a_run_goes_on():
 def a_deck_that_makes_no_sense_is_refused():
     for setting, sentence in (
         ("Membrane/shear viscosity=-1", "shear viscosity"),
-        ("Membrane/load measure=current", "needs Membrane/load"),
-        ("Membrane/load=strong", "needs Membrane/load"),
+        ("Membrane/load=strong", "viscosity is part of the weak load"),
         ("Membrane/relaxation time=1", "in no Jacobian"),
     ):
         told = run(deck(DECK), "--set", setting, "--check", code=2).stderr
