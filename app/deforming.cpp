@@ -292,7 +292,7 @@ class Deforming : public ParticleSystem {
     std::vector<double> widths;
     if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), &tube->wall());
     else if (all_ || scene_.wall.present) widths = films(members_, p, state.x);
-    Adapted change = adapted(member.scene, *member.body, member.block, state, load, capsule_->measure() == stokes::Measure::reference, widths);
+    Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths);
     remark_on(member, change, state.time);
     if (!change.body) return;
     const int more = change.body->space.n_points - member.block.n_points;
@@ -363,12 +363,11 @@ class Deforming : public ParticleSystem {
     const auto n = static_cast<Eigen::Index>(nodes.mesh().sites.size());
     Net traction = nodes.values(load);
     std::vector<output::Field> fields{{"load", traction}};
-    const bool per_unstressed_area = capsule_->measure() == stokes::Measure::reference;
     Eigen::MatrixX2d tensions(n, 2);
     Eigen::VectorXd curvature(n), particle(n);
     nodes.each_node(body().unstressed, x, [&](Eigen::Index i, const surface::Jet& before, const surface::Jet& now) {
-      if (per_unstressed_area) traction.row(i) *= surface::jacobian(before) / surface::jacobian(now);
       const std::size_t p = particle_of(nodes.mesh().sites[static_cast<std::size_t>(i)].element);
+      if (load_measure(members_[p].scene) == stokes::Measure::reference) traction.row(i) *= surface::jacobian(before) / surface::jacobian(now);
       if (members_[p].scene.particle.rigid())
         tensions.row(i).setZero();
       else

@@ -153,8 +153,11 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
     particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);
     particle.kept_volume = body.volume;
-    if (load_measure(own) == stokes::Measure::current) parameters.measure = stokes::Measure::current;  // it serves all
+    particle.measure = load_measure(own);
   }
+  const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
+  for (coupling::Particle& one : parameters.particles)  // a measure in common costs less, and the areas of a rigid body do not change
+    if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;
   parameters.solvers = scene.solvers;

@@ -114,8 +114,6 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   coupling::TubeParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
   parameters.viscosity_ratio = scene.particle.viscosity_ratio;
-  const auto current = [](const Scene& one) { return load_measure(one) == stokes::Measure::current; };
-  if (std::ranges::any_of(scene.alone(), current)) parameters.measure = stokes::Measure::current;
   if (scene.tube.channel) parameters.symmetry = body.symmetry;
   parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
   parameters.period = scene.tube.periodic_length.value_or(0);

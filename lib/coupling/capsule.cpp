@@ -99,7 +99,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
-    if (measure() == stokes::Measure::reference) tube_->set_reference(unstressed);
+    tube_->set_reference(unstressed, measure(), measured_on_present(particles()));
     if (!tractions_ && (particles().size() > 1 || !rigid_.empty())) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
   }
   for (const Particle& particle : particles())
@@ -119,7 +119,7 @@ void Capsule::make_layers() {
   const auto make = [&](std::optional<Layer>& layer, Layer::Kernel kernel, const stokes::Sites& sites, const std::vector<double>& factor) {
     layer.emplace(kernel, space_, sites, parameters_.quadrature, factor);
   };
-  layer_.set_reference(unstressed_);
+  layer_.set_reference(unstressed_, measured_on_present(particles()));
   layer_.set_symmetry(symmetry);
   if (projection_) {
     make(site_layer_, Layer::Kernel::single_layer, space_.collocation, {});
@@ -278,7 +278,7 @@ Net Capsule::load(const Net& x) {
 /// The load at x, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than twice three.
 Net Capsule::membrane_load(const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
-  const bool together = other && !parameters_.strong_load && parameters_.measure == stokes::Measure::reference;
+  const bool together = other && measure() == stokes::Measure::reference;
   if (other && !together) *other = solved(mass_.reference(), std::move(*other));
   if (parameters_.strong_load) {
     Net t = Net::Zero(x.rows(), 3);
@@ -517,7 +517,7 @@ bool Capsule::in_front_of_wall(const Net& x) {
 /// Returns the load of the virtual work d on the surface at x: per unstressed area (3.7), or per current area (3.6).
 Net Capsule::measured_load(const Net& x, Net d) {
   const auto clock = phases_.time("projection");
-  return measure() == stokes::Measure::reference ? solved(mass_.reference(), std::move(d)) : mass_.solve(mass_matrix_.update(x), d);
+  return measure() == stokes::Measure::reference ? solved(mass_.reference(), std::move(d)) : mass_.solve(mass_matrix_.update(measured_net(x)), d);
 }
 
 /// Returns C v, with C as it was updated last.

@@ -59,7 +59,6 @@ struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
   std::vector<Particle> particles{1};                            ///< stacked in this order; one alone need not name its space
   bool strong_load = false;                                      ///< (P-3) at the collocation sites instead of (3.5)
-  stokes::Measure measure = stokes::Measure::reference;          ///< of the weak load: (3.7) or (3.6)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
@@ -132,7 +131,7 @@ class Capsule : public Dynamics {
   /// surfactant takes away (3.18). They stay on their material points and keep their directions. Of no rows: none.
   void press(Net work);
 
-  /// Load of the fluids on the membrane, as control values: per unstressed area or per current area, as parameters say. Of a rigid body the load of
+  /// Load of the fluids on the membrane, as control values: per unstressed or per current area, as its particle says. Of a rigid body the load of
   /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
   Net load(const Net& x);
 
@@ -196,7 +195,8 @@ class Capsule : public Dynamics {
   const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< none: velocities are collocated
   const surface::Geometry& geometry() const { return geometry_; }
   const Phases& layer_phases() const { return layer_.phases(); }  ///< where the time of the single layer goes
-  stokes::Measure measure() const { return parameters_.strong_load ? stokes::Measure::current : parameters_.measure; }  ///< of the load
+  stokes::Measure measure() const { return coupling::measure(particles()); }  ///< of the load
+  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }  ///< of the load
   void forget_recycled() const;  ///< discards what preconditioners `recycled` keep from earlier solves
   const Work& work() const { return work_; }
   Work& work() { return work_; }

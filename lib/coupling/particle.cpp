@@ -23,6 +23,24 @@ membrane::Materials materials(std::span<const Particle> particles) {
   return result;
 }
 
+stokes::Measure measure(std::span<const Particle> particles) {
+  const stokes::Measure first = particles.front().measure;
+  return std::ranges::all_of(particles, [&](const Particle& particle) { return particle.measure == first; }) ? first : stokes::Measure::by_element;
+}
+
+std::vector<bool> measured_on_present(std::span<const Particle> particles) {
+  std::vector<bool> result;
+  for (const Particle& particle : particles) result.insert(result.end(), particle.block.n_elements, particle.measure == stokes::Measure::current);
+  return result;
+}
+
+Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x) {
+  Net result = unstressed;
+  for (const Particle& particle : particles)
+    if (particle.measure == stokes::Measure::current) particle.block.rows(result) = particle.block.rows(x);
+  return result;
+}
+
 double viscosity_contrast(const Particle& particle) { return particle.rigid ? -1 : 1 - particle.viscosity_ratio; }
 
 Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particles) {

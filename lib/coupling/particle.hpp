@@ -10,6 +10,7 @@
 #include "coupling/rigid_motion.hpp"
 #include "membrane/laws.hpp"
 #include "spline/space.hpp"
+#include "stokes/layer.hpp"
 
 namespace tanktread::coupling {
 
@@ -27,6 +28,7 @@ struct Particle {
   double viscosity_ratio = 1;                 ///< lambda
   double radius = 1;                          ///< R_C
   membrane::Material material;
+  stokes::Measure measure = stokes::Measure::reference;  ///< of its weak load: (3.7) or (3.6); any of a rigid body
   double global_area_modulus = 0;             ///< K of its whole area (3.26), force/length
   double leaf_modulus = 0;                    ///< kbar of the difference between its leaves' areas (3.27), force x length
   std::optional<double> leaf_difference;      ///< without stress, over that of a sphere of its area; if not given, the unstressed surface's
@@ -46,6 +48,15 @@ void place(std::span<Particle> particles);
 
 /// The materials of all their elements, equal ones once.
 membrane::Materials materials(std::span<const Particle> particles);
+
+/// Returns what their loads are measured on.
+stokes::Measure measure(std::span<const Particle> particles);
+
+/// Returns for each element whether loads are measured on the present surface there.
+std::vector<bool> measured_on_present(std::span<const Particle> particles);
+
+/// Returns the net that loads are measured on: the rows of `x` or of `unstressed`, as each particle's measure says.
+Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
 /// The factor of the particle's double layer, 1 - lambda; -1 of a rigid body, whose density is w of (2.23).
 double viscosity_contrast(const Particle& particle);

@@ -33,8 +33,8 @@ double turnover(double flow, double forces, double fluids) {
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
                            const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
     : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),
-      unstressed_(unstressed), mass_(space), single_(stokes::Layer::Kernel::single_layer, space, places_, quadrature) {
-  single_.set_reference(unstressed);
+      mass_(space), single_(stokes::Layer::Kernel::single_layer, space, places_, quadrature) {
+  single_.set_reference(unstressed, measured_on_present(capsule.particles()));
   if (const std::vector<double> contrasts = viscosity_contrasts(capsule.particles()); !contrasts.empty())
     double_.emplace(stokes::Layer::Kernel::double_layer, space, places_, quadrature, contrasts);
   if (!wall) return;
@@ -45,7 +45,7 @@ PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const N
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const Net load = capsule_.load(x), v = capsule_.slides() || capsule_.viscous() ? capsule_.fluid_velocity(x) : slope;
   const RigidParticles rigid = capsule_.rigid_at(x);
-  const Net& measured = capsule_.measure() == stokes::Measure::reference ? unstressed_ : x;
+  const Net measured = capsule_.measured_net(x);
   const Net work = mass_.update(measured) * load, inside = density(v, rigid);
   Powers powers;
   powers.flow = of_flow(x, work, inside);

@@ -51,7 +51,6 @@ class PowerBalance {
   const Ranks& ranks_;
   stokes::Sites places_;
   Eigen::SparseMatrix<double> values_;  // N_A there
-  Net unstressed_;
   membrane::MassMatrix mass_;
   stokes::Layer single_;
   std::optional<stokes::Layer> double_;

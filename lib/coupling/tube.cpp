@@ -43,7 +43,10 @@ stokes::Evaluations Tube::kernel_evaluations() const {
 
 void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }
 
-void Tube::set_reference(const Net& unstressed) { particle_->single.set_reference(unstressed); }
+void Tube::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
+  particle_->single.set_reference(unstressed, std::move(present));
+  particle_->measure = measure;
+}
 
 Net Tube::in_wall_frame(Net x) const {
   if (!fixed()) x.col(0).array() -= particle_->geometry.measures(x).centroid[0];

@@ -26,7 +26,6 @@ struct BetweenSites;
 struct TubeParameters {
   double viscosity = 1;                                  ///< mu of the outer fluid
   double viscosity_ratio = 1;                            ///< lambda, of all particles, if they do not differ
-  stokes::Measure measure = stokes::Measure::reference;  ///< of the particle's load
   surface::Symmetry symmetry;  ///< of channel, particle and all that is asked for; of no points: none
   bool holds_pressure_drop = false;  ///< of the duct's flow, in place of its flow rate
   double period = 0;                 ///< of a train along x1, and how many copies of its particle are modelled at either side
@@ -69,8 +68,8 @@ class Tube {
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// The unstressed particle, which Measure::reference needs.
-  void set_reference(const Net& unstressed);
+  /// Sets the unstressed particles, and what loads are measured on, as Layer::set_reference.
+  void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// 1 - lambda of the particle that each control point is of, -1 of a rigid body, whose `v` is w of (2.23): where there are several.
   void set_contrasts(const Eigen::VectorXd& contrasts);

@@ -61,7 +61,7 @@ void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wal
   sites = collocation * shape;
   flow_of_strength_.resize(0, 3);
   inlet = wall.inlet().integral(sites) / parameters.viscosity;
-  single.place(shape, parameters.measure);
+  single.place(shape, measure);
   if (dual) {
     dual->place(shape);
     find_nearest(wall.targets());

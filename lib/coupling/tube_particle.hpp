@@ -50,6 +50,7 @@ struct Tube::Particle {
 
   const spline::Space& space;
   TubeParameters parameters;
+  stokes::Measure measure = stokes::Measure::reference;  // of loads
   std::vector<int> own;  ///< points of this rank
   Ranks ranks;
   surface::Geometry geometry;

@@ -46,11 +46,11 @@ void Layer::set_symmetry(const surface::Symmetry& symmetry) {
   tree_rows_.clear();
 }
 
-void Layer::set_reference(const Net& unstressed) {
-  surface_.panels.bezier(unstressed, bezier_unstressed_);
-  node_weights(surface_.panels, bezier_unstressed_, weight_unstressed_);
-  surface_.self_field.forget_weights();
-  measure_.reset();
+void Layer::set_reference(const Net& unstressed, std::vector<bool> present) {
+  surface_.panels.bezier(unstressed, reference_.bezier);
+  node_weights(surface_.panels, reference_.bezier, reference_.weight);
+  reference_.present = std::move(present);
+  surface_.self_field.forget_weights(), measure_.reset();
 }
 
 void Layer::repeat(const PeriodicCell& cell) {
@@ -72,14 +72,15 @@ void Layer::share(int part, int parts, std::vector<int> everybody) {
 }
 
 void Layer::place(const Net& x, Measure measure) {
-  assert((measure == Measure::current || !weight_unstressed_.empty()) && "set_reference() comes first");
+  assert((measure == Measure::current || !reference_.weight.empty()) && "set_reference() comes first");
   const auto clock = phases_.time("setup");
   if (!surface_.place(x) && measure == measure_) return;
   measure_ = measure;
   tree_rows_.clear();
   if (!single() || surface_.options.rule == "desingularised") node_normals(surface_.panels, surface_.bezier, normal_);
-  if (single() && measure == Measure::current) node_weights(surface_.panels, surface_.bezier, weight_);
-  if (single() && measure == Measure::reference) weight_ = weight_unstressed_;
+  if (single()) weight_ = reference_.weight, weight_.resize(static_cast<std::size_t>(n_nodes()));
+  for (int e = 0; single() && e < surface_.panels.size(); ++e)
+    if (!on_reference(e)) node_weights(surface_.panels, e, surface_.bezier, weight_);
   if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
   if (cell_) place_in_cell();
   if (images_) images_->place(surface_.node);
@@ -393,12 +394,11 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
 
 /// Weights of a rule on panel e, area included. On a panel that the target lies on those of the unstressed surface are kept.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
-  const auto& surface = measure_ == Measure::current ? surface_.bezier : bezier_unstressed_;
-  const bool kept = pair && measure_ == Measure::reference;
+  const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
   if (kept && !weights.empty()) return weights.data();
   weights.resize(table.packs());
-  area_weights(table, &surface[surface_.panels[e].first_bezier], weights.data());
+  area_weights(table, &(unstressed ? reference_.bezier : surface_.bezier)[surface_.panels[e].first_bezier], weights.data());
   return weights.data();
 }
 

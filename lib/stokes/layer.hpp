@@ -19,8 +19,9 @@
 
 namespace tanktread::stokes {
 
-/// What a density of a single layer is measured on: per area of the unstressed surface (3.7), or per present area (3.6).
-enum class Measure { reference, current };
+/// What a density of a single layer is measured on: per area of the unstressed surface (3.7), per present area (3.6), or as `set_reference` says of
+/// each element.
+enum class Measure { reference, current, by_element };
 
 /// Rows of a dense operator: of doubles where systems are solved with them, of floats where the Jacobian keeps them in fewer bits still.
 template <class Real>
@@ -54,8 +55,9 @@ class Layer {
   /// where there are none.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
-  /// The unstressed surface, which Measure::reference needs. Its areas are kept at all far nodes and self points.
-  void set_reference(const Net& unstressed);
+  /// Sets the unstressed surface, which Measure::reference needs. Its areas are kept at all far nodes and self points. `present`: for each element,
+  /// whether Measure::by_element means the present area there; otherwise it means the unstressed one.
+  void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// States that all shapes and densities to come are of this symmetry, and all targets fundamental sites. Where far sums of a single layer are
   /// taken by clusters, those are made of fundamental panels F only, for the others do to a target what these do to its images:
@@ -146,7 +148,16 @@ class Layer {
   template <class Real>
   class RowSums;
 
+  /// The unstressed surface.
+  struct Reference {
+    std::vector<double> bezier, weight;  // Bezier points; weights of the far nodes, areas included
+    std::vector<bool> present;           // elements that Measure::by_element does not measure on it
+  };
+
   bool single() const { return kernel_ == Kernel::single_layer; }
+  bool on_reference(int e) const {
+    return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.present[static_cast<std::size_t>(e)]);
+  }
   Precision precision() const { return surface_.options.far_in_single() ? Precision::single : Precision::full; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   PointForces forces(const std::vector<double> (&x)[3]) const;
@@ -196,8 +207,9 @@ class Layer {
   LayerSurface surface_;
   std::vector<double> factor_;
   std::optional<Measure> measure_;                                 // of the weights that are there
-  std::vector<double> bezier_unstressed_, bezier_f_;               // Bezier points: unstressed surface, density
-  std::vector<double> weight_, weight_unstressed_;                 // of the far nodes, areas included
+  Reference reference_;
+  std::vector<double> bezier_f_;                                   // Bezier points of the density
+  std::vector<double> weight_;                                     // of the far nodes, areas included
   std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times the weight in a single layer; normal times area and k
   std::optional<TreeSum> tree_;                                    // where clusters are faster
   std::optional<PeriodicCell> cell_;                               // of a lattice of images

@@ -244,7 +244,8 @@ Mat3 Layer::identities(int site) const {
                                        normal_[2].data(), at.data(), n0.data());
   const Mat3 tangential = Mat3::Identity() - n0 * n0.transpose();
   const Mat3 m = Vec3(s.pressure) * n0.transpose() + Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.shear) * tangential;
-  return measure_ == Measure::current ? m : Mat3(m * (normal_of(bezier_unstressed_).norm() / a.norm()));
+  const bool unstressed = on_reference(surface_.self_field.basis(site, surface_.panels).first);
+  return unstressed ? Mat3(m * (normal_of(reference_.bezier).norm() / a.norm())) : m;
 }
 
 void Layer::subtract_identities(std::span<const int> sites, Net& u) {

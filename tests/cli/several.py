@@ -156,6 +156,29 @@ Tanktread:
     check(series("both", "smallest_gap").min() > 900, "the gap")
 
 
+def the_load_of_a_capsule_is_measured_on_its_own_unstressed_surface():
+    """A drop, whose load is measured on its present surface, does not change what the loads of others are measured on. Its flow changes by 1e-9 of
+    the rate over a capsule at a distance of 1000 along the axis of vorticity."""
+    text = """
+Tanktread:
+  Flow: {type: simple shear}
+  Particles:
+    defaults: {Surface: {elements per side: 3}, viscosity ratio: 2.0}
+    here: {Membrane: {law: Skalak, capillary number: 0.3, shear viscosity: 0.5}}
+%s
+  Time: {scheme: bs3, fixed step: 0.05, final time: 0.5}
+  Solvers: {tolerance: 1.0e-13}
+  Output: {interval: 0.5}
+"""
+    deck(text % "", "alone.yaml")
+    deck(text % "    drop: {center: [0.0, 1000.0, 0.0], Membrane: {law: surface tension, capillary number: 0.3}}", "beside.yaml")
+    for name in "alone", "beside":
+        run(f"{name}.yaml", "--output", f"own_{name}", "--quiet")
+    for name in "taylor_inertia", "inclination", "energy", "membrane_dissipation", "smallest_tension":
+        one = summary("own_alone")["final"]
+        close(series("own_beside", f"here/{name}")[-1], one.get(f"here/{name}", one.get(name)), 1e-9, name)
+
+
 def pairs_are_symmetric_and_their_gap_is_true():
     deck("""
 Tanktread:

@@ -26,9 +26,9 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   Phases phases;
   coupling::TubeParameters parameters;
   parameters.viscosity_ratio = ratio;
-  parameters.measure = stokes::Measure::current;
   parameters.quadrature.tolerance = 1e-7;
   coupling::Tube tube(duct.wall, *duct.flow, sphere.space, parameters, phases);
+  tube.set_reference(sphere.net);
   tube.place(sphere.net);
 
   const Eigen::Index n = sphere.net.rows();

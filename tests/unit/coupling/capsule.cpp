@@ -56,7 +56,7 @@ TEST(Capsule, StoredEnergyFallsInAQuiescentFluid) {
 TEST(Capsule, NoFluxThroughTheSurface) {
   Fixture f;
   for (const auto measure : {stokes::Measure::reference, stokes::Measure::current}) {
-    f.parameters.measure = measure;
+    f.parameters.particles.front().measure = measure;
     f.parameters.volume.constraint = "flux";
     Capsule capsule = f.capsule();
     const Net x = f.deformed(), b = capsule.geometry().volume_gradient(x), v = capsule.velocity(x);
@@ -83,9 +83,9 @@ TEST(Capsule, AVolumeThatCannotBeRestoredIsNotTakenForRestored) {
 TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
   Fixture f;
   const Net x = f.deformed();
-  f.parameters.measure = stokes::Measure::reference;
+  f.parameters.particles.front().measure = stokes::Measure::reference;
   const Net v0 = f.capsule().velocity(x);
-  f.parameters.measure = stokes::Measure::current;
+  f.parameters.particles.front().measure = stokes::Measure::current;
   const Net v = f.capsule().velocity(x);
   EXPECT_LT((v - v0).norm(), 0.05 * v.norm());  // two projections of the same load on a mesh of 56 points
   EXPECT_GT((v - v0).norm(), 0);

@@ -56,7 +56,7 @@ struct Confined {
     TubeParameters in_tube;
     if (!interface.empty()) {
       parameters.particles.front().material.law = membrane::SurfaceTension{10};
-      parameters.measure = in_tube.measure = stokes::Measure::current;
+      parameters.particles.front().measure = stokes::Measure::current;
       parameters.particles.front().interface_motion = interface;
       parameters.particles.front().interface_speed = 1;
     }

@@ -14,7 +14,7 @@ namespace {
 struct Drop : SphereInFlow {
   Drop() : SphereInFlow(3, "planar hyperbolic") {
     parameters.particles.front().material.law = membrane::SurfaceTension{5};
-    parameters.measure = stokes::Measure::current;
+    parameters.particles.front().measure = stokes::Measure::current;
     parameters.particles.front().interface_speed = 1;
   }
   Net velocity(const std::string& motion, const Net& x) {
@@ -60,7 +60,7 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
 TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
   SphereInFlow drop(6, "planar hyperbolic");
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
-  drop.parameters.measure = stokes::Measure::current;
+  drop.parameters.particles.front().measure = stokes::Measure::current;
   drop.parameters.particles.front().interface_speed = 1;
   drop.parameters.quadrature.tolerance = 1e-6;
   for (const double ratio : {0.1, 10.0})

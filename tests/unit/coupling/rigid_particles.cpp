@@ -163,7 +163,7 @@ TEST(RigidParticles, VeryViscousDropsMoveAlike) {
     const std::optional<Rigid> rigid = viscosity_ratio > 0 ? std::nullopt : std::optional(Rigid{});
     const double ratio = std::max(viscosity_ratio, 1.);
     Bodies pair({{Vec3::Zero(), Vec3::Ones(), rigid, ratio}, {Vec3(2.2, 0.3, 0.4), Vec3(1, 1.1, 0.9), rigid, ratio}}, 4, some_gradient());
-    pair.parameters.measure = stokes::Measure::current;
+    for (Particle& one : pair.parameters.particles) one.measure = stokes::Measure::current;
     return pair.system().velocity(pair.rest);
   };
   const Net rigid = velocity(0);
