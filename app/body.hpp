@@ -32,6 +32,7 @@ struct Body {
   membrane::Law law;
   double radius = 1;   ///< R_C
   double volume = 0;   ///< V0, of the resting shape, or the initial one, on the first mesh, whatever mesh the run goes on with
+  double initial_area = 0;  ///< int c dG of a surfactant at the start of the run, on the first mesh; 0 until it is known
   double refit_error = 0;  ///< sum of what changes of the mesh have moved the present and the unstressed surface by, over R_C
   double modulus = 1;  ///< G_s, or sigma of an interface
   surface::Symmetry symmetry;                       ///< of all this, and of the shapes that it takes

@@ -15,6 +15,7 @@
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
 #include "app/plane_wall.hpp"
+#include "app/surface_fields.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -42,17 +43,19 @@ class Deforming : public ParticleSystem {
     }
   }
 
-  coupling::Dynamics& dynamics() override { return *capsule_; }
+  coupling::Dynamics& dynamics() override { return fields_->dynamics(); }
   const coupling::Capsule* capsule() const override { return capsule_.get(); }
   const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
-  Net start() const override { return body().initial; }
+  Net start() const override { return fields_->start(body().initial); }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
   bool resume(Resumed& resumed) override {
     const bool another_mesh = restore(resumed.checkpoint, members_);
-    const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), resumed.state.x).order() != body().symmetry.order();
-    if (another_mesh || another_symmetry) settle(resumed.state.x);
-    if (resumed.state.frozen.size() > 0) capsule_->freeze(resumed.state.frozen);
+    if (another_mesh) arrange(members_);
+    const Net x = resumed.state.x.topRows(members_.back().block.first_point + members_.back().block.n_points);
+    const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
+    if (another_mesh || another_symmetry) settle(x);
+    if (resumed.state.frozen.size() > 0) dynamics().freeze(resumed.state.frozen);
     capsule_->work() = resumed.totals.work;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle.at(p);
     hold_by(resumed.totals.contacts);
@@ -69,7 +72,13 @@ class Deforming : public ParticleSystem {
     const double least = scene_.least_radius();
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
                     scene_.rate());
-    const bool first = contacts_.impulse == 0, holds = limiter.hold(state, step, contacts_);
+    motion::State own = fields_->of_shape(state);
+    const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts_);
+    if (holds && own.x != fields_->shape(state.x)) {
+      state.x = fields_->with_shape(state.x, own.x);
+      state.history = {fields_->empty() ? own.history.front() : dynamics().velocity(state.x)};
+      state.places.clear();
+    }
     if (first && contacts_.impulse > 0)
       remarks_.push_back({"limiter", formatted("at time %.4g Contact/limiter begins to hold particles apart, for the film between them is thinner "
                                                "than Contact/limit, %g R_C = %.4g",
@@ -87,7 +96,11 @@ class Deforming : public ParticleSystem {
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, RunTotals& totals) override {
     before_.clear();
-    if (holds_centre_) hold_centre(capsule_->flow(), capsule_->geometry(), scene_.particle.shape.center, state);
+    if (holds_centre_) {
+      motion::State own = fields_->of_shape(state);
+      hold_centre(capsule_->flow(), capsule_->geometry(), scene_.particle.shape.center, own);
+      fields_->put_back(own, state);
+    }
     const auto due = [&](const Member& member) {
       return member.scene.adaptation.enabled && totals.step % member.scene.adaptation.interval == 0;
     };
@@ -128,14 +141,19 @@ class Deforming : public ParticleSystem {
     return kernel_evaluations_ + capsule_->kernel_evaluations();
   }
 
-  std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
+  std::vector<double> row(const motion::State& whole_state, const motion::StepReport& report, double wall_seconds) override {
+    const motion::State& state = fields_->of_shape(whole_state);
+    fields_->set_state(whole_state.x, scene_.time.tolerance);
     const Net v = material_velocity(state);
     Moment whole;
     whole.time = state.time, whole.wall_seconds = wall_seconds;
     whole.step = report, whole.work = capsule_->work();
     std::vector<double> of_particles;
     std::vector<Moment> moments;
-    for (std::size_t p = 0; p < members_.size(); ++p) moments.push_back(moment(p, state));
+    for (std::size_t p = 0; p < members_.size(); ++p) {
+      moments.push_back(moment(p, state));
+      fields_->add_to(p, whole_state.x, moments.back());
+    }
     add_treading(state.x, v, moments);
     for (std::size_t p = 0; p < members_.size(); ++p) {
       Moment& now = moments[p];
@@ -161,7 +179,9 @@ class Deforming : public ParticleSystem {
     return row;
   }
 
-  SurfacePicture picture(const motion::State& state) override {
+  SurfacePicture picture(const motion::State& whole_state) override {
+    const motion::State& state = pictured_ = fields_->of_shape(whole_state);
+    fields_->set_state(whole_state.x);
     const Net load = capsule_->load(state.x);
     const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
     return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) { return fields(nodes, state.x, load, velocity); }};
@@ -175,7 +195,8 @@ class Deforming : public ParticleSystem {
     const auto clock = phases_.time("power balance");
     if (!power_)
       power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
-    const coupling::Powers powers = (*power_)(state.x, state.history.front());
+    coupling::Powers powers = (*power_)(state.x, state.history.front());
+    if (!fields_->empty()) powers.forces += fields_->power(capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.front());
     whole.flow_power = powers.flow, whole.force_power = powers.forces, whole.fluid_dissipation = powers.fluids;
     const double all = coupling::turnover(powers.flow, powers.forces, powers.fluids);
     whole.power_residual = all > 0 ? powers.left_over / all : 0;
@@ -207,8 +228,9 @@ class Deforming : public ParticleSystem {
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
       around = tube(scene_, body(), phases_);
-    power_.reset(), capsule_.reset();
+    power_.reset(), fields_.reset(), capsule_.reset();
     capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
+    fields_.emplace(members_, *capsule_);
   }
 
   /// Returns the velocity of the fluids on the surface. In a tube, whose response depends on it, the slope is evaluated if it errs by more than
@@ -382,6 +404,7 @@ class Deforming : public ParticleSystem {
     fields.push_back({"largest tension", tensions.col(1)});
     fields.push_back({"mean curvature", curvature});
     if (all_) fields.push_back({"particle", particle});
+    fields_->add_to(nodes, fields);
     if (capsule_->cell()) fields.push_back({"into cell", into_cell(nodes, x)});
     return fields;
   }
@@ -407,6 +430,8 @@ class Deforming : public ParticleSystem {
   std::vector<Member> members_;
   std::unique_ptr<Body> all_;  // several particles
   std::unique_ptr<coupling::Capsule> capsule_;
+  std::optional<SurfaceFields> fields_;
+  motion::State pictured_;  // shapes of the latest snapshot, which its fields refer to
   std::optional<coupling::PowerBalance> power_;  // made when first asked for
   coupling::Work work_;                     // of systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // the same

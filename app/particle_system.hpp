@@ -64,8 +64,6 @@ std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ra
 
 /// The kinds.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
-std::unique_ptr<ParticleSystem> surfactant_drop(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
-std::unique_ptr<ParticleSystem> maxwell_capsule(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

@@ -327,17 +327,12 @@ void check_contradictions(const Scene& scene) {
          "a degenerate element has no normal at its pole");
   refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
   const std::string surfactant = "Interface/surfactant", scheme = "Time/scheme `" + scene.time.scheme + "`";
-  const bool explicit_scheme = scene.time.scheme == "bs3" || scene.time.scheme == "rkc2";
   refuse(scene.surfactant && (rigid || !drop), surfactant, rigid ? motion : law, "it is on the interface of a drop");
-  refuse(scene.surfactant && !alone, surfactant, "Particles", "it is for one drop");
   refuse(scene.surfactant && adapts, surfactant, "Adaptation/enabled", "its concentration does not go over to another mesh");
   refuse(scene.surfactant && steady, surfactant, sought, "the search leaves its concentration out");
-  refuse(scene.surfactant && !explicit_scheme, surfactant, scheme, "what it does is in no Jacobian; `rkc2` and `bs3` need none");
   const std::string memory = "Membrane/relaxation time";
-  refuse(scene.maxwell_membrane() && !alone, memory, "Particles", "it is for one capsule");
   refuse(scene.maxwell_membrane() && adapts, memory, "Adaptation/enabled", "what the membrane remembers does not go over to another mesh");
   refuse(scene.maxwell_membrane() && steady, memory, sought, "the search leaves out what the membrane remembers");
-  refuse(scene.maxwell_membrane() && !explicit_scheme, memory, scheme, "what it does is in no Jacobian; `rkc2` and `bs3` need none");
   refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
   refuse(held && (tube || rigid), "Particle/drift `held`", tube ? confined : motion,
          "it is for particles that deform in a flow whose gradient is the same everywhere");

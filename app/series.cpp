@@ -198,11 +198,12 @@ constexpr Statement statements[] = {
      [](const Moment& m, int) { return m.pressure_error; }, Needs::exact_pressure},
     {"normal_l2_error", "", "1", "L2 norm of n_h - n over that of n (6.3), where that is known", of_prescribed,
      [](const Moment& m, int) { return m.normal_error; }, Needs::exact},
-    {"surfactant_mass", "", "1", "integral of the concentration over the interface, over the initial one: stays 1 to round-off", of_surfactant,
-     [](const Moment& m, int) { return m.surfactant_mass; }},
-    {"smallest_concentration", "", "1", "of surfactant over the initial one", of_surfactant,
-     [](const Moment& m, int) { return m.smallest_concentration; }},
-    {"largest_concentration", "", "1", "the same", of_surfactant, [](const Moment& m, int) { return m.largest_concentration; }},
+    {"surfactant_mass", "", "1", "integral of the concentration over the interface, over the initial one: stays 1 to round-off", of_deforming,
+     [](const Moment& m, int) { return m.surfactant_mass; }, Needs::surfactant},
+    {"smallest_concentration", "", "1", "of surfactant over the initial one", of_deforming,
+     [](const Moment& m, int) { return m.smallest_concentration; }, Needs::surfactant},
+    {"largest_concentration", "", "1", "the same", of_deforming,
+     [](const Moment& m, int) { return m.largest_concentration; }, Needs::surfactant},
     {"parameter", "", "of the key", "Continuation/parameter", of_branch, [](const Moment& m, int) { return m.parameter; }},
     {"fold", "", "1", "1 where the parameter turns back along the branch, else 0", of_branch, [](const Moment& m, int) { return m.fold; }},
     {"second_parameter", "", "of the key", "Continuation/second parameter", of_folds, [](const Moment& m, int) { return m.second_parameter; }},
@@ -244,6 +245,7 @@ bool holds(const Scene& scene, Needs needs) {
   if (needs == Needs::wall) return scene.wall.present;
   if (needs == Needs::tube_or_wall) return scene.tube.present || scene.wall.present;
   if (needs == Needs::viscous_membrane) return scene.viscous_membrane();
+  if (needs == Needs::surfactant) return scene.surfactant.has_value();
   if (needs == Needs::membrane) return scene.membrane.law != "surface tension";
   if (needs == Needs::strain) return strains(scene);
   if (needs == Needs::lattice) return scene.domain.present;
@@ -286,7 +288,6 @@ std::vector<Series> run_series(const Scene& scene) {
       if (!one.name.empty()) own.name = one.name + "/" + own.name;
       all.push_back(std::move(own));
     }
-  if (scene.surfactant) std::ranges::move(series(scene, of_surfactant), std::back_inserter(all));
   std::ranges::move(steady_series(scene), std::back_inserter(all));
   return all;
 }

@@ -64,18 +64,19 @@ struct Moment {
 };
 
 /// Whose row a series is in, as bits: the run's, which of several particles is that of all; a capsule's or drop's; that of a rigid body among several
-/// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum, of all of it; of a branch; of a drop with surfactant;
+/// particles; of a free body, in a tube only; of a prescribed one; of each mode of a spectrum, of all of it; of a branch;
 /// of folds that go on; of a periodic motion.
 enum Owner : unsigned {
   of_run = 1, of_several = 2, of_deforming = 4, of_rigid = 8, of_free = 16, of_free_in_tube = 32, of_prescribed = 64, of_mode = 128,
-  of_spectrum = 256, of_branch = 512, of_surfactant = 1024, of_folds = 2048, of_periodic = 4096
+  of_spectrum = 256, of_branch = 512, of_folds = 1024, of_periodic = 2048
 };
 
 /// Condition on the scene under which a series exists. `lattice`: the scene repeats in any directions; `cell`: in three; `exact`: an exact solution
 /// of a prescribed body is known; `exact_force`, `exact_torque`, `exact_pressure`: this quantity of it is not 0.
 enum class Needs {
   nothing, tube, wall, tube_or_wall, held_pressure, channel, viscous_membrane, strain, lattice, cell, cell_strain, adaptation, exact, exact_force,
-  exact_torque, exact_pressure, limiter, power, membrane
+  exact_torque, exact_pressure, limiter, power, membrane,
+  surfactant
 };
 
 /// A column of `/series` and its value.

@@ -61,7 +61,7 @@ std::string owners(const Series& one) {
   constexpr std::pair<unsigned, const char*> all[] = {{of_run | of_deforming, "capsule, drop"}, {of_rigid, "rigid one of several"},
                                                       {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
                                                       {of_prescribed, "prescribed body"}, {of_mode | of_spectrum, "spectrum of a capsule or drop"},
-                                                      {of_branch, "branch of steady shapes"}, {of_surfactant, "drop with surfactant"},
+                                                      {of_branch, "branch of steady shapes"},
                                                       {of_folds, "folds in a second parameter"}, {of_periodic, "periodic motion"},
                                                       {of_run | of_several, "several particles together"}};
   std::string list;

@@ -451,8 +451,6 @@ int simulate(const Scene& scene, const RunRequest& request) {
 }
 
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  if (scene.surfactant) return surfactant_drop(scene, ranks, phases);
-  if (scene.maxwell_membrane()) return maxwell_capsule(scene, ranks, phases);
   return scene.particle.motion == Motion::free ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
 }
 

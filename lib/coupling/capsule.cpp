@@ -235,6 +235,7 @@ const Net& Capsule::energy_gradient(const Net& x) {
   for (const Particle& particle : particles())
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
   if (pressed_.size() > 0) gradient_ -= pressed_;
+  if (field_load_.size() > 0) gradient_ += field_load_;
   gradient_at_ = x;
   return gradient_;
 }
@@ -256,6 +257,12 @@ void Capsule::press(Net work) {
   rigid_.push(work);
   if (work.size() > 0) rigid_.clear(work);
   pressed_ = std::move(work);
+  latest_ = {}, gradient_at_ = {};
+}
+
+void Capsule::set_field_load(Net load) {
+  if (same(load, field_load_)) return;
+  field_load_ = std::move(load);
   latest_ = {}, gradient_at_ = {};
 }
 
@@ -707,7 +714,7 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
     Net work = own(energy_gradient(x));
     if (viscous_) work += own(viscous_work(x, interface_ ? fluid_velocity(x) : slope));
     moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
-    if (!particle.body_force.isZero(0) || pulled(particle) || pressed_.size() > 0)  // about the centroid
+    if (!particle.body_force.isZero(0) || pulled(particle) || pressed_.size() > 0 || field_load_.size() > 0)  // about the centroid
       moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {

@@ -27,6 +27,7 @@
 #include "coupling/wall_repulsion.hpp"
 #include "coupling/whole_membrane.hpp"
 #include "membrane/area_constraint.hpp"
+#include "membrane/field.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/membrane.hpp"
@@ -127,9 +128,29 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
-  /// Virtual work of forces on all particles that neither scene nor shape tells, a row a control point, from now on: contacts, the tension that a
-  /// surfactant takes away (3.18). They stay on their material points and keep their directions. Of no rows: none.
+  /// Sets the virtual work of the forces of contacts, one row per control point, from now on. The forces stay on their material points and keep their
+  /// directions. An empty net: none.
   void press(Net work);
+
+  /// Sets what fields on the surfaces add to dE/dx, shape (N, 3), from now on. An empty net: none.
+  void set_field_load(Net load);
+
+  Eigen::Index n_points() const { return space_.n_points; }
+
+  /// What a displacement dx, and a change of the load's virtual work in addition to that of the membranes, change at the shape linearised last. `slip`:
+  /// velocity of the fluids minus that of the control points; empty if none slides.
+  struct RateChange {
+    Net rate, slip;
+  };
+  RateChange rate_change(const Net& dx, const Net& work);      ///< rate: B J dx if no point slides, otherwise J dx. Collective
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx. Collective
+  Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }  ///< B v with B frozen, or v if control points slide. Collective
+  void prepare_step(double shift);                             ///< prepares step_preconditioner
+  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system of `solve`
+  bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
+  void symmetrise(const membrane::Field& field, Eigen::VectorXd& q) const {
+    if (parameters_.symmetry.order() > 1) field.symmetrise(parameters_.symmetry, q);
+  }
 
   /// Load of the fluids on the membrane, as control values: per unstressed or per current area, as its particle says. Of a rigid body the load of
   /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
@@ -233,7 +254,7 @@ class Capsule : public Dynamics {
   const std::vector<Net>& whole_gradients(const Net& x);
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
-  Net energy_part(const Net& delta);
+  Net energy_part(const Net& delta, const Net& work = {});
   Net without_flux(Net rate) const;
   Net inflation(const Net& c);
   Net frozen_single_layer(const Net& f);
@@ -242,7 +263,7 @@ class Capsule : public Dynamics {
   Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
   const Net& viscous_work(const Net& x, const Net& v);
   Net frozen_viscous(const Net& v);
-  Net fluid_velocity_change(const Net& delta);
+  Net fluid_velocity_change(const Net& delta, const Net& work = {});
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
   Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
   Blocks velocity_blocks() const;
@@ -310,6 +331,7 @@ class Capsule : public Dynamics {
   Net gradient_at_, gradient_;  // x and dE/dx there
   Net whole_at_;  // x, and the gradients there
   std::vector<Net> whole_gradients_;
+  Net field_load_;  // of fields on the surfaces; of no rows: none
   Net pressed_;  // of what deforms; of no rows: nothing
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle

@@ -112,13 +112,14 @@ Net Capsule::inflation(const Net& c) {
 }
 
 /// B J delta = P (grad v_inf delta - R^{-1} A M0^{-1} H delta), and 0 of rigid bodies                         (4.3)
-Net Capsule::energy_part(const Net& delta) {
+Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
   if (whole_) whole_->add_turning(delta, h);
   if (repulsion_) repulsion_->add_tangent(delta, h);
   replicate_sums(h);
   if (whole_) whole_->add_stretching(delta, h);
+  if (work.size() > 0) h += work;
   const Net f = solved(mass_.reference(), std::move(h));
   Net u = frozen_single_layer(f);
   if (by_sites()) {
@@ -155,8 +156,8 @@ Net Capsule::frozen_viscous(const Net& v) {
 }
 
 /// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
-Net Capsule::fluid_velocity_change(const Net& delta) {
-  const Net rhs = energy_part(delta);
+Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
+  const Net rhs = energy_part(delta, work);
   if (!double_layer_ && !viscous_) return rhs;
   const Eigen::Index n = delta.rows();
   const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = frozen_viscous(Eigen::Map<const Net>(in, n, 3)); };
@@ -169,7 +170,7 @@ Net Capsule::fluid_velocity_change(const Net& delta) {
 /// Material motion: (B - shift (B J + E)) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6).
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
-  return stiff_system(shift, interface_ ? r : frozen_viscous(r), tolerance, secants);
+  return stiff_system(shift, left(r), tolerance, secants);
 }
 
 /// Returns whether all points move with the fluid and its velocity is the solution of a system: then the Jacobian has the projection P in every form
@@ -226,21 +227,32 @@ Net Capsule::missed_of(const Net& change, const Net& delta, double shift) {
   return change + frozen_viscous(delta) / shift - energy_part(delta);
 }
 
+Capsule::RateChange Capsule::velocity_change(const Net& dx, const Net& work) {
+  const Net dv = fluid_velocity_change(dx, work);
+  if (!interface_) return {dv, {}};
+  const Net du = interface_->derivative(dv, dx);
+  return {du, dv - du};
+}
+
+Capsule::RateChange Capsule::rate_change(const Net& dx, const Net& work) {
+  return interface_ ? velocity_change(dx, work) : RateChange{energy_part(dx, work), {}};
+}
+
+void Capsule::prepare_step(double shift) {
+  latest_shift_ = shift;
+  if (area_) area_->factor(shift);
+}
+
 /// The two systems of `solve`, of a right-hand side B r, or r.
 Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
-    Eigen::Map<Net> result(out, n, 3);
-    if (interface_)
-      result = delta - shift * (interface_->derivative(fluid_velocity_change(delta), delta) + secants(delta));
-    else
-      result = frozen_viscous(delta) - shift * (energy_part(delta) + secants(delta));
+    Eigen::Map<Net>(out, n, 3) = left(delta) - shift * (rate_change(delta, {}).rate + secants(delta));
   };
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
-  latest_shift_ = shift;
-  const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = area_->apply(Eigen::Map<const Net>(in, n, 3)); };
-  if (area_) area_->factor(shift);
+  prepare_step(shift);
+  const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = step_preconditioner(Eigen::Map<const Net>(in, n, 3)); };
   const LinearSystem system{{{"displacement", 3 * n}}, apply, area_ ? Apply(keep_area) : Apply()};
   const SolveReport report = step_solver_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
@@ -257,8 +269,7 @@ void Capsule::improve_start(Net& y, const Net& before, double shift) {
 
 Net Capsule::missed(const Net& dv, const Net& delta) {
   const auto clock = phases_.time("implicit solve");
-  if (interface_) return dv - interface_->derivative(fluid_velocity_change(delta), delta);
-  return frozen_viscous(dv) - energy_part(delta);
+  return left(dv) - rate_change(delta, {}).rate;
 }
 
 Net Capsule::mesh_motion(const Net& delta) {
@@ -268,11 +279,10 @@ Net Capsule::mesh_motion(const Net& delta) {
 }
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
-  if (frozen_.empty() && nodal_.empty()) return difference(x, v, delta);
+  if (!has_frozen()) return difference(x, v, delta);
   const auto clock = phases_.time("stiffness");
   linearise(x);
-  const Net dv = fluid_velocity_change(delta);
-  return symmetric(interface_ ? interface_->derivative(dv, delta) : dv);
+  return symmetric(velocity_change(delta, {}).rate);
 }
 
 }  // namespace tanktread::coupling

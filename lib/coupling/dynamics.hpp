@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "coupling/rigid_motion.hpp"
 #include "coupling/secants.hpp"
 
 namespace tanktread::coupling {
@@ -71,6 +72,9 @@ class Dynamics {
 
   /// Fields that move points along surfaces and change no shape: rotations of the mesh of each drop that it slides on.
   virtual std::vector<Net> relabellings(const Net& /*x*/) { return {}; }
+
+  /// Returns the velocity of a rigid motion about the origin at the state x.
+  virtual Net moved(const Net& x, const RigidMotion& motion) const { return rigid_velocity(x, motion, Vec3::Zero()); }
 
   /// Rids a rate of change of what round-off adds where the scene is symmetric. A velocity is rid of it already; a difference of shapes is not,
   /// and what is extrapolated from it grows from step to step.

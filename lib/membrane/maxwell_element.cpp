@@ -75,8 +75,8 @@ Eigen::VectorXd MaxwellElement::start(const Net& shape) const {
   return q;
 }
 
-void MaxwellElement::place(const Net& x, const Eigen::VectorXd& q) {
-  x_ = x;
+void MaxwellElement::set_state(const Net& x, const Eigen::VectorXd& q) {
+  x_ = x, q_ = q;
   rate_.resize(size());
   dissipation_ = 0;
   each_point(x, [&](std::size_t first, int point, int l, Eigen::Index row, const Metric& g) {

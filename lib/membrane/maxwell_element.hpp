@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "base/types.hpp"
-#include "membrane/carried.hpp"
+#include "membrane/field.hpp"
 #include "membrane/laws.hpp"
 #include "membrane/packed.hpp"
 #include "membrane/points_kernel.hpp"
@@ -22,22 +22,33 @@ namespace tanktread::membrane {
 ///
 /// of which nothing but heat comes out (3.25), and which is (3.10) where T is short. The energy is that of a law (`MaxwellSpring`) on the surface of
 /// metric C^-1. C is kept at the Gauss points, its components over those at the start of the metric of `initial`. Serial.
-class MaxwellElement : public Carried {
+class MaxwellElement : public Field {
  public:
   /// `order` Gauss points a direction as of a Membrane; `space` must outlive it. `time` T.
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
   Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< C^11, C^12, C^22 of each Gauss point of each element
   Eigen::VectorXd start(const Net& shape) const override;          ///< of an element without stress
-  void place(const Net& x, const Eigen::VectorXd& q) override;
+  void set_state(const Net& x, const Eigen::VectorXd& q) override;
   Net load() const override;
   Eigen::VectorXd rate(const Net&) const override { return rate_; }
   double energy() const override;
 
   /// int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG: the power that the dashpots turn into heat.                              (3.25)
-  double dissipation() const { return dissipation_; }
+  double dissipation() const override { return dissipation_; }
+
+  void linearise(const Net&) override;
+  Eigen::VectorXd value_change(const Net&, const Eigen::VectorXd& dq) const override { return dq; }
+  Net load_change(const Net& dx, const Eigen::VectorXd& dq) const override;
+  Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dq, const Net&) const override;
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< exact: one 3 x 3 system per Gauss point
+  Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
 
  private:
+  /// Metric, strain and tangents at a Gauss point.
+  struct Point;
+  template <class Use>
+  void each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const;
   template <class Use>
   void each_batch(const Net& x, const Use& use) const;
   template <class Use>
@@ -53,6 +64,9 @@ class MaxwellElement : public Carried {
   std::vector<ReferencePoint> relaxed_;                 // the stress-free surface, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
+  Eigen::VectorXd q_, known_q_;  // set last, and as linearised
+  Net known_x_;
+  std::vector<Eigen::Matrix3d> known_rates_;  // d(rate)/dq of each Gauss point
 };
 
 }  // namespace tanktread::membrane

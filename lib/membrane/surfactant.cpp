@@ -17,7 +17,7 @@ constexpr int most_area_points = 144, most_functions = 64;  // of an element
 }  // namespace
 
 Surfactant::Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity)
-    : space_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space) {
+    : space_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space), known_mass_(space) {
   constexpr int order = 4;  // Gauss points a direction at degree 3, as the membrane's
   for (const spline::Element& element : space.elements) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(order + std::max(0, element.degree - 3));
@@ -49,7 +49,8 @@ std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, d
   return {*g11 * along_s + *g12 * along_t, *g12 * along_s + *g22 * along_t};
 }
 
-void Surfactant::place(const Net& x, const Eigen::VectorXd& q) {
+void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
+  x_ = x;
   Net content = Net::Zero(x.rows(), 3);  // of which the solver takes three columns
   content.col(0) = share_.cwiseProduct(q);
   concentration_ = solver_.solve(mass_.update(x), content).col(0);
@@ -93,20 +94,28 @@ Net Surfactant::load() const {
   return d;
 }
 
-Eigen::VectorXd Surfactant::rate(const Net& faster) const {
+Eigen::VectorXd Surfactant::rate(const Net& slip) const { return transport(slip, diffusivity_); }
+
+/// Control points that slide with u have the slip -u in a fluid at rest.
+Eigen::VectorXd Surfactant::relabelled(const Net& mesh_velocity) const { return transport(-mesh_velocity, 0); }
+
+/// (3.17) with this diffusivity, divided by the share of each control point.
+Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
-    double own[3 * most_functions], w[3 * most_area_points], along_s[most_area_points], along_t[most_area_points], rows[most_functions];
-    for (std::size_t a = 0; a < points.size(); ++a) Eigen::Map<Eigen::RowVector3d>(own + 3 * a) = faster.row(points[a]);
-    sample(3, at.n, at.functions, at.value.data(), own, w);
+    double own[3 * most_functions], w[3 * most_area_points] = {}, along_s[most_area_points], along_t[most_area_points], rows[most_functions];
+    if (slip.rows() > 0) {
+      for (std::size_t a = 0; a < points.size(); ++a) Eigen::Map<Eigen::RowVector3d>(own + 3 * a) = slip.row(points[a]);
+      sample(3, at.n, at.functions, at.value.data(), own, w);
+    }
     const double *s = at.s.data(), *t = at.t.data();
     for (int q = 0; q < at.n; ++q) {
       double ws = 0, wt = 0;
       for (int i = q; i < 3 * at.n; i += at.n) ws += w[i] * s[i], wt += w[i] * t[i];
       const double c = at.c[static_cast<std::size_t>(q)];
-      const auto [up_s, up_t] = at.raised(q, c * ws - diffusivity_ * s[3 * at.n + q], c * wt - diffusivity_ * t[3 * at.n + q]);
+      const auto [up_s, up_t] = at.raised(q, c * ws - diffusivity * s[3 * at.n + q], c * wt - diffusivity * t[3 * at.n + q]);
       along_s[q] = at.area()[q] * up_s, along_t[q] = at.area()[q] * up_t;
     }
     test(1, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);

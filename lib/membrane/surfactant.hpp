@@ -2,10 +2,13 @@
 // Insoluble surfactant on a fluid interface: the load of its tension, its transport along a surface that moves.
 
 #include <array>
+#include <memory>
 #include <vector>
 
+#include <Eigen/SparseCholesky>
+
 #include "base/types.hpp"
-#include "membrane/carried.hpp"
+#include "membrane/field.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/mass_solver.hpp"
 #include "membrane/surfactant_options.hpp"
@@ -17,31 +20,44 @@ namespace tanktread::membrane {
 ///
 ///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dG,   sum_A dm_A/dt = 0                              (3.17)
 ///
-/// with u the velocity of the control points and v that of the fluid, both the same across the surface. Kept are q_A = m_A/int N_A dG of the initial
-/// surface, 1 at the start. Serial.
-class Surfactant : public Carried {
+/// with u the velocity of the control points and v that of the fluid, both the same across the surface. Kept are q_A = m_A/int N_A dG of a
+/// surface `initial` on the same space, 1 at the start there. Serial.
+class Surfactant : public Field {
  public:
   /// `clean_tension` sigma(0); `space` must outlive it.
   Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
 
-  Eigen::Index size() const override { return share_.size(); }  ///< one a control point
-  Eigen::VectorXd start(const Net&) const override { return Eigen::VectorXd::Ones(size()); }
+  Eigen::Index size() const override { return share_.size(); }  ///< one per control point
+  Eigen::VectorXd start(const Net& shape) const override { return contents(shape, Eigen::VectorXd::Ones(size())); }  ///< c = 1
 
-  /// Throws RunFailure where no tension is left somewhere.
-  void place(const Net& x, const Eigen::VectorXd& q) override;
+  /// Throws RunFailure if the tension is not positive everywhere.
+  void set_state(const Net& x, const Eigen::VectorXd& q) override;
 
   const Eigen::VectorXd& concentration() const { return concentration_; }  ///< control values of c
 
   /// What the surfactant adds to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).     (3.18)
   Net load() const override;
 
-  Eigen::VectorXd rate(const Net& faster) const override;
+  Eigen::VectorXd rate(const Net& slip) const override;
 
-  double mass(const Eigen::VectorXd& q) const { return share_.dot(q) / share_.sum(); }  ///< int c dG over the initial one
+  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< int c dG, an area
   /// int (f(c) - sigma(0)) dG of the free energy f of the surface: what the surfactant adds to that of the clean interface.     (3.21)
   double energy() const override;
   double smallest() const { return smallest_; }                          ///< c at the Gauss points
   double largest() const { return largest_; }
+
+  void linearise(const Net& slip) override;
+  Eigen::VectorXd value_change(const Net& dx, const Eigen::VectorXd& dq) const override;
+  Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
+  Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
+  void freeze(const Net& x) override;
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< with the diffusion on the frozen shape
+  void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
+  Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
+  void symmetrise(const surface::Symmetry& symmetry, Eigen::VectorXd& q) const override;
+
+  /// Returns q for which the concentration on the surface x has the control values c.
+  Eigen::VectorXd contents(const Net& x, const Eigen::VectorXd& c) const;
 
  private:
   /// The functions of an element at its n Gauss points, and the surface and the concentration there; arrays as surfactant_kernel.hpp has them.
@@ -55,15 +71,28 @@ class Surfactant : public Carried {
     const double* area() const { return &metric[3 * static_cast<std::size_t>(n)]; }
     std::array<double, 2> raised(int q, double by_s, double by_t) const;
   };
+  struct MetricChange;
+  template <class Use>
+  void each_change(const Net& dx, const Eigen::VectorXd* dc, const Use& use) const;
+  Eigen::VectorXd transport(const Net& slip, double diffusivity) const;
+  Eigen::SparseMatrix<double> stiffness() const;
 
   const spline::Space& space_;
   SurfactantOptions options_;
   double clean_tension_, diffusivity_;
   std::vector<ElementPoints> elements_;
-  MassMatrix mass_;
-  MassSolver solver_;
+  mutable MassMatrix mass_;
+  mutable MassSolver solver_;
   Eigen::VectorXd share_, concentration_;  // int N_A dG of the initial surface
   double smallest_ = 1, largest_ = 1;
+  Net x_, known_x_;                                       // shapes set last and linearised at
+  std::vector<ElementPoints> known_;                      // as linearised
+  std::vector<std::vector<double>> known_slip_;           // at the Gauss points of each element, three fields; empty without slip
+  MassMatrix known_mass_;
+  Eigen::SparseMatrix<double> known_matrix_;              // mass matrix as linearised
+  Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
+  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // of M + s D K on the frozen shape
+  mutable double factored_shift_ = 0;
 };
 
 }  // namespace tanktread::membrane

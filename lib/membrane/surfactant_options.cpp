@@ -37,6 +37,8 @@ double SurfactantOptions::tension(double c) const {
   return coverage ? 1 + elasticity * std::log(1 - *coverage * c) : 1 - elasticity * c;
 }
 
+double SurfactantOptions::tension_slope(double c) const { return coverage ? -elasticity * *coverage / (1 - *coverage * c) : -elasticity; }
+
 double SurfactantOptions::free_energy(double c) const {
   if (c <= 0) return 1;
   return coverage ? tension(c) + elasticity * *coverage * c * std::log(c / (1 - *coverage * c)) : tension(c) + elasticity * c * std::log(c);

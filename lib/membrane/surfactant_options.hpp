@@ -25,6 +25,9 @@ struct SurfactantOptions {
   /// sigma(c)/sigma(0): 1 - E c, or 1 + E ln(1 - x c); not above 0, or not a number, where there is no tension left.            (3.16)
   double tension(double c) const;
 
+  /// Derivative of tension(c).
+  double tension_slope(double c) const;
+
   /// f(c)/sigma(0) of the free energy f of the surface with sigma = f - c f' (3.21).
   double free_energy(double c) const;
 

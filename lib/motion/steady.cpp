@@ -39,7 +39,7 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
   constexpr double rounding = 1e-6, between_meshes = 0.05;  // a mesh that turns with an axisymmetric drop is the same but for the mesh's error
   std::vector<Net> all;
-  for (const coupling::RigidMotion& motion : free_) join(all, coupling::rigid_velocity(x, motion, Vec3::Zero()), rounding);
+  for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
   for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
   return all;
 }

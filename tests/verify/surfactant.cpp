@@ -6,7 +6,7 @@
 #include <Eigen/SparseCholesky>
 #include <gtest/gtest.h>
 
-#include "coupling/carried_motion.hpp"
+#include "coupling/coupled_motion.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/surfactant.hpp"
 #include "quadrature/gauss.hpp"
@@ -32,7 +32,7 @@ Eigen::Matrix2d theory(double lambda, double tension, double elasticity, double 
 struct Laden {
   Evolution scene;
   membrane::Surfactant surfactant;
-  coupling::CarriedMotion motion;
+  coupling::CoupledMotion motion;
 
   explicit Laden(std::vector<std::string> settings, double diffusivity)
       : scene([&] {
@@ -40,7 +40,7 @@ struct Laden {
           return settings;
         }()),
         surfactant(scene.body().space, scene.body().rest, *scene.scene.surfactant, scene.scene.modulus(), diffusivity),
-        motion(*scene.capsule, surfactant) {}
+        motion(*scene.capsule, {{0, &surfactant}}, {}) {}
 
   const spline::Space& space() const { return scene.body().space; }
   const Net& rest() const { return scene.body().rest; }
@@ -79,7 +79,7 @@ struct Laden {
     const Net x = rest() + f * fields.leftCols<3>();
     y.topRows(x.rows()) = x;
     const Eigen::VectorXd content = (mass.update(x) * (one + g * fields.col(3))).cwiseQuotient(m0 * one);
-    std::copy(content.begin(), content.end(), y.data() + x.size());
+    motion.set_coefficients(y, 0, content);
     return y;
   }
 
@@ -87,9 +87,9 @@ struct Laden {
   Eigen::Vector2d rates(const Net& y) {
     const double e = 1e-4;
     const Net slope = motion.velocity(y);
-    motion.place(y + e * slope);
+    motion.set_state(y + e * slope);
     const Eigen::VectorXd after = surfactant.concentration();
-    motion.place(y - e * slope);
+    motion.set_state(y - e * slope);
     const Eigen::VectorXd c = (after - surfactant.concentration()) / (2 * e);
     const Eigen::MatrixX4d weights = moments();
     const double square = 4 * M_PI / 5;
@@ -135,7 +135,7 @@ TEST(Surfactant, TheFreeEnergyOfADropLeftAloneFalls) {
   motion::begin(drop.motion, state);
   state.step = motion::first_step(drop.motion, state, drop.scene.scene.time);
   const auto energy = [&] {
-    drop.motion.place(state.x);
+    drop.motion.set_state(state.x);
     return drop.scene.capsule->membrane().energy(drop.motion.shape(state.x)) + drop.surfactant.energy();
   };
   for (double before = energy(); state.time < 10; before = energy()) {
@@ -156,9 +156,9 @@ double slope(double ca, double diffusivity, const std::vector<std::string>& equa
   const auto scheme = motion::integrator(drop.scene.scene.time);
   motion::begin(drop.motion, state);
   state.step = motion::first_step(drop.motion, state, drop.scene.scene.time);
-  const double mass = drop.surfactant.mass(drop.motion.content(state.x));
+  const double mass = drop.surfactant.mass(drop.motion.coefficients(state.x, 0));
   while (state.time < 60 * ca) scheme->advance(drop.motion, state, 60 * ca);
-  EXPECT_NEAR(drop.surfactant.mass(drop.motion.content(state.x)) / mass, 1, 1e-13);  // round-off of some hundred steps
+  EXPECT_NEAR(drop.surfactant.mass(drop.motion.coefficients(state.x, 0)) / mass, 1, 1e-13);  // round-off of some hundred steps
   return drop.scene.capsule->geometry().deformation(drop.motion.shape(state.x)).taylor_inertia / ca;
 }
 

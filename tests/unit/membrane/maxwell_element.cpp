@@ -19,7 +19,7 @@ TEST(MaxwellElement, HasNoStressInTheShapeThatItStartsWith) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
   const Net x = stretched(s.net);
-  springs.place(x, springs.start(x));
+  springs.set_state(x, springs.start(x));
   EXPECT_LT(springs.load().norm(), 1e-13 * shear * x.norm());
   EXPECT_NEAR(springs.energy(), 0, 1e-13);
   EXPECT_LT(springs.rate({}).norm(), 1e-12 * springs.start(x).norm());
@@ -31,7 +31,7 @@ TEST(MaxwellElement, IsAnElasticMembraneBeforeItForgets) {
   MaxwellElement springs = element(s);
   const double c = (dilatation / shear - 1) / 2, small = 1e-4;  // K = (1 + 2 C) G of Evans and Skalak
   const Net x = s.net + small * (stretched(s.net) - s.net);
-  springs.place(x, springs.start(s.net));
+  springs.set_state(x, springs.start(s.net));
   const Membrane elastic(s.space, s.net, EvansSkalak{shear, c});
   const Net load = elastic.load(x);
   EXPECT_LT((springs.load() - load).norm(), 3 * small * load.norm());  // what differs is of second order
@@ -43,10 +43,10 @@ TEST(MaxwellElement, LoadIsTheGradientOfTheEnergy) {
   MaxwellElement springs = element(s);
   const Net x = stretched(s.net), u = random_net(x.rows(), 3);
   const Eigen::VectorXd q = springs.start(s.net);
-  springs.place(x, q);
+  springs.set_state(x, q);
   const double expected = springs.load().cwiseProduct(u).sum(), h = 1e-5;
   const auto at = [&](double step) {
-    springs.place(x + step * u, q);
+    springs.set_state(x + step * u, q);
     return springs.energy();
   };
   EXPECT_NEAR((at(h) - at(-h)) / (2 * h) / expected, 1, 1e-8);
@@ -57,12 +57,12 @@ TEST(MaxwellElement, TurnsIntoHeatWhatItsSpringsLoseAtRest) {
   MaxwellElement springs = element(s);
   const Net x = stretched(s.net);
   const Eigen::VectorXd q = springs.start(s.net);
-  springs.place(x, q);
+  springs.set_state(x, q);
   const double heat = springs.dissipation(), h = 1e-5;
   const Eigen::VectorXd rate = springs.rate({});
   EXPECT_GT(heat, 0.1);
   const auto at = [&](double step) {
-    springs.place(x, q + step * rate);
+    springs.set_state(x, q + step * rate);
     return springs.energy();
   };
   EXPECT_NEAR((at(-h) - at(h)) / (2 * h) / heat, 1, 1e-8);
@@ -74,13 +74,13 @@ TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   MaxwellElement springs = element(s);
   const Net x = 1.1 * s.net;
   Eigen::VectorXd q = springs.start(s.net);
-  const double h = 0.01 * time_of_it, first = (springs.place(x, q), springs.energy());
-  const auto rate = [&](const Eigen::VectorXd& at) { return springs.place(x, at), springs.rate({}); };
+  const double h = 0.01 * time_of_it, first = (springs.set_state(x, q), springs.energy());
+  const auto rate = [&](const Eigen::VectorXd& at) { return springs.set_state(x, at), springs.rate({}); };
   for (int step = 0; step < 100; ++step) {  // classical Runge and Kutta's: 1e-10
     const Eigen::VectorXd k1 = rate(q), k2 = rate(q + h / 2 * k1), k3 = rate(q + h / 2 * k2), k4 = rate(q + h * k3);
     q += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   }
-  springs.place(x, q);
+  springs.set_state(x, q);
   EXPECT_NEAR(first / (dilatation / 2 * std::pow(1.21 - 1, 2) * Membrane(s.space, s.net, SurfaceTension{1}).energy(x)), 1, 1e-12);
   EXPECT_NEAR(springs.energy() / first, std::exp(-2.), 1e-9);
 }
@@ -94,7 +94,7 @@ TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
   Eigen::VectorXd q = springs.start(x);
   const double h = 1e-6;  // q lags behind the metric by T times its rate
   const Eigen::VectorXd metric_rate = (springs.start(x + h * v) - springs.start(x - h * v)) / (2 * h);
-  springs.place(x, q - fast * metric_rate);
+  springs.set_state(x, q - fast * metric_rate);
   const Membrane membrane(s.space, s.net, Materials{{{NeoHookean{1}, {}, {eta, kappa}}}, {}});
   ViscousLoad viscous(membrane);
   std::vector<int> all(s.space.elements.size());

@@ -1,0 +1,94 @@
+#include "app/surface_fields.hpp"
+
+#include <utility>
+
+namespace tanktread {
+
+SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    const Scene& scene = members[p].scene;
+    Body& body = *members[p].body;
+    if (scene.surfactant) {
+      auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *scene.surfactant, body.modulus,
+                                                               scene.surfactant->diffusivity_of(scene.flow.rate(), body.radius));
+      membrane::Surfactant* const known = surfactant.get();
+      if (body.initial_area == 0) body.initial_area = known->mass(known->start(body.initial));
+      all_.push_back({p, std::move(surfactant), known});
+    }
+    if (scene.maxwell_membrane())
+      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity(),
+                                                                    *scene.membrane.relaxation_time)});
+  }
+  if (all_.empty()) return;
+  std::vector<coupling::CoupledMotion::On> on;
+  for (const One& one : all_) on.push_back({one.particle, one.field.get()});
+  const coupling::SolverOptions& solvers = members.front().scene.solvers;
+  motion_.emplace(capsule, std::move(on), solvers.of(solvers.implicit_step));
+}
+
+const motion::State& SurfaceFields::of_shape(const motion::State& state) {
+  if (!motion_) return state;
+  shapes_ = {};
+  shapes_.time = state.time, shapes_.step = state.step, shapes_.slope_error = state.slope_error;
+  shapes_.x = shape(state.x), shapes_.frozen = shape(state.frozen);
+  for (const Net& slope : state.history) shapes_.history.push_back(shape(slope));
+  for (const motion::Place& place : state.places) shapes_.places.push_back({place.time, shape(place.x)});
+  return shapes_;
+}
+
+void SurfaceFields::put_back(const motion::State& own, motion::State& state) const {
+  if (!motion_) {
+    state = own;
+    return;
+  }
+  state.x = with_shape(state.x, own.x);
+  for (std::size_t k = 0; k < state.history.size(); ++k) state.history[k] = with_shape(state.history[k], own.history[k]);
+  for (std::size_t k = 0; k < state.places.size(); ++k) state.places[k].x = with_shape(state.places[k].x, own.places[k].x);
+}
+
+void SurfaceFields::set_state(const Net& y, double distance) {
+  if (!motion_) return;
+  if (distance > 0 && capsule_.evaluated_about(shape(y), distance)) motion_->set_fields(y);
+  else motion_->set_state(y);
+}
+
+void SurfaceFields::add_to(std::size_t p, const Net& y, Moment& now) const {
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    const One& one = all_[k];
+    if (one.particle != p) continue;
+    now.energy += one.field->energy();
+    now.dissipation += one.field->dissipation();
+    if (!one.surfactant) continue;
+    now.tension.smallest = members_[p].scene.surfactant->tension(one.surfactant->largest());
+    now.surfactant_mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;
+    now.smallest_concentration = one.surfactant->smallest(), now.largest_concentration = one.surfactant->largest();
+  }
+}
+
+double SurfaceFields::power(const Net& v) const {
+  double sum = 0;
+  for (const One& one : all_) sum += one.field->load().cwiseProduct(members_[one.particle].own(v)).sum();
+  return sum;
+}
+
+void SurfaceFields::add_to(const output::Nodes& nodes, std::vector<output::Field>& fields) const {
+  Net values = Net::Zero(capsule_.n_points(), 3);
+  bool any = false;
+  for (const One& one : all_)
+    if (one.surfactant) any = true, members_[one.particle].block.rows(values).col(0) = one.surfactant->concentration();
+  if (!any) return;
+  const Eigen::VectorXd c = nodes.values(values).col(0);
+  const std::vector<spline::Site>& sites = nodes.mesh().sites;
+  for (const One& one : all_) {
+    if (!one.surfactant) continue;
+    const spline::Block& block = members_[one.particle].block;
+    for (output::Field& field : fields)
+      if (field.name == "smallest tension" || field.name == "largest tension")
+        for (Eigen::Index i = 0; i < c.size(); ++i)
+          if (const int e = sites[static_cast<std::size_t>(i)].element - block.first_element; e >= 0 && e < block.n_elements)
+            field.values(i, 0) = members_[one.particle].scene.surfactant->tension(c[i]);
+  }
+  fields.push_back({"concentration", c});
+}
+
+}  // namespace tanktread

@@ -1,0 +1,60 @@
+#pragma once
+// Fields on the surfaces of the particles of a run, and what they add to rows and snapshots.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/member.hpp"
+#include "app/series.hpp"
+#include "coupling/coupled_motion.hpp"
+#include "membrane/maxwell_element.hpp"
+#include "membrane/surfactant.hpp"
+#include "motion/integrator.hpp"
+#include "output/nodes.hpp"
+#include "output/snapshot.hpp"
+
+namespace tanktread {
+
+/// The surfactants and Maxwell elements of all members on their present meshes. Without any, states are control nets and nothing is stored.
+class SurfaceFields {
+ public:
+  /// Members and capsule must outlive this.
+  SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule);
+
+  bool empty() const { return all_.empty(); }
+  coupling::Dynamics& dynamics() { return motion_ ? static_cast<coupling::Dynamics&>(*motion_) : capsule_; }
+  Net start(const Net& shape) const { return motion_ ? motion_->start(shape) : shape; }
+  Net shape(const Net& y) const { return motion_ && y.rows() > 0 ? motion_->shape(y) : y; }
+  Net with_shape(const Net& y, const Net& shape) const { return motion_ && y.rows() > 0 ? motion_->with_shape(y, shape) : shape; }
+
+  /// Returns time, slopes and shapes of a state without the coefficients of fields; the state itself if there are none. Valid until the next call.
+  const motion::State& of_shape(const motion::State& state);
+  /// Puts shapes and slopes of `own`, a copy of of_shape(), back into the state.
+  void put_back(const motion::State& own, motion::State& state) const;
+
+  /// Passes the state to capsule and fields; to the fields only if the capsule was evaluated within `distance` of it.
+  void set_state(const Net& y, double distance = 0);
+
+  /// Adds what the fields of particle p contribute to its row, at the state set last; `y` is that state.
+  void add_to(std::size_t p, const Net& y, Moment& now) const;
+  /// Returns the power of all fields' loads if the material moves by v.
+  double power(const Net& v) const;
+  /// Adds snapshot fields, and corrects the tensions of interfaces with surfactant.
+  void add_to(const output::Nodes& nodes, std::vector<output::Field>& fields) const;
+
+ private:
+  struct One {
+    std::size_t particle;
+    std::unique_ptr<membrane::Field> field;
+    membrane::Surfactant* surfactant = nullptr;  // the field, if it is one
+  };
+
+  const std::vector<Member>& members_;
+  coupling::Capsule& capsule_;
+  std::vector<One> all_;
+  std::optional<coupling::CoupledMotion> motion_;
+  motion::State shapes_;
+};
+
+}  // namespace tanktread

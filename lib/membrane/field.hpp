@@ -1,0 +1,53 @@
+#pragma once
+// Interface of fields: unknowns on a surface that evolve with it and contribute to its load.
+
+#include <Eigen/Core>
+
+#include "base/types.hpp"
+#include "surface/symmetry.hpp"
+
+namespace tanktread::membrane {
+
+/// A field with the coefficients q on a surface with the control net x, for example a surfactant concentration or a viscoelastic strain. q is scaled
+/// to order 1. The slip is the velocity of the fluid minus that of the control points, as control values of shape (N, 3); an empty slip is 0. Uses no
+/// MPI: every rank holds the whole field.
+class Field {
+ public:
+  virtual ~Field() = default;
+
+  virtual Eigen::Index size() const = 0;                      ///< number of coefficients
+  virtual Eigen::VectorXd start(const Net& shape) const = 0;  ///< q at the start of a run with this shape
+
+  /// Sets the shape x and the coefficients q to which load(), rate() and energy() refer. Throws RunFailure if the state is not admissible.
+  virtual void set_state(const Net& x, const Eigen::VectorXd& q) = 0;
+
+  virtual Net load() const = 0;                              ///< virtual work (3.6), shape (N, 3), added to dE/dx
+  virtual Eigen::VectorXd rate(const Net& slip) const = 0;   ///< dq/dt
+  virtual double energy() const = 0;                         ///< stored in the field
+  virtual double dissipation() const { return 0; }           ///< power that the field turns into heat in the membrane, not in the surface flow
+
+  /// Keeps the state set last, and the slip there, for the four functions below.
+  virtual void linearise(const Net& slip) = 0;
+
+  /// Returns the change of the field's values (the concentration, the strain) for changes of x and q.
+  virtual Eigen::VectorXd value_change(const Net& dx, const Eigen::VectorXd& dq) const = 0;
+  virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
+  virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
+
+  /// Keeps the shape for solve(), in addition to what linearise() keeps.
+  virtual void freeze(const Net& /*x*/) {}
+
+  /// Returns an approximation of (1 - shift A)^-1 r, A = d(rate)/dq.
+  virtual Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const = 0;
+
+  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that sums that J conserves agree with those of r to round-off.
+  virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
+
+  /// Returns the rate of q if the control points slide along the surface with this velocity and nothing else moves, at the state set last.
+  virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
+
+  /// Makes q invariant under the symmetry, to which the state conforms but for round-off.
+  virtual void symmetrise(const surface::Symmetry&, Eigen::VectorXd& /*q*/) const {}
+};
+
+}  // namespace tanktread::membrane
