@@ -52,7 +52,7 @@ class Deforming : public ParticleSystem {
   bool resume(Resumed& resumed) override {
     const bool another_mesh = restore(resumed.checkpoint, members_);
     if (another_mesh) arrange(members_);
-    const Net x = resumed.state.x.topRows(members_.back().block.first_point + members_.back().block.n_points);
+    const Net x = resumed.state.x.topRows(n_points());
     const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
     if (another_mesh || another_symmetry) settle(x);
     if (resumed.state.frozen.size() > 0) dynamics().freeze(resumed.state.frozen);
@@ -106,17 +106,21 @@ class Deforming : public ParticleSystem {
     };
     if (std::ranges::none_of(members_, due)) return false;
     const auto clock = phases_.time("adaptation");
-    placed_ = capsule_->rigid_at(state.x);
+    fields_->set_state(state.x);
+    motion::State own = fields_->of_shape(state);
+    placed_ = capsule_->rigid_at(own.x);
     std::vector<Net> loads;
-    for (const Member& member : members_) loads.push_back(member.own(capsule_->load(state.x)));
+    for (const Member& member : members_) loads.push_back(member.own(capsule_->load(own.x)));
     for (std::size_t p = 0; p < members_.size(); ++p)
-      if (due(members_[p])) adapt(p, loads[p], state, totals);
+      if (due(members_[p])) adapt(p, loads[p], own, totals);
     if (before_.empty()) return false;
-    settle(state.x);
-    capsule_->restore_volume(state.x);
-    if (!state.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
+    const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
+    settle(own.x);
+    capsule_->restore_volume(own.x);
+    if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
     press();
-    if (state.frozen.size() > 0) capsule_->freeze(state.frozen);
+    take_over(*fields, std::move(own), state);
+    if (state.frozen.size() > 0) dynamics().freeze(state.frozen);
     return true;
   }
 
@@ -124,7 +128,8 @@ class Deforming : public ParticleSystem {
     if (before_.empty()) return;
     for (auto& [p, body] : before_) members_[p].body = std::move(body);
     before_.clear();
-    settle(x);
+    arrange(members_);
+    settle(x.topRows(n_points()));
   }
 
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
@@ -191,6 +196,24 @@ class Deforming : public ParticleSystem {
   const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
   const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
 
+  /// Control points of all particles on their present meshes.
+  Eigen::Index n_points() const { return members_.back().block.first_point + members_.back().block.n_points; }
+
+  /// The state on new meshes, from its shapes there and the fields that it had. Slopes of fields do not go to another mesh.
+  void take_over(SurfaceFields& fields, motion::State own, motion::State& state) {
+    if (fields_->empty()) {
+      state = std::move(own);
+      return;
+    }
+    std::vector<const Body*> bodies(members_.size(), nullptr);
+    for (const auto& [p, body] : before_) bodies[p] = body.get();
+    const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? fields_->transferred(fields, y, shape, bodies) : Net(); };
+    const motion::State old = std::exchange(state, motion::State());
+    state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
+    state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen);
+    for (std::size_t k = 0; k < old.places.size(); ++k) state.places.push_back({old.places[k].time, transfer(old.places[k].x, own.places[k].x)});
+  }
+
   void add_power(const motion::State& state, Moment& whole) {
     const auto clock = phases_.time("power balance");
     if (!power_)
@@ -230,7 +253,7 @@ class Deforming : public ParticleSystem {
       around = tube(scene_, body(), phases_);
     power_.reset(), fields_.reset(), capsule_.reset();
     capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
-    fields_.emplace(members_, *capsule_);
+    fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
   /// Returns the velocity of the fluids on the surface. In a tube, whose response depends on it, the slope is evaluated if it errs by more than
@@ -430,7 +453,7 @@ class Deforming : public ParticleSystem {
   std::vector<Member> members_;
   std::unique_ptr<Body> all_;  // several particles
   std::unique_ptr<coupling::Capsule> capsule_;
-  std::optional<SurfaceFields> fields_;
+  std::unique_ptr<SurfaceFields> fields_;
   motion::State pictured_;  // shapes of the latest snapshot, which its fields refer to
   std::optional<coupling::PowerBalance> power_;  // made when first asked for
   coupling::Work work_;                     // of systems on earlier meshes

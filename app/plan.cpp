@@ -100,6 +100,11 @@ std::string membrane_line(const Scene& scene) {
   return load + " per current area (3.6), mass matrix factored every evaluation";
 }
 
+std::string surfactant_line(const Scene& scene, int n_points) {
+  return formatted("%s equation of state, tension %.6g of that of the clean interface at the start: %d unknowns",
+                   scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1), n_points);
+}
+
 std::string mesh_line(const Scene& scene) {
   if (!scene.adaptation.enabled) return "fixed";
   return std::string("refined as the particle deforms") + (scene.adaptation.indicator == "error" ? ", by estimated errors (1.5)" : " (P-37)");
@@ -247,9 +252,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   add_fluid(lines, scene, body, ranks);
   lines.emplace_back("viscosity", viscosity_line(scene, n, tree));
   lines.emplace_back("membrane", membrane_line(scene));
-  if (scene.surfactant)
-    lines.emplace_back("surfactant", formatted("%s equation of state, tension %.6g of that of the clean interface at the start: %d unknowns",
-                                               scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1), n));
+  if (scene.surfactant) lines.emplace_back("surfactant", surfactant_line(scene, n));
   lines.emplace_back("deformation", body.plane.description());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   lines.emplace_back("far sum", far_sum_line(scene, tree));

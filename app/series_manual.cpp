@@ -67,6 +67,7 @@ std::string owners(const Series& one) {
   std::string list;
   for (const auto& [owner, text] : all)
     if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);
+  if (one.needs == Needs::surfactant) return "drop with surfactant";
   if (one.needs == Needs::tube) return list + "; in a tube";
   if (one.needs == Needs::channel) return list + "; in a channel";
   if (one.needs == Needs::wall) return list + "; beside a plane wall";

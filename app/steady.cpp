@@ -221,9 +221,9 @@ class SteadyRun {
     const auto clock = phases_.time("set-up");
     auto made = std::make_shared<System>(at_parameters(scene_, request_.deck_text, parameters), ranks_, phases_);
     if (mesh_) carry_to(*made, *mesh_);
-    if (made->particle->body().space.n_points != state_.x.rows())
-      throw UserError("Continuation is of one mesh, but " + at(parameters) + formatted(" has %d control points in place of %d.",
-                      made->particle->body().space.n_points, static_cast<int>(state_.x.rows())));
+    const int points = made->particle->body().space.n_points, expected = system_->particle->body().space.n_points;
+    if (points != expected)
+      throw UserError("Continuation is of one mesh, but " + at(parameters) + formatted(" has %d control points in place of %d.", points, expected));
     systems_.emplace_front(parameters, made);
     if (systems_.size() > 3) drop_oldest();
     return made;

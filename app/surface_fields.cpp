@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "spline/locate.hpp"
+
 namespace tanktread {
 
 SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
@@ -44,6 +46,25 @@ void SurfaceFields::put_back(const motion::State& own, motion::State& state) con
   state.x = with_shape(state.x, own.x);
   for (std::size_t k = 0; k < state.history.size(); ++k) state.history[k] = with_shape(state.history[k], own.history[k]);
   for (std::size_t k = 0; k < state.places.size(); ++k) state.places[k].x = with_shape(state.places[k].x, own.places[k].x);
+}
+
+Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
+  if (!motion_) return shape;
+  before.motion_->set_fields(y);
+  Net now = motion_->start(shape);
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    const std::size_t p = all_[k].particle;
+    const Body* const old = bodies[p];
+    if (!old) {
+      motion_->set_coefficients(now, k, before.motion_->coefficients(y, k));
+      continue;
+    }
+    const spline::Space &from = old->nested(), &to = members_[p].body->nested();
+    const spline::Locator locator(from);
+    const auto site = [&](const spline::Site& here) { return locator(spline::place(to, here)); };
+    motion_->set_coefficients(now, k, all_[k].field->transferred(*before.all_[k].field, members_[p].own(shape), site));
+  }
+  return now;
 }
 
 void SurfaceFields::set_state(const Net& y, double distance) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "app/member.hpp"
@@ -32,6 +33,10 @@ class SurfaceFields {
   const motion::State& of_shape(const motion::State& state);
   /// Puts shapes and slopes of `own`, a copy of of_shape(), back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
+
+  /// Returns the state with this shape and the fields of `before`, which has other meshes and the state y. `bodies`: of each particle, what it had
+  /// before; null if its mesh is the same.
+  Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
 
   /// Passes the state to capsule and fields; to the fields only if the capsule was evaluated within `distance` of it.
   void set_state(const Net& y, double distance = 0);

@@ -182,13 +182,21 @@ void CoupledMotion::improve_start(Net& y, const Net& before, double shift) {
   y.topRows(n_) = x;
 }
 
-std::vector<Net> CoupledMotion::relabellings(const Net& y) {
+Net CoupledMotion::moved(const Net& y, const RigidMotion& motion) const {
+  return with_shape(Net::Zero(y.rows(), 3), rigid_velocity(shape(y), motion, Vec3::Zero()));
+}
+
+Net CoupledMotion::slid(const Net& y, const Net& mesh_velocity) {
   set_fields(y);
+  Net rate = with_shape(Net::Zero(rows_, 3), mesh_velocity);
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    set_coefficients(rate, k, blocks_[k].on.field->relabelled(blocks_[k].rows.rows(mesh_velocity)));
+  return rate;
+}
+
+std::vector<Net> CoupledMotion::relabellings(const Net& y) {
   std::vector<Net> all;
-  for (const Net& slide : capsule_.relabellings(shape(y))) {
-    Net& whole = all.emplace_back(with_shape(Net::Zero(rows_, 3), slide));
-    for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(whole, k, blocks_[k].on.field->relabelled(blocks_[k].rows.rows(slide)));
-  }
+  for (const Net& slide : capsule_.relabellings(shape(y))) all.push_back(slid(y, slide));
   return all;
 }
 

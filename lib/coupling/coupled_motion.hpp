@@ -55,7 +55,9 @@ class CoupledMotion : public Dynamics {
   void restore_volume(Net& y) override;
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& y) override;
-  Net moved(const Net& y, const RigidMotion& motion) const override { return with_shape(Net::Zero(y.rows(), 3), rigid_velocity(shape(y), motion, Vec3::Zero())); }
+  Net moved(const Net& y, const RigidMotion& motion) const override;
+  Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
+  Net slid(const Net& y, const Net& mesh_velocity) override;
   Net symmetric(Net rate) const override;
   double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
   /// The largest of the capsule's norm and the root mean square changes of the fields' coefficients.

@@ -1,9 +1,12 @@
 #pragma once
 // Interface of fields: unknowns on a surface that evolve with it and contribute to its load.
 
+#include <functional>
+
 #include <Eigen/Core>
 
 #include "base/types.hpp"
+#include "spline/space.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::membrane {
@@ -45,6 +48,10 @@ class Field {
 
   /// Returns the rate of q if the control points slide along the surface with this velocity and nothing else moves, at the state set last.
   virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
+
+  /// Returns q on this space with the shape x, transferred from a field of the same kind on another mesh of the surface, whose state was set. The
+  /// function maps a site of this space to the same place in the other one.
+  virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
   /// Makes q invariant under the symmetry, to which the state conforms but for round-off.
   virtual void symmetrise(const surface::Symmetry&, Eigen::VectorXd& /*q*/) const {}

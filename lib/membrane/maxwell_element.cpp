@@ -67,11 +67,17 @@ MaxwellElement::MaxwellElement(const spline::Space& space, const Net& initial, i
   });
 }
 
+/// g^11, g^12, g^22 of the surface x at each Gauss point.
+Eigen::MatrixX3d MaxwellElement::raised_metric(const Net& x) const {
+  Eigen::MatrixX3d all(unit_.rows(), 3);
+  each_point(x, [&](std::size_t, int, int, Eigen::Index row, const Metric& g) { all.row(row) = g.raised; });
+  return all;
+}
+
 Eigen::VectorXd MaxwellElement::start(const Net& shape) const {
+  const Eigen::MatrixX3d raised = raised_metric(shape);
   Eigen::VectorXd q(size());
-  each_point(shape, [&](std::size_t, int, int, Eigen::Index row, const Metric& g) {
-    q.segment<3>(3 * row) = g.raised.cwiseQuotient(unit_.row(row).transpose());
-  });
+  for (Eigen::Index row = 0; row < raised.rows(); ++row) q.segment<3>(3 * row) = raised.row(row).cwiseQuotient(unit_.row(row));
   return q;
 }
 

@@ -43,10 +43,15 @@ class MaxwellElement : public Field {
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dq, const Net&) const override;
   Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< exact: one 3 x 3 system per Gauss point
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
+  /// Interpolates the logarithm of C in the orthonormal frames of the surface, so that C stays positive definite.
+  Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
  private:
   /// Metric, strain and tangents at a Gauss point.
   struct Point;
+  int order(std::size_t element) const;
+  Eigen::MatrixX3d raised_metric(const Net& x) const;
+  Eigen::MatrixX3d logarithms() const;
   template <class Use>
   void each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const;
   template <class Use>

@@ -115,7 +115,7 @@ void Options::declare(deck::Section& section) {
               "kappa_s: resistance of the membrane or interface to the rate at which its area changes");
   section.key("relaxation time", relaxation_time, deck::positive(), "time",
               "T: the membrane forgets within it what its viscosity resists: springs eta_s/T and kappa_s/T in series with the dashpots, a Maxwell "
-              "element (3.23) beside the elastic membrane; if not given, the dashpots are alone (Kelvin and Voigt). For explicit schemes");
+              "element (3.23) beside the elastic membrane; if not given, the dashpots are alone (Kelvin and Voigt)");
   section.optional_section("forces", forces, "forces on patches of the membrane, none without this list");
 }
 

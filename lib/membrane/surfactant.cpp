@@ -50,7 +50,7 @@ std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, d
 }
 
 void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
-  x_ = x;
+  x_ = x, q_ = q;
   Net content = Net::Zero(x.rows(), 3);  // of which the solver takes three columns
   content.col(0) = share_.cwiseProduct(q);
   concentration_ = solver_.solve(mass_.update(x), content).col(0);

@@ -56,6 +56,9 @@ class Surfactant : public Field {
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   void symmetrise(const surface::Symmetry& symmetry, Eigen::VectorXd& q) const override;
 
+  /// The concentration is sampled at the Gauss points and scaled to the same mass.
+  Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
+
   /// Returns q for which the concentration on the surface x has the control values c.
   Eigen::VectorXd contents(const Net& x, const Eigen::VectorXd& c) const;
 
@@ -85,6 +88,7 @@ class Surfactant : public Field {
   mutable MassSolver solver_;
   Eigen::VectorXd share_, concentration_;  // int N_A dG of the initial surface
   double smallest_ = 1, largest_ = 1;
+  Eigen::VectorXd q_;                                     // set last
   Net x_, known_x_;                                       // shapes set last and linearised at
   std::vector<ElementPoints> known_;                      // as linearised
   std::vector<std::vector<double>> known_slip_;           // at the Gauss points of each element, three fields; empty without slip

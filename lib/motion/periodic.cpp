@@ -35,8 +35,8 @@ void PeriodicOptions::declare(deck::Section& section) {
 
 namespace {
 
-Net turned_back(const Net& x, double degrees) {
-  return x * Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix();
+Net turned_back(const coupling::Dynamics& dynamics, const Net& x, double degrees) {
+  return dynamics.turned(x, Eigen::AngleAxisd(-degrees * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix());
 }
 
 /// A run from x, until `done` says so after a step, or `most` is over.
@@ -67,7 +67,7 @@ ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std:
 }
 
 Net ReturnMap::operator()(const Net& x) {
-  const auto ahead = [&](const Net& y) { return beyond(turned_back(y, options_.turn)); };
+  const auto ahead = [&](const Net& y) { return beyond(turned_back(dynamics_, y, options_.turn)); };
   Net found;
   const double most = 1.5 * options_.period;
   run(dynamics_, time_, nox_, x, most, [&](const State& before, const State& after) {
@@ -80,7 +80,7 @@ Net ReturnMap::operator()(const Net& x) {
       (ahead(within.place(middle)) < 0 ? early : late) = middle;
     }
     period_ = late;
-    found = turned_back(within.place(late), options_.turn);
+    found = turned_back(dynamics_, within.place(late), options_.turn);
     return true;
   });
   if (found.size() == 0)
@@ -92,7 +92,7 @@ Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const s
                   const PeriodicOptions& options, Net x) {
   constexpr int settling = 3;
   for (int k = 0; k < settling; ++k)
-    x = turned_back(run(dynamics, time, nox, x, options.period, [](const State&, const State&) { return false; }).x, options.turn);
+    x = turned_back(dynamics, run(dynamics, time, nox, x, options.period, [](const State&, const State&) { return false; }).x, options.turn);
   return x;
 }
 

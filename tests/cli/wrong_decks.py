@@ -106,8 +106,6 @@ SETTINGS = [
     (["Particle/motion=falling"], ["Particle/motion", "deforming", "prescribed", "free", "falling"]),
     (["Membrane/shear modulus=1"], ["Membrane/capillary number", "Membrane/shear modulus", "contradict"]),
     (["Interface/surfactant/elasticity number=0.2", "Time/scheme=rkc2"], ["Interface/surfactant", "neo-Hookean", "drop"]),
-    (["Interface/surfactant/elasticity number=0.2", "Membrane/law=surface tension", "Time/scheme=tr-bdf2"],
-     ["Interface/surfactant", "Time/scheme `tr-bdf2`", "rkc2"]),
     (["Interface/surfactant/elasticity number=0", "Membrane/law=surface tension"], ["Interface/surfactant/elasticity number", "positive", "0"]),
     (["Interface/surfactant/elasticity number=1.2", "Membrane/law=surface tension", "Time/scheme=rkc2"],
      ["Interface/surfactant/elasticity number 1.2", "no surface tension", "-0.2"]),

@@ -1,0 +1,115 @@
+// Fields on another mesh of their surface.
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "membrane/maxwell_element.hpp"
+#include "membrane/surfactant.hpp"
+#include "membrane/surfactant_kernel.hpp"
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+
+namespace tanktread::membrane {
+
+Eigen::VectorXd Surfactant::transferred(const Field& field, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const {
+  const auto& from = static_cast<const Surfactant&>(field);
+  Eigen::VectorXd contents = Eigen::VectorXd::Zero(size());
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const spline::Element& element = space_.elements[e];
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(static_cast<int>(std::lround(std::sqrt(elements_[e].n))));
+    for (Eigen::Index q = 0; q < rule.size(); ++q) {
+      const spline::Basis here = spline::basis(element, rule.s[q], rule.t[q]);
+      Vec3 s = Vec3::Zero(), t = Vec3::Zero();
+      for (std::size_t a = 0; a < element.points.size(); ++a) {
+        s += here.s[static_cast<Eigen::Index>(a)] * x.row(element.points[a]).transpose();
+        t += here.t[static_cast<Eigen::Index>(a)] * x.row(element.points[a]).transpose();
+      }
+      const spline::Site there = site({static_cast<int>(e), rule.s[q], rule.t[q]});
+      const spline::Element& other = from.space_.elements[static_cast<std::size_t>(there.element)];
+      const spline::Basis basis = spline::basis(other, there.s, there.t);
+      double c = 0;
+      for (std::size_t a = 0; a < other.points.size(); ++a) c += basis.value[static_cast<Eigen::Index>(a)] * from.concentration_[other.points[a]];
+      const double content = rule.weights[q] * s.cross(t).norm() * c;
+      for (std::size_t a = 0; a < element.points.size(); ++a) contents[element.points[a]] += content * here.value[static_cast<Eigen::Index>(a)];
+    }
+  }
+  return (from.mass(from.q_) / contents.sum() * contents).cwiseQuotient(share_);
+}
+
+namespace {
+
+using Symmetric = Eigen::Vector3d;  // components 11, 12, 22
+
+Eigen::Matrix2d matrix(const Symmetric& a) { return (Eigen::Matrix2d() << a[0], a[1], a[1], a[2]).finished(); }
+
+/// A function of a symmetric matrix by its eigenvalues.
+template <class Function>
+Symmetric function_of(const Eigen::Matrix2d& a, const Function& f) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> pairs(a);
+  const Eigen::Matrix2d result = pairs.eigenvectors() * pairs.eigenvalues().unaryExpr(f).asDiagonal() * pairs.eigenvectors().transpose();
+  return {result(0, 0), result(0, 1), result(1, 1)};
+}
+
+/// L of g = L L^T, from the contravariant metric. Orthonormal frames turn with L; they do not depend on the size of the element.
+Eigen::Matrix2d frame(const Symmetric& raised) { return matrix(raised).inverse().llt().matrixL(); }
+
+/// Values of the Lagrange polynomials on these nodes at s.
+Eigen::VectorXd lagrange(const Eigen::VectorXd& nodes, double s) {
+  Eigen::VectorXd values = Eigen::VectorXd::Ones(nodes.size());
+  for (Eigen::Index i = 0; i < nodes.size(); ++i)
+    for (Eigen::Index j = 0; j < nodes.size(); ++j)
+      if (j != i) values[i] *= (s - nodes[j]) / (nodes[i] - nodes[j]);
+  return values;
+}
+
+}  // namespace
+
+/// Gauss points per direction of an element.
+int MaxwellElement::order(std::size_t element) const {
+  const Eigen::Index end = element + 1 < first_.size() ? first_[element + 1] : unit_.rows();
+  return static_cast<int>(std::lround(std::sqrt(static_cast<double>(end - first_[element]))));
+}
+
+/// log(L^T C L) at each Gauss point of the state set last.
+Eigen::MatrixX3d MaxwellElement::logarithms() const {
+  Eigen::MatrixX3d all(unit_.rows(), 3);
+  const Eigen::MatrixX3d raised = raised_metric(x_);
+  for (Eigen::Index row = 0; row < raised.rows(); ++row) {
+    const Eigen::Matrix2d l = frame(raised.row(row)), c = matrix(q_.segment<3>(3 * row).cwiseProduct(unit_.row(row).transpose()));
+    all.row(row) = function_of(l.transpose() * c * l, [](double value) { return std::log(value); });
+  }
+  return all;
+}
+
+Eigen::VectorXd MaxwellElement::transferred(const Field& field, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const {
+  const auto& from = static_cast<const MaxwellElement&>(field);
+  const Eigen::MatrixX3d known = from.logarithms();
+  Eigen::MatrixX3d here(unit_.rows(), 3);
+  for (std::size_t e = 0; e < first_.size(); ++e) {
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(order(e));
+    for (Eigen::Index q = 0; q < rule.size(); ++q) {
+      const spline::Site there = site({static_cast<int>(e), rule.s[q], rule.t[q]});
+      const auto other = static_cast<std::size_t>(there.element);
+      const int n = from.order(other);
+      const Eigen::VectorXd nodes = quadrature::tensor_gauss(n).s.head(n);
+      const Eigen::VectorXd by_s = lagrange(nodes, there.s), by_t = lagrange(nodes, there.t);
+      Symmetric sum = Symmetric::Zero();
+      for (int k = 0; k < n * n; ++k) sum += by_s[k % n] * by_t[k / n] * known.row(from.first_[other] + k).transpose();
+      here.row(first_[e] + q) = sum;
+    }
+  }
+  Eigen::VectorXd result(size());
+  const Eigen::MatrixX3d raised = raised_metric(x);
+  for (Eigen::Index row = 0; row < raised.rows(); ++row) {
+    const Eigen::Matrix2d back = frame(raised.row(row)).inverse();
+    const Eigen::Matrix2d strain = matrix(function_of(matrix(here.row(row)), [](double value) { return std::exp(value); }));
+    const Eigen::Matrix2d c = back.transpose() * strain * back;
+    result.segment<3>(3 * row) = Symmetric(c(0, 0), c(0, 1), c(1, 1)).cwiseQuotient(unit_.row(row).transpose());
+  }
+  return result;
+}
+
+}  // namespace tanktread::membrane
