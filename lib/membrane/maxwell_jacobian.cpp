@@ -11,7 +11,7 @@ namespace tanktread::membrane {
 
 namespace {
 
-constexpr int most_points = max_order * max_order;
+constexpr int gauss_room = max_order * max_order;
 
 /// Components 11, 12, 22 of a symmetric tensor, and their product with another one of the opposite position.
 using Symmetric = Eigen::Vector3d;
@@ -76,7 +76,7 @@ template <class Use>
 void MaxwellElement::each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const {
   for (const Group& group : groups_)
     for (const Batch& batch : group.batches) {
-      Pack a[6 * most_points], da[6 * most_points];
+      Pack a[6 * gauss_room], da[6 * gauss_room];
       tangents(group, batch, known_x_, a);
       tangents(group, batch, dx, da);
       for (int q = 0; q < group.n_gauss(); ++q)
@@ -103,7 +103,7 @@ void MaxwellElement::linearise(const Net&) {
 
 Net MaxwellElement::load_change(const Net& dx, const Eigen::VectorXd& dq) const {
   Net d = Net::Zero(space_.n_points, 3);
-  Pack p[6 * most_points] = {};
+  Pack p[6 * gauss_room] = {};
   const int lanes = pack_lanes();
   each_change(dx, dq, [&](const Group& group, const Batch& batch, int q, int l, Eigen::Index, const Point& at, const Point::Change& change,
                           const Vec3& ds, const Vec3& dt) {

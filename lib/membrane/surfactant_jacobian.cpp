@@ -10,7 +10,7 @@ namespace tanktread::membrane {
 
 namespace {
 
-constexpr std::size_t most_points = 144, most_functions = 64;  // of an element
+constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // of an element
 constexpr double shift_ratio = 1.25;                           // of neighbouring shifts for which solve() has factors
 
 /// Returns the neighbouring value in a geometric sequence, so that factors depend on the present shift only.
@@ -32,8 +32,8 @@ Net own_rows(const std::vector<int>& points, const Net& net) {
 
 /// Changes at the Gauss points of an element: tangents and concentration, three fields each and one; div = (dJ)/J; contravariant metric.
 struct Surfactant::MetricChange {
-  double s[3 * most_points], t[3 * most_points], c[most_points], c_s[most_points], c_t[most_points];
-  double div[most_points], g11[most_points], g12[most_points], g22[most_points];
+  double s[3 * most_gauss_points], t[3 * most_gauss_points], c[most_gauss_points], c_s[most_gauss_points], c_t[most_gauss_points];
+  double div[most_gauss_points], g11[most_gauss_points], g12[most_gauss_points], g22[most_gauss_points];
 };
 
 /// Calls use(element, its points as linearised, change) for every element. Without `dc` the concentration does not change.
@@ -85,7 +85,7 @@ Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& d
   Net content = Net::Zero(space_.n_points, 3);  // the solver has three columns
   content.col(0) = share_.cwiseProduct(dq);
   each_change(dx, nullptr, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
-    double spread[most_points], none[most_points] = {}, rows[most_functions];
+    double spread[most_gauss_points], none[most_gauss_points] = {}, rows[functions_of_element];
     for (int q = 0; q < at.n; ++q) spread[q] = at.area()[q] * at.c[static_cast<std::size_t>(q)] * change.div[q];
     test(1, at.n, at.functions, at.value.data(), at.value.data(), spread, none, rows);
     const std::vector<int>& points = space_.elements[e].points;
@@ -97,7 +97,7 @@ Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& d
 Net Surfactant::load_change(const Net& dx, const Eigen::VectorXd& dc) const {
   Net d = Net::Zero(space_.n_points, 3);
   each_change(dx, &dc, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
-    double along_s[3 * most_points], along_t[3 * most_points], rows[3 * most_functions];
+    double along_s[3 * most_gauss_points], along_t[3 * most_gauss_points], rows[3 * functions_of_element];
     for (int q = 0; q < at.n; ++q) {
       const double c = at.c[static_cast<std::size_t>(q)], area = clean_tension_ * at.area()[q], less = options_.tension(c) - 1;
       const double more = options_.tension_slope(c) * change.c[q] + less * change.div[q];
@@ -119,7 +119,7 @@ Eigen::VectorXd Surfactant::rate_change(const Net& dx, const Eigen::VectorXd& dc
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   each_change(dx, &dc, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
     const std::vector<int>& points = space_.elements[e].points;
-    double w[3 * most_points] = {}, dw[3 * most_points] = {}, along_s[most_points], along_t[most_points], rows[most_functions];
+    double w[3 * most_gauss_points] = {}, dw[3 * most_gauss_points] = {}, along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
     if (!known_slip_.empty()) std::ranges::copy(known_slip_[e], w);
     if (slip_change.rows() > 0) sample(3, at.n, at.functions, at.value.data(), own_rows(points, slip_change).data(), dw);
     for (int q = 0; q < at.n; ++q) {
@@ -155,7 +155,7 @@ Eigen::SparseMatrix<double> Surfactant::stiffness() const {
     const ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
     for (std::size_t b = 0; b < points.size(); ++b) {
-      double along_s[most_points], along_t[most_points], rows[most_functions];
+      double along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
       for (int q = 0; q < at.n; ++q) {
         const std::size_t place = b * static_cast<std::size_t>(at.n) + static_cast<std::size_t>(q);
         const auto [up_s, up_t] = at.raised(q, at.by_s[place], at.by_t[place]);
