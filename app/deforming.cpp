@@ -15,6 +15,7 @@
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
 #include "app/plane_wall.hpp"
+#include "app/snapshot_fields.hpp"
 #include "app/surface_fields.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
@@ -119,7 +120,9 @@ class Deforming : public ParticleSystem {
     capsule_->restore_volume(own.x);
     if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
     press();
-    take_over(*fields, std::move(own), state);
+    std::vector<const Body*> bodies(members_.size(), nullptr);
+    for (const auto& [p, body] : before_) bodies[p] = body.get();
+    state = fields_->transferred(*fields, state, std::move(own), bodies);
     if (state.frozen.size() > 0) dynamics().freeze(state.frozen);
     return true;
   }
@@ -189,7 +192,12 @@ class Deforming : public ParticleSystem {
     fields_->set_state(whole_state.x);
     const Net load = capsule_->load(state.x);
     const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
-    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) { return fields(nodes, state.x, load, velocity); }};
+    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
+              std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
+              fields_->add_to(nodes, fields);
+              if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, state.x)});
+              return fields;
+            }};
   }
 
  private:
@@ -198,21 +206,6 @@ class Deforming : public ParticleSystem {
 
   /// Control points of all particles on their present meshes.
   Eigen::Index n_points() const { return members_.back().block.first_point + members_.back().block.n_points; }
-
-  /// The state on new meshes, from its shapes there and the fields that it had. Slopes of fields do not go to another mesh.
-  void take_over(SurfaceFields& fields, motion::State own, motion::State& state) {
-    if (fields_->empty()) {
-      state = std::move(own);
-      return;
-    }
-    std::vector<const Body*> bodies(members_.size(), nullptr);
-    for (const auto& [p, body] : before_) bodies[p] = body.get();
-    const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? fields_->transferred(fields, y, shape, bodies) : Net(); };
-    const motion::State old = std::exchange(state, motion::State());
-    state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
-    state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen);
-    for (std::size_t k = 0; k < old.places.size(); ++k) state.places.push_back({old.places[k].time, transfer(old.places[k].x, own.places[k].x)});
-  }
 
   void add_power(const motion::State& state, Moment& whole) {
     const auto clock = phases_.time("power balance");
@@ -401,50 +394,6 @@ class Deforming : public ParticleSystem {
          formatted(
              "refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
              change.change));
-  }
-
-  /// `velocity`: of the fluids, or empty.
-  std::vector<output::Field> fields(const output::Nodes& nodes, const Net& x, const Net& load, const Net& velocity) const {
-    const auto n = static_cast<Eigen::Index>(nodes.mesh().sites.size());
-    Net traction = nodes.values(load);
-    std::vector<output::Field> fields{{"load", traction}};
-    Eigen::MatrixX2d tensions(n, 2);
-    Eigen::VectorXd curvature(n), particle(n);
-    nodes.each_node(body().unstressed, x, [&](Eigen::Index i, const surface::Jet& before, const surface::Jet& now) {
-      const std::size_t p = particle_of(nodes.mesh().sites[static_cast<std::size_t>(i)].element);
-      if (load_measure(members_[p].scene) == stokes::Measure::reference) traction.row(i) *= surface::jacobian(before) / surface::jacobian(now);
-      if (members_[p].scene.particle.rigid())
-        tensions.row(i).setZero();
-      else
-        tensions.row(i) = membrane::tensions(members_[p].body->law, std::span(&before, 1), std::span(&now, 1));
-      curvature[i] = surface::mean_curvature(now);
-      particle[i] = static_cast<double>(p + 1);
-    });
-    fields.push_back({"traction", traction});
-    fields.push_back({"displacement", nodes.values(x - body().unstressed)});
-    if (velocity.size() > 0) fields.push_back({"velocity", nodes.values(velocity)});
-    fields.push_back({"smallest tension", tensions.col(0)});
-    fields.push_back({"largest tension", tensions.col(1)});
-    fields.push_back({"mean curvature", curvature});
-    if (all_) fields.push_back({"particle", particle});
-    fields_->add_to(nodes, fields);
-    if (capsule_->cell()) fields.push_back({"into cell", into_cell(nodes, x)});
-    return fields;
-  }
-
-  /// What takes each particle from where it has come to into the cell around the origin, at its nodes.
-  output::Rows into_cell(const output::Nodes& nodes, const Net& x) const {
-    std::vector<Vec3> of_particles;
-    for (const Member& member : members_) of_particles.push_back(-capsule_->cell()->shift(member.block.rows(x).colwise().mean().transpose()));
-    const std::vector<spline::Site>& sites = nodes.mesh().sites;
-    output::Rows shifts(static_cast<Eigen::Index>(sites.size()), 3);
-    for (Eigen::Index i = 0; i < shifts.rows(); ++i) shifts.row(i) = of_particles[particle_of(sites[static_cast<std::size_t>(i)].element)];
-    return shifts;
-  }
-
-  std::size_t particle_of(int element) const {
-    const auto after = std::ranges::upper_bound(members_, element, {}, [](const Member& member) { return member.block.first_element; });
-    return static_cast<std::size_t>(after - members_.begin()) - 1;
   }
 
   const Scene& scene_;

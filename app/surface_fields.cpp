@@ -48,8 +48,18 @@ void SurfaceFields::put_back(const motion::State& own, motion::State& state) con
   for (std::size_t k = 0; k < state.places.size(); ++k) state.places[k].x = with_shape(state.places[k].x, own.places[k].x);
 }
 
+motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies) {
+  if (!motion_) return own;
+  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred(before, y, shape, bodies) : Net(); };
+  motion::State state;
+  state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
+  state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen);
+  for (std::size_t k = 0; k < old.places.size(); ++k) state.places.push_back({old.places[k].time, transfer(old.places[k].x, own.places[k].x)});
+  return state;
+}
+
+/// One control net and its fields.
 Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
-  if (!motion_) return shape;
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);
   for (std::size_t k = 0; k < all_.size(); ++k) {

@@ -34,9 +34,9 @@ class SurfaceFields {
   /// Puts shapes and slopes of `own`, a copy of of_shape(), back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
 
-  /// Returns the state with this shape and the fields of `before`, which has other meshes and the state y. `bodies`: of each particle, what it had
-  /// before; null if its mesh is the same.
-  Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
+  /// Returns the state `old` on the present meshes, where its shapes are those of `own`, with the fields of `before`, which has the meshes of `old`.
+  /// Slopes and secants are left out if there are fields. `bodies`: what each particle had before; null if its mesh is the same.
+  motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
   /// Passes the state to capsule and fields; to the fields only if the capsule was evaluated within `distance` of it.
   void set_state(const Net& y, double distance = 0);
@@ -54,6 +54,8 @@ class SurfaceFields {
     std::unique_ptr<membrane::Field> field;
     membrane::Surfactant* surfactant = nullptr;  // the field, if it is one
   };
+
+  Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
 
   const std::vector<Member>& members_;
   coupling::Capsule& capsule_;

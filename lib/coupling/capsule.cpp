@@ -234,8 +234,8 @@ const Net& Capsule::energy_gradient(const Net& x) {
   add_whole_membrane_load(x, gradient_);
   for (const Particle& particle : particles())
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
-  if (pressed_.size() > 0) gradient_ -= pressed_;
-  if (field_load_.size() > 0) gradient_ += field_load_;
+  for (const Net& work : external_)
+    if (work.size() > 0) gradient_ -= work;
   gradient_at_ = x;
   return gradient_;
 }
@@ -251,19 +251,12 @@ const std::vector<Net>& Capsule::whole_gradients(const Net& x) {
 
 double Capsule::whole_membrane_energy(const Net& x, std::size_t p) { return whole_ ? whole_->energy(x, whole_gradients(x), p) : 0; }
 
-/// What was evaluated without it does not stand.
-void Capsule::press(Net work) {
-  if (work.size() == 0 && pressed_.size() == 0) return;
-  rigid_.push(work);
+void Capsule::press(Net work, External kind) {
+  Net& known = external_[static_cast<std::size_t>(kind)];
+  if (same(work, known)) return;
+  if (kind == External::contacts) rigid_.push(work);
   if (work.size() > 0) rigid_.clear(work);
-  pressed_ = std::move(work);
-  latest_ = {}, gradient_at_ = {};
-}
-
-void Capsule::set_field_load(Net load) {
-  if (same(load, field_load_)) return;
-  field_load_ = std::move(load);
-  latest_ = {}, gradient_at_ = {};
+  known = std::move(work), latest_ = {}, gradient_at_ = {};
 }
 
 /// -int f.x dV is the energy of a body force f.
@@ -714,7 +707,7 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
     Net work = own(energy_gradient(x));
     if (viscous_) work += own(viscous_work(x, interface_ ? fluid_velocity(x) : slope));
     moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
-    if (!particle.body_force.isZero(0) || pulled(particle) || pressed_.size() > 0 || field_load_.size() > 0)  // about the centroid
+    if (!particle.body_force.isZero(0) || pulled(particle) || pressed())  // about the centroid
       moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {

@@ -1,6 +1,7 @@
 #pragma once
 // Capsules, drops and rigid bodies, in unbounded flow or in a tube: fluid and membrane meet here.
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -128,23 +129,22 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
-  /// Sets the virtual work of the forces of contacts, one row per control point, from now on. The forces stay on their material points and keep their
-  /// directions. An empty net: none.
-  void press(Net work);
-
-  /// Sets what fields on the surfaces add to dE/dx, shape (N, 3), from now on. An empty net: none.
-  void set_field_load(Net load);
+  /// Sets the virtual work of forces from outside of the membranes, one row per control point, from now on: of contacts, which keep directions and
+  /// points, or of the fields on surfaces, minus what they add to dE/dx. An empty net: none.
+  enum class External { contacts, fields };
+  void press(Net work, External kind = External::contacts);
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// What a displacement dx, and a change of the load's virtual work in addition to that of the membranes, change at the shape linearised last. `slip`:
+  /// Changes that a displacement dx, and a change of the load's virtual work in addition to that of the membranes, make where last linearised. slip:
   /// velocity of the fluids minus that of the control points; empty if none slides.
   struct RateChange {
     Net rate, slip;
   };
   RateChange rate_change(const Net& dx, const Net& work);      ///< rate: B J dx if no point slides, otherwise J dx. Collective
   RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx. Collective
-  Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }  ///< B v with B frozen, or v if control points slide. Collective
+  /// B v with B frozen, or v if control points slide. Collective.
+  Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);                             ///< prepares step_preconditioner
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system of `solve`
   bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
@@ -250,6 +250,7 @@ class Capsule : public Dynamics {
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
   void add_weight(const Net& x, Net& gradient) const;
+  bool pressed() const { return external_[0].size() > 0 || external_[1].size() > 0; }
   bool pulled(const Particle& particle) const { return particle.patch_forces.rows() > 0; }
   const std::vector<Net>& whole_gradients(const Net& x);
   Net flux_vector(const Net& x);
@@ -331,8 +332,7 @@ class Capsule : public Dynamics {
   Net gradient_at_, gradient_;  // x and dE/dx there
   Net whole_at_;  // x, and the gradients there
   std::vector<Net> whole_gradients_;
-  Net field_load_;  // of fields on the surfaces; of no rows: none
-  Net pressed_;  // of what deforms; of no rows: nothing
+  std::array<Net, 2> external_;  // work of contacts and of fields on what deforms; empty nets: none
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle
 };

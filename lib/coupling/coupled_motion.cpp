@@ -52,8 +52,8 @@ void CoupledMotion::set_fields(const Net& y) {
 void CoupledMotion::set_state(const Net& y) {
   set_fields(y);
   Net load = Net::Zero(n_, 3);
-  for (const Block& block : blocks_) block.rows.rows(load) += block.on.field->load();
-  capsule_.set_field_load(std::move(load));
+  for (const Block& block : blocks_) block.rows.rows(load) -= block.on.field->load();
+  capsule_.press(std::move(load), Capsule::External::fields);
 }
 
 Net CoupledMotion::velocity(const Net& y) {

@@ -119,15 +119,18 @@ Eigen::VectorXd Surfactant::rate_change(const Net& dx, const Eigen::VectorXd& dc
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   each_change(dx, &dc, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
     const std::vector<int>& points = space_.elements[e].points;
-    double w[3 * most_gauss_points] = {}, dw[3 * most_gauss_points] = {}, along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
+    double w[3 * most_gauss_points] = {}, dw[3 * most_gauss_points] = {};
+    double along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
     if (!known_slip_.empty()) std::ranges::copy(known_slip_[e], w);
     if (slip_change.rows() > 0) sample(3, at.n, at.functions, at.value.data(), own_rows(points, slip_change).data(), dw);
     for (int q = 0; q < at.n; ++q) {
       const double c = at.c[static_cast<std::size_t>(q)];
-      double h_s = -diffusivity_ * at.s[static_cast<std::size_t>(3 * at.n + q)], h_t = -diffusivity_ * at.t[static_cast<std::size_t>(3 * at.n + q)];
+      const auto gradient = static_cast<std::size_t>(3 * at.n + q);
+      double h_s = -diffusivity_ * at.s[gradient], h_t = -diffusivity_ * at.t[gradient];
       double dh_s = -diffusivity_ * change.c_s[q], dh_t = -diffusivity_ * change.c_t[q];
       for (int i = q; i < 3 * at.n; i += at.n) {
-        const double s = at.s[static_cast<std::size_t>(i)], t = at.t[static_cast<std::size_t>(i)], moved = change.c[q] * w[i] + c * dw[i];
+        const double s = at.s[static_cast<std::size_t>(i)], t = at.t[static_cast<std::size_t>(i)];
+        const double moved = change.c[q] * w[i] + c * dw[i];
         h_s += c * w[i] * s, h_t += c * w[i] * t;
         dh_s += moved * s + c * w[i] * change.s[i], dh_t += moved * t + c * w[i] * change.t[i];
       }

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+# ranks: 2
+# Surfactants and Maxwell elements: in implicit steps, of several particles, on meshes that adapt, in searches for steady shapes.
+import numpy
+import yaml
+
+from harness import check, deck, main, run, series
+
+DROP = {"shape": "sphere", "Membrane": {"law": "surface tension", "capillary number": 0.1}, "Surface": {"elements per side": 4},
+        "Interface": {"surfactant": {"elasticity number": 0.3, "diffusivity": 0.1}}}
+CAPSULE = {"shape": "sphere", "Surface": {"elements per side": 3},
+           "Membrane": {"law": "neo-Hookean", "capillary number": 0.3, "shear viscosity": 0.5, "relaxation time": 0.3}}
+
+
+def _one(particle, **more):
+    """The deck of one particle."""
+    lists = {name: particle[name] for name in ("Membrane", "Surface", "Interface") if name in particle}
+    own = {name: value for name, value in particle.items() if name not in lists}
+    return _deck(Particle=own, **lists, **more)
+
+
+def _deck(**more):
+    scene = {"Flow": {"type": "simple shear"}, "Time": {"scheme": "tr-bdf2", "tolerance": 1e-5, "final time": 0.4}, "Output": {"interval": 0.2}}
+    return deck(yaml.safe_dump({"Tanktread": {**scene, **more}}), f"{len(str(more))}.yaml")
+
+
+def _two(particle, apart):
+    return _deck(Particles={"a": particle, "b": {**particle, "center": apart}}, Time={"scheme": "tr-bdf2", "fixed step": 0.1, "final time": 0.4})
+
+
+def particles_far_apart_do_what_one_does():
+    for particle, names in (DROP, ("taylor_inertia", "largest_concentration")), (CAPSULE, ("taylor_inertia", "membrane_dissipation")):
+        run(_one(particle, Time={"scheme": "tr-bdf2", "fixed step": 0.1, "final time": 0.4}, Symmetry={"use": "none"}), "--output", "one", "--quiet",
+            "--overwrite")
+        run(_two(particle, [0, 1000, 0]), "--output", "two", "--quiet", "--overwrite")
+        for name in names:
+            off = abs(series("two", "b/" + name) - series("one", name)).max() / abs(series("one", name)).max()
+            check(off < 1e-7, f"{name} differs by {off}")  # the flow of a stresslet 1000 radii away, and the tolerance of the quadrature
+
+
+def implicit_steps_do_what_explicit_ones_do():
+    for particle, names in (DROP, ("taylor_inertia", "largest_concentration")), (CAPSULE, ("taylor_inertia", "energy")):
+        for scheme in "tr-bdf2", "bdf3", "bs3":
+            run(_one(particle), "--set", f"Time/scheme={scheme}", "--set", "Time/tolerance=1e-6", "--output", scheme, "--quiet", "--overwrite")
+        for scheme in "tr-bdf2", "bdf3":
+            for name in names:
+                off = abs(series(scheme, name)[-1] / series("bs3", name)[-1] - 1)
+                check(off < 2e-5, f"{name} of {scheme} differs by {off}")  # some ten tolerances
+            if particle is DROP:
+                mass = series(scheme, "surfactant_mass")
+                check(abs(mass - 1).max() < 1e-12, f"the mass is off by {abs(mass - 1).max()}")
+
+
+def ranks_and_resumed_runs_agree():
+    for particle in DROP, CAPSULE:
+        text = _two(particle, [2.5, 0, 0.5])
+        for ranks in 1, 2:
+            run(text, "--output", f"on_{ranks}", "--quiet", "--overwrite", ranks=ranks)
+        run(text, "--set", "Time/final time=0.2", "--output", "parts", "--quiet", "--overwrite")
+        run("--resume", "parts", "--set", "Time/final time=0.4", "--quiet")
+        for other, most in ("on_2", 1e-10), ("parts", 0):
+            off = abs(series(other, "a/taylor_inertia") - series("on_1", "a/taylor_inertia")).max()
+            check(off <= most, f"{other} differs by {off}")
+
+
+def a_steady_search_finds_what_a_run_comes_to():
+    flow = {"Flow": {"type": "uniaxial extension"}}
+    run(_one(DROP, **flow, Steady={"tolerance": 1e-8}, Time={}), "--output", "steady", "--quiet")
+    run(_one(DROP, **flow, Time={"scheme": "tr-bdf2", "tolerance": 1e-6, "steady tolerance": 1e-7, "final time": 60}, Output={"interval": 60}),
+        "--output", "run", "--quiet")
+    for name in "taylor_inertia", "largest_concentration", "smallest_concentration":
+        off = abs(series("steady", name)[-1] - series("run", name)[-1])
+        check(off < 1e-5, f"{name} differs by {off}")  # ten times Time/tolerance
+    check(abs(series("steady", "surfactant_mass")[-1] - 1) < 1e-12, "the mass is off")
+
+
+def meshes_that_adapt_keep_the_mass():
+    flow = {"Flow": {"type": "uniaxial extension"}, "Adaptation": {"enabled": True}}
+    strong = {**DROP, "Membrane": {"law": "surface tension", "capillary number": 0.2}}
+    run(_one(strong, **flow, Time={"scheme": "tr-bdf2", "final time": 1}), "--output", "adapted", "--quiet")
+    points = series("adapted", "n_control_points")
+    check(points[-1] != points[0], "the mesh is still the first one")
+    mass = series("adapted", "surfactant_mass")
+    check(abs(mass - 1).max() < 1e-12, f"the mass is off by {abs(mass - 1).max()}")
+    largest = series("adapted", "largest_concentration")
+    check(numpy.all(numpy.diff(largest) > -1e-3), "the concentration jumps where the mesh changes")
+
+
+main()
