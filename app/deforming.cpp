@@ -99,7 +99,7 @@ class Deforming : public ParticleSystem {
     before_.clear();
     if (holds_centre_) {
       motion::State own = fields_->of_shape(state);
-      hold_centre(capsule_->flow(), capsule_->geometry(), scene_.particle.shape.center, own);
+      hold_centre(capsule_->flow(), capsule_->geometry(), members_.front().scene.particle.shape.center, own);
       fields_->put_back(own, state);
     }
     const auto due = [&](const Member& member) {
@@ -178,7 +178,7 @@ class Deforming : public ParticleSystem {
     if (capsule_->cell()) whole.cell = capsule_->cell()->vectors();
     if (const auto& cell = capsule_->cell(); cell && cell->n() == 3)
       add_bulk_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), force_on_fluid(state.x), whole);
-    if (all_ || capsule_->cell()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
+    if (scene_.has_gaps()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
     if (scene_.wall.present) add_wall(*scene_.wall.plane(), members_, state.x, whole);
     if (scene_.output.power_balance) add_power(state, whole);
     whole.contact_force = contacts_.force(), whole.contact_impulse = contacts_.impulse;
@@ -328,8 +328,8 @@ class Deforming : public ParticleSystem {
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), &tube->wall());
-    else if (all_ || scene_.wall.present) widths = films(members_, p, state.x);
+    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), {}, &tube->wall());
+    else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths);
     remark_on(member, change, state.time);
     if (!change.body) return;
@@ -411,7 +411,7 @@ class Deforming : public ParticleSystem {
   std::optional<coupling::RigidParticles> placed_;  // before the mesh changes
   std::vector<Warning> remarks_;
   coupling::Contacts contacts_;  // that hold particles apart
-  bool holds_centre_ = scene_.particles.empty() && holds_centre(scene_);
+  bool holds_centre_ = members_.size() == 1 && holds_centre(members_.front().scene);
 };
 
 }  // namespace

@@ -126,6 +126,24 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
+/// Returns the net q, if it is not the net p itself, and its images in a lattice whose boxes are not farther than `reach` from that of p.
+std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
+  std::vector<Net> found;
+  if (!cell) {
+    if (!same) found.push_back(q);
+    return found;
+  }
+  const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
+  const Eigen::Array3d low = p.colwise().minCoeff(), high = p.colwise().maxCoeff();
+  for (const Vec3& lattice_vector : cell->around({2, 2, 2})) {
+    if (same && lattice_vector.isZero(0)) continue;
+    const Net image = q.rowwise() + (lattice_vector - apart).transpose();
+    const Eigen::Array3d from = image.colwise().minCoeff(), to = image.colwise().maxCoeff();
+    if ((from - high).max(low - to).max(0).matrix().norm() <= reach) found.push_back(image);
+  }
+  return found;
+}
+
 /// Whether a point that is not on a surface is inside: its solid angle there is 4 pi, outside 0.
 bool encloses(const surface::Patches& patches, const Vec3& point) {
   constexpr int n = 8;
@@ -161,7 +179,7 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   for (const Member& member : members) x.push_back(member.body->initial);
   const Nearest found = nearest(members, x, cell, [](std::size_t) { return true; });
   if (found.gap > 10 * accuracy * members.front().body->radius) return check_not_nested(members, x);
-  const auto name = [&](int number) { return "Particles/" + members[static_cast<std::size_t>(number) - 1].name; };
+  const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
   if (found.first == found.second)
     throw UserError("Domain is smaller than " + name(found.first) +
                     formatted(", which overlaps its own image about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
@@ -222,20 +240,22 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
   return all;
 }
 
-std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const surface::TubeWall* wall) {
+std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell,
+                          const surface::TubeWall* wall) {
   const Body& body = *members[p].body;
   const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
-  std::vector<surface::Patches> placed;
-  for (std::size_t q = 0; q < members.size(); ++q)
-    if (q != p) placed.emplace_back(surface::BezierMap(members[q].body->space), members[q].own(x));
-  if (wall) placed.emplace_back(surface::BezierMap(wall->space), wall->net);
-  std::vector<const surface::Patches*> others;
-  for (const surface::Patches& other : placed) others.push_back(&other);
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
   double longest = 0;  // the diagonal of the largest element
   for (int e = 0; e < own.size(); ++e)
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;
+  std::vector<surface::Patches> placed;
+  for (std::size_t q = 0; q < members.size(); ++q)
+    for (const Net& other : neighbours(members[p].own(x), members[q].own(x), q == p, reach, cell))
+      placed.emplace_back(surface::BezierMap(members[q].body->space), other);
+  if (wall) placed.emplace_back(surface::BezierMap(wall->space), wall->net);
+  std::vector<const surface::Patches*> others;
+  for (const surface::Patches& other : placed) others.push_back(&other);
   std::vector<double> widths = surface::film_widths(own, others, reach);
   if (const auto plane = members[p].scene.wall.plane()) narrow(own, *plane, reach, widths);
   return widths;

@@ -35,7 +35,9 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
 /// Width of the film beside each element of particle p at x, on its nested space, as far as its mesh has to know: elements of the first mesh are
-/// short enough beside wider ones. `wall`: of the tube around it, in whose frame x is, where there is one.
-std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const surface::TubeWall* wall = nullptr);
+/// short enough beside wider ones. `cell`: of the lattice, whose images bound films too. `wall`: of the tube around it, in whose frame x is, where
+/// there is one.
+std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
+                          const surface::TubeWall* wall = nullptr);
 
 }  // namespace tanktread

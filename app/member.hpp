@@ -31,6 +31,7 @@ struct Member {
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }   ///< in checkpoints and sentences
+  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }                ///< in sentences, as its section is called
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }  ///< in the record
 };
 

@@ -30,7 +30,7 @@ std::string surface_line(const Body& body) {
 
 /// How the unknowns of a tube's wall are found.
 std::string wall_solver(const Scene& scene) {
-  if (scene.particle.rigid()) return "eliminated from the system of the traction";
+  if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
   return std::ranges::any_of(scene.alone(), &Scene::has_velocity_system) ? "eliminated from the system of the velocity" : "solved for directly";
 }
@@ -168,7 +168,7 @@ std::string solvers_line(const Scene& scene) {
     line += (line.empty() ? "" : "; ") + std::string(system) + " by " + *own.solver;
     if (own.preconditioner != "own") line += ", preconditioner `" + own.preconditioner + "`";
   };
-  if (scene.particles.empty() && scene.particle.rigid()) {
+  if (!scene.in_system()) {
     add("traction", solvers.traction);
     return line;
   }
@@ -214,7 +214,8 @@ std::string far_sum_line(const Scene& scene, bool tree) {
 Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
   const bool tree = stokes::sums_by_tree(all.space, scene.quadrature, scene.domain.present ? 27 : 1);
   const double n = all.space.n_points;
-  Lines lines = {{"particles", formatted("%zu, in one system", scene.particles.size())},
+  const std::vector<Scene> alone = scene.alone();
+  Lines lines = {{"particles", formatted("%zu, in one system", alone.size())},
                  {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
   add_fluid(lines, scene, all, ranks);
   lines.emplace_back("far sum", far_sum_line(scene, tree));
@@ -230,12 +231,12 @@ Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
   lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("symmetry", "none looked for among several particles");
   std::string last;
-  for (const Scene& one : scene.alone()) {
+  for (const Scene& one : alone) {
     const std::string line = particle_line(one, all.space.n_points, tree);
     if (lines.back().second == line)
       last = " … " + one.name;
     else
-      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name, line);
+      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name.empty() ? "particle" : one.name, line);
   }
   lines.back().first += last;
   return lines;
@@ -244,8 +245,8 @@ Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
 }  // namespace
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
-  if (!scene.particles.empty()) return plan_of_several(scene, body, ranks);
-  if (scene.particle.rigid()) return plan_of_rigid(scene, body, ranks);
+  if (scene.has_gaps() || (scene.in_system() && scene.particle.rigid())) return plan_of_several(scene, body, ranks);
+  if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
   const int n = body.space.n_points;
   Lines lines = {{"surface", surface_line(body)}, {"unknowns", formatted("%d positions", 3 * n)}};

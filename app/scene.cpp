@@ -220,9 +220,9 @@ void check_motion(const Scene& scene) {
                                                                 "Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
   if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section, or Channel.");
-  if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present)
-    throw UserError("Adaptation/film resolution is for several particles, or beside a wall: there are no films between others.");
-  if (std::isnan(scene.time.final_time) && particle.motion != Motion::prescribed && scene.runs_in_time())
+  if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
+    throw UserError("Adaptation/film resolution is for several particles, in a lattice, or beside a wall: there are no films between others.");
+  if (std::isnan(scene.time.final_time) && (particle.motion != Motion::prescribed || scene.in_system()) && scene.runs_in_time())
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: the expected one, in the deck's unit of time.");
@@ -287,7 +287,8 @@ void check_contradictions(const Scene& scene) {
   refuse(scene.tube.repulsion && rigid, repulsion, motion, "it acts on membranes");
   refuse(scene.tube.repulsion && strong, repulsion, "Membrane/load `strong`", "it is part of the weak load");
   refuse(scene.domain.present && tube, "Domain", confined, "a tube does not repeat");
-  refuse(scene.domain.present && alone, "Domain", "Particle", "what repeats is named in the list Particles");
+  refuse(scene.contact.limiter && steady, "Contact/limiter", sought, "it holds gaps after steps in time");
+  refuse(scene.contact.limiter && strong, "Contact/limiter", "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
   refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
   refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force),
          "Domain/periodic `" + scene.domain.periodic + "`",
@@ -364,11 +365,8 @@ void check_first_kind(const Scene& scene) {
 
 /// What cannot be done with several particles yet, and each of them by itself.
 void check_several(const Scene& scene) {
-  const std::string limiter = "Contact/limiter";
   const std::vector<Scene> alone = scene.alone();
   const bool strong = alone.front().load_is_strong();
-  refuse(scene.contact.limiter && !scene.runs_in_time(), limiter, scene.sought(), "it holds gaps after steps in time");
-  refuse(scene.contact.limiter && strong, limiter, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
   for (Scene one : alone) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
     const std::string list = "Particles/" + one.name;
@@ -414,8 +412,8 @@ void Scene::declare(deck::Section& root) {
     root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
-  if (several || root.documenting())
-    root.section("Contact", contact, "what happens where several particles come close");
+  if (several || root.given("Domain") || root.documenting())
+    root.section("Contact", contact, "what happens where particles come close, several of them or images in a lattice");
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
@@ -425,9 +423,9 @@ void Scene::declare(deck::Section& root) {
   if (root.optional_section("Channel", channel, "a tube whose section changes along a centre line, which may bend; none without this list"))
     tube.present = true;
   domain.present =
-      root.optional_section("Domain", domain, "the lattice that Particles repeat on, moved along by the flow; unbounded space without this list");
+      root.optional_section("Domain", domain, "the lattice that particles repeat on, moved along by the flow; unbounded space without this list");
   wall.present = root.optional_section("Wall", wall, "a plane wall that the fluid sticks to; none without this list");
-  if ((wall.present || tube.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
+  if ((wall.present || tube.present || domain.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
   root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
   root.section("Time", time, "integration in time");

@@ -110,6 +110,11 @@ struct Scene : ParticleKind {
   std::string sought() const { return steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum"; }
   bool load_is_strong() const { return membrane.load == "strong"; }
 
+  /// Whether the particles are unknowns of one coupled system. Otherwise the scene is one rigid body, of which its own resistance is enough.
+  bool in_system() const { return !particles.empty() || !name.empty() || !particle.rigid() || domain.present; }
+  /// Whether particles meet others or images of themselves.
+  bool has_gaps() const { return !particles.empty() || domain.present; }
+
   /// The scene of each particle, as if it were alone.
   std::vector<Scene> alone() const;
 

@@ -142,7 +142,7 @@ constexpr Statement statements[] = {
      [](const Moment& m, int c) { return m.at_wall.place[c]; }, Needs::wall},
     {"particle_at_wall", "", "1", "number of the particle that is nearest to it, from 1 in the order of the deck", of_several,
      [](const Moment& m, int) { return double(m.at_wall.first); }, Needs::wall},
-    {"smallest_gap", "", "length", "smallest distance between two of several particles", of_several,
+    {"smallest_gap", "", "length", "smallest distance between two of several particles, or images of them in a lattice", of_several,
      [](const Moment& m, int) { return m.nearest.gap; }},
     {"first_of_gap", "", "1", "number of the first of these two, from 1 in the order of the deck", of_several,
      [](const Moment& m, int) { return double(m.nearest.first); }},
@@ -260,6 +260,8 @@ bool holds(const Scene& scene, Needs needs) {
   return (needs == Needs::exact_force ? exact->force() : exact->torque()).norm() > 0;
 }
 
+Owner owner_of_particle(const Scene& one) { return one.particle.rigid() ? of_rigid : of_deforming; }
+
 }  // namespace
 
 const std::vector<Series>& all_series() {
@@ -269,19 +271,19 @@ const std::vector<Series>& all_series() {
 
 std::vector<Series> series(const Scene& scene, Owner owner) {
   unsigned owners = owner;
-  if (owner == of_run && !scene.particles.empty()) owners |= of_several;
+  const unsigned alone = scene.particles.empty() ? unsigned{owner_of_particle(scene)} : 0;  // whose own columns have the same names
+  if (owner == of_run && scene.has_gaps()) owners |= of_several;
   if (owner == of_free && (scene.tube.present || scene.wall.present)) owners |= of_free_in_tube;
   std::vector<Series> found;
   for (const Series& one : all_series())
-    if ((one.owners & owners) && holds(scene, one.needs)) found.push_back(one);
+    if ((one.owners & owners) && !(owner == of_run && (one.owners & alone)) && holds(scene, one.needs)) found.push_back(one);
   return found;
 }
 
-std::vector<Series> particle_series(const Scene& one) { return series(one, one.particle.rigid() ? of_rigid : of_deforming); }
+std::vector<Series> particle_series(const Scene& one) { return series(one, owner_of_particle(one)); }
 
 std::vector<Series> run_series(const Scene& scene) {
-  if (scene.particle.motion == Motion::free) return series(scene, of_free);
-  if (scene.particle.motion == Motion::prescribed) return series(scene, of_prescribed);
+  if (!scene.in_system()) return series(scene, scene.particle.motion == Motion::free ? of_free : of_prescribed);
   std::vector<Series> all = series(scene, of_run);
   for (const Scene& one : scene.alone())
     for (Series& own : particle_series(one)) {

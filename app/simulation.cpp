@@ -112,7 +112,7 @@ class Run {
 
   /// Particles that start side by side need a mesh for the film between them.
   void prepare() {
-    if (scene_.particles.empty() && !scene_.wall.present) return;
+    if (!scene_.has_gaps() && !scene_.wall.present) return;
     for (int k = 0; k < 8 && particle_->adapt(state_, totals_); ++k) results_.remesh(particle_->body(), particle_->bezier());
   }
 
@@ -338,9 +338,12 @@ class Run {
   void end_at_contact() {
     const double gap = entry("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
-    const auto name = [&](const char* which) { return scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name; };
-    fail("Particles/" + name("first_of_gap") + " and Particles/" + name("second_of_gap") +
-         formatted(" touch: the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
+    const auto name = [&](const char* which) {
+      return scene_.particles.empty() ? "Particle" : "Particles/" + scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name;
+    };
+    const std::string first = name("first_of_gap"), second = name("second_of_gap");
+    fail(first + (first == second ? " touches its image" : " and " + second + " touch") +
+         formatted(": the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
   }
 
   /// After a step that is done.
@@ -350,7 +353,7 @@ class Run {
       warn_of_coarse_wall(entry("gap"));
     }
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
-    if (!scene_.particles.empty()) end_at_contact();
+    if (scene_.has_gaps()) end_at_contact();
     if (coupling::largest(told_to_stop()) > 0) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;
     if (limit && ranks_.first(seconds_here()) > *limit) return by_clock;
@@ -362,7 +365,7 @@ class Run {
 
   /// Along x1, or the centre line of a channel, of the centroid that has come least far.
   double least_way() const {
-    const std::string name = scene_.particle.motion == Motion::free ? "center_x" : "centroid_x";
+    const std::string name = scene_.in_system() ? "centroid_x" : "center_x";
     std::vector<double> x[3];
     for (int c = 0; c < 3; ++c) x[c] = entries(name + std::to_string(c + 1));
     double least = std::numeric_limits<double>::infinity();
@@ -440,18 +443,19 @@ std::vector<std::string> check_expectations(const Scene& scene) {
   for (const Series& one : run_series(scene)) names.push_back(one.name);
   deck::check_series(scene.expect.all, names);
   const double last = scene.continuation.present ? scene.continuation.points : 0;
-  return deck::too_late(scene.expect.all, scene.particle.motion == Motion::prescribed || !scene.runs_in_time() ? last : scene.time.final_time);
+  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
+  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
 }
 
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
-  if (scene.particle.motion == Motion::prescribed) return resist(scene, request);
+  if (!scene.in_system() && scene.particle.motion == Motion::prescribed) return resist(scene, request);
   if (!scene.runs_in_time()) return find_steady(scene, request);
   return Run(scene, request).go();
 }
 
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.particle.motion == Motion::free ? free_body(scene, ranks, phases) : deforming(scene, ranks, phases);
+  return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
 }
 
 std::string stored_deck(const std::string& directory) {

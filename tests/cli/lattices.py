@@ -7,7 +7,7 @@ import pathlib
 import h5py
 import numpy
 
-from harness import check, deck, main, refused, run, series
+from harness import check, deck, difference, main, refused, run, series
 
 DECK = """
 Tanktread:
@@ -47,6 +47,30 @@ def the_same_lattice_by_other_cells_is_the_same():
     beyond = _row("beyond", "--set", "Particles/one/center=[0.3, 5.8, -2.7]")
     beyond[0] += 2.8
     check(abs(beyond - one).max() < 1e-8, "in another cell:", beyond - one)
+
+
+def one_particle_is_a_list_of_one():
+    """A deck with `Particle` is the same run as one with a list of one particle: only columns that have the particle's name in front are without it. To
+    round-off, because the order of Eigen's sums depends on where vectors lie in memory."""
+    free = DECK[DECK.index("    defaults"):DECK.index("  Quadrature")]
+    for kind, keys, lists in (
+        ("capsule", "center: [0.3, 0.2, 0.1], viscosity ratio: 2.0", {"Membrane": "{law: neo-Hookean, capillary number: 0.3}"}),
+        ("free", "center: [0.3, 0.2, 0.1], motion: free, shape: spheroid, semi-axes: [1.0, 0.8, 0.8], torque: [0, 1, 0]", {}),
+        ("prescribed", "center: [0.3, 0.2, 0.1], motion: prescribed, velocity: [0.1, 0, 0]", {}),
+    ):
+        lists["Surface"] = "{elements per side: 3}"
+        inner = ", ".join([keys] + [f"{name}: {text}" for name, text in lists.items()])
+        several = DECK.replace(free, f"    one: {{{inner}}}\n")
+        single = DECK.replace("  Particles:\n" + free, f"  Particle: {{{keys}}}\n" + "".join(f"  {name}: {text}\n" for name, text in lists.items()))
+        run(deck(several), "--output", f"list_{kind}", "--quiet")
+        run(deck(single), "--output", kind, "--quiet")
+        with h5py.File(f"list_{kind}/run.h5") as a, h5py.File(f"{kind}/run.h5") as b:
+            expected, found = a["series"], b["series"]
+            own = expected["one"]
+            check(set(found) == set(expected) - {"one"} | set(own), kind, set(found) ^ (set(expected) | set(own)))
+            for name in set(found) - {"wall_seconds"}:
+                column = (own if name in own else expected)[name]
+                check(difference(found[name][:], column[:], name) < 1e-13, kind, name, found[name][:], column[:])
 
 
 def gaps_reach_beyond_the_nearest_cells():
@@ -94,6 +118,13 @@ def a_run_is_resumed_with_its_lattice_where_it_was():
     run("--resume", "parts", "--quiet", "--set", "Time/final time=0.04")
     for name in OF_ONE + OF_ALL:
         check(abs(series("whole", name) - series("parts", name)).max() < 1e-12, name)
+
+
+def a_particle_that_meets_its_image_ends_the_run():
+    text = DECK[:DECK.index("  Particles")] + "  Particle: {motion: free, radius: 1.38}\n  Contact: {limit: 0.03}\n" + DECK[DECK.index("  Time"):]
+    error = run(deck(text), "--output", "close", "--quiet", code=3).stderr
+    check("Particle touches its image" in error and "Contact/limit" in error, error)
+    refused(["Domain is smaller than Particle,", "image"], deck(text), "--set", "Particle/radius=1.5")
 
 
 def what_no_lattice_can_do_is_refused():
