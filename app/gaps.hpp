@@ -40,4 +40,7 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 
+/// Returns "Particles/a and Particles/b touch", or that one touches its image, from the particles' numbers in the order of the deck, from 1.
+std::string touching(const Scene& scene, int first, int second);
+
 }  // namespace tanktread

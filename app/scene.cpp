@@ -256,7 +256,7 @@ void check_contradictions(const Scene& scene) {
   const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
   const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
-  const bool steady = !scene.runs_in_time();
+  const bool steady = !scene.runs_in_time(), wall = scene.wall.present;
   const std::string sought = scene.sought();
   const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
@@ -285,16 +285,17 @@ void check_contradictions(const Scene& scene) {
   refuse(tube && desingularised, "Quadrature/rule `desingularised`", confined, "the wall is not closed");
   const std::string repulsion = confined + "/repulsion";
   refuse(scene.tube.repulsion && rigid, repulsion, motion, "it acts on membranes");
-  refuse(scene.tube.repulsion && strong, repulsion, "Membrane/load `strong`", "it is part of the weak load");
   refuse(scene.domain.present && tube, "Domain", confined, "a tube does not repeat");
   refuse(scene.contact.limiter && steady, "Contact/limiter", sought, "it holds gaps after steps in time");
-  refuse(scene.contact.limiter && strong, "Contact/limiter", "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
+  const std::pair<bool, std::string> works[] = {{scene.contact.limiter, "Contact/limiter"}, {weight, "Particle/density difference"},
+                                                {scene.tube.repulsion.has_value(), repulsion}};
+  for (const auto& [with, what] : works)
+    refuse(with && strong, what, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
   refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
   refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force),
          "Domain/periodic `" + scene.domain.periodic + "`",
          told ? motion : weight ? "Particle/density difference" : "Particle/force",
          "the velocity of a net force in every cell is known in a lattice of three directions only");
-  const bool wall = scene.wall.present;
   refuse(wall && tube, "Wall", "Tube", "images are of one plane in a fluid that is unbounded otherwise");
   refuse(wall && scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
   refuse(wall && scene.quadrature.rule != "adaptive", "Wall", "Quadrature/rule `" + scene.quadrature.rule + "`",
@@ -302,7 +303,6 @@ void check_contradictions(const Scene& scene) {
   refuse(wall && steady, sought, "Wall", "beside a wall nothing that deforms keeps its distance from it");
   refuse(wall && held, "Wall", "Particle/drift `held`", "its distance from the wall matters");
   refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");
-  refuse(weight && strong, "Particle/density difference", "Membrane/load `strong`", "weight is part of the weak load");
   refuse(scene.viscous_membrane() && tube && scene.solvers.tube != "schur", "Membrane viscosity", "Solvers/tube `" + scene.solvers.tube + "`",
          "the system of all blocks leaves the membrane's own load out; `schur` has it");
   refuse(scene.solvers.wall != "auto" && tube && !scene.tube.channel, "Solvers/wall", confined, "the wall of a straight tube is factored");
@@ -327,10 +327,9 @@ void check_contradictions(const Scene& scene) {
   refuse(desingularised && degenerate, "Quadrature/rule `desingularised`", "Surface/poles `plain`",
          "a degenerate element has no normal at its pole");
   refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
-  const std::string surfactant = "Interface/surfactant", scheme = "Time/scheme `" + scene.time.scheme + "`";
+  const std::string surfactant = "Interface/surfactant", memory = "Membrane/relaxation time";
   refuse(scene.surfactant && (rigid || !drop), surfactant, rigid ? motion : law, "it is on the interface of a drop");
   refuse(scene.surfactant && scene.spectrum.present, surfactant, "Spectrum", "the modes leave its concentration out");
-  const std::string memory = "Membrane/relaxation time";
   refuse(scene.maxwell_membrane() && scene.spectrum.present, memory, "Spectrum", "the modes leave out what the membrane remembers");
   refuse(scene.maxwell_membrane() && scene.steady.present && turns(scene), "Steady with " + memory, flow,
          "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");

@@ -338,11 +338,7 @@ class Run {
   void end_at_contact() {
     const double gap = entry("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
-    const auto name = [&](const char* which) {
-      return scene_.particles.empty() ? "Particle" : "Particles/" + scene_.particles[static_cast<std::size_t>(entry(which)) - 1].name;
-    };
-    const std::string first = name("first_of_gap"), second = name("second_of_gap");
-    fail(first + (first == second ? " touches its image" : " and " + second + " touch") +
+    fail(touching(scene_, static_cast<int>(entry("first_of_gap")), static_cast<int>(entry("second_of_gap"))) +
          formatted(": the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
   }
 

@@ -33,8 +33,8 @@ void AdaptationOptions::declare(deck::Section& section) {
               "D_ref: an element that is longer than this times its width is cut; 2.5 if not given");
   section.key("order", order, deck::positive(), "1", "kappa: how strongly a variation above its reference shortens elements; 1 if not given");
   section.key("film resolution", film_resolution, deck::positive(), "1",
-              "among several particles, in a lattice or beside a wall: longest element beside a film, over the square root of its width times R_C; 0.7 if not "
-              "given. Halvings beside a film end with `levels` only");
+              "among several particles, in a lattice or beside a wall: longest element beside a film, over the square root of its width times R_C; "
+              "0.7 if not given. Halvings beside a film end with `levels` only");
   section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut; the default is in R_C");
   section.key("interval", interval, deck::at_least(1), "steps", "accepted steps between two looks at the mesh");
   section.key("levels", levels, deck::between(0, 8), "1", "how often an element of the first mesh may be halved in a direction");

@@ -114,8 +114,6 @@ SETTINGS = [
      ["Interface/surfactant/equation of state `Langmuir`", "coverage"]),
     (["Interface/surfactant/diffusivity=1", "Interface/surfactant/Peclet number=1", "Membrane/law=surface tension", "Time/scheme=rkc2"],
      ["Interface/surfactant/diffusivity", "Peclet number", "contradict"]),
-    (["Interface/surfactant/elasticity number=0.2", "Membrane/law=surface tension", "Time/scheme=rkc2", "Adaptation/enabled=true"],
-     ["Interface/surfactant", "Adaptation/enabled", "contradict"]),
     (["Membrane/area dilatation=2"], ["Membrane/area dilatation", "Skalak", "neo-Hookean"]),
     (["Particle/semi-axes=[1, 1, 2]"], ["Particle/semi-axes", "sphere", "contradict"]),
     (["Particle/shape=spheroid"], ["spheroid", "needs", "Particle/semi-axes"]),
