@@ -41,6 +41,7 @@ class Deforming : public ParticleSystem {
       const Body& body = *member.body;
       member.followed = site_ahead(body.nested(), body.rest, geometry(member).measures(body.rest).centroid, body.plane);
       member.place = spline::place(body.nested(), member.followed);
+      follow(member);
     }
   }
 
@@ -373,8 +374,7 @@ class Deforming : public ParticleSystem {
     if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
     set_up();
     capsule_->work() = work_;
-    for (Member& member : members_)
-      if (member.scene.adaptation.enabled) member.followed = spline::Locator(member.body->nested())(member.place);
+    for (Member& member : members_) follow(member);
   }
 
   /// What a change of the mesh lacks.

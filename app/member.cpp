@@ -81,6 +81,10 @@ std::vector<Member> members(const Scene& scene) {
   return all;
 }
 
+void follow(Member& member) {
+  if (member.scene.adaptation.enabled) member.followed = spline::Locator(member.body->nested())(member.place);
+}
+
 void arrange(std::vector<Member>& members) {
   std::vector<spline::Space*> spaces;
   for (const Member& member : members) spaces.push_back(&member.body->space);

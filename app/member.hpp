@@ -41,6 +41,9 @@ coupling::Rigid rigid(const Scene& scene, const Body& body);
 /// All particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 
+/// Finds the followed point on a mesh that may adapt, before and after a resume in one way.
+void follow(Member& member);
+
 /// Blocks, geometries and membranes of members whose bodies are there.
 void arrange(std::vector<Member>& members);
 

@@ -77,6 +77,7 @@ struct InterfaceList {
 }  // namespace
 
 void ParticleKind::declare_lists(deck::Section& section) {
+  if (particle.rigid()) section.leave_out("Membrane");  // what particles share is for those that have one
   membrane_given = section.given("Membrane");
   if (!particle.rigid() || membrane_given) section.section("Membrane", membrane, "what its surface is made of");
   if (particle.shape.shape != "file")
@@ -89,7 +90,6 @@ void ParticleKind::declare_lists(deck::Section& section) {
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   if (!name.empty()) adaptation.film_resolution = 0.7;
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
-  if (particle.rigid() && !name.empty()) membrane_given = false;  // what defaults say of it is for those that have one
 }
 
 void ContactOptions::declare(deck::Section& section) {

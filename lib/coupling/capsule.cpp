@@ -380,12 +380,12 @@ void Capsule::place(const Net& x) {
 Net Capsule::evaluate(Net x, const Net& guess) {
   if (!cell_ || !x.allFinite()) return evaluate_here(std::move(x), guess);
   const std::vector<Vec3> shifts = put_into_cell(x);
+  rigid_.enter(shifts, flow_.gradient(Vec3::Zero()));
   Net v = evaluate_here(std::move(x), {});
   for (std::size_t p = 0; p < shifts.size(); ++p) {
     const Vec3 faster = flow_.gradient(Vec3::Zero()) * shifts[p];
-    const spline::Block& block = particles()[p].block;
-    block.rows(v).rowwise() += faster.transpose();
-    if (latest_.fluid.size() > 0) block.rows(latest_.fluid).rowwise() += faster.transpose();
+    for (Net* net : {&v, &latest_.fluid})
+      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
     rigid_.carry(p, shifts[p], faster);
   }
   return v;

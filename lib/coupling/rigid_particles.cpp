@@ -88,6 +88,7 @@ void RigidParticles::push(const Net& work) {
 
 Rigid RigidParticles::Body::given() const {
   Rigid all = rigid;
+  all.motion.velocity -= faster;
   for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
     const Vec3 here = pushed.row(a).transpose();
     all.force += here;
@@ -123,7 +124,7 @@ void RigidParticles::add_lacking(Net& v) const {
 
 void RigidParticles::subtract_prescribed(Net& v) const {
   for (const Body& body : bodies_)
-    if (body.rigid.prescribed) body.block.rows(v) -= body.field(body.rigid.motion);
+    if (body.rigid.prescribed) body.block.rows(v) -= body.field(body.given().motion);
 }
 
 void RigidParticles::complete(const Net& w, Net& v) const {
@@ -139,6 +140,11 @@ Net RigidParticles::completing_load(const Net& w) const {
   for (const Body& body : bodies_)
     if (body.rigid.prescribed) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
   return load;
+}
+
+void RigidParticles::enter(std::span<const Vec3> shifts, const Mat3& gradient) {
+  for (std::size_t p = 0; p < shifts.size(); ++p)
+    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].faster = gradient * shifts[p];
 }
 
 void RigidParticles::carry(std::size_t p, const Vec3& along, const Vec3& faster) {
@@ -160,7 +166,7 @@ void RigidParticles::move(Net& v) {
       integrals = -body.viscosity / body.radius * body.inertia * of_body;
       body.force = body.turn * integrals.head<3>(), body.torque = body.turn * integrals.tail<3>();
     }
-    body.motion = body.rigid.prescribed ? body.rigid.motion : mean;
+    body.motion = body.rigid.prescribed ? given.motion : mean;
     body.block.rows(v) = body.field(body.motion);
   }
 }

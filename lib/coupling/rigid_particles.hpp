@@ -46,7 +46,10 @@ class RigidParticles {
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as prescribed, 0 elsewhere
   void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);  ///< as another equation says; rows of v
-  void carry(std::size_t p, const Vec3& along, const Vec3& faster);  ///< moves body p, if it is one, and its velocity on: to another cell
+  /// On a lattice a velocity is that of images in the cell. `enter`: bodies are images from now on, from which particles p are `shifts[p]` away in a
+  /// flow of this gradient. `carry` moves the image of body p, if it is one, to the body's own centre, and makes its velocity the body's own.
+  void enter(std::span<const Vec3> shifts, const Mat3& gradient);
+  void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< 0 in all rows of bodies
 
   /// Whether particle p is one, and what it does and feels where velocities were asked for last.
@@ -86,6 +89,7 @@ class RigidParticles {
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
+    Vec3 faster = Vec3::Zero();  // velocity of the body less that of its image in the cell
     Mat3 turn = Mat3::Identity();
     Net density;
     RigidMotion motion;

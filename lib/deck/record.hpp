@@ -25,6 +25,7 @@ struct List {
   std::string path;  ///< `Flow`, `Expect/volume`; empty for the root
   std::string meaning;
   const Teuchos::ParameterList* given = nullptr;  ///< what the user gave for it, or nothing
+  const Teuchos::ParameterList* itself = nullptr;  ///< what the user gave for it, without what it shares with other lists
   std::shared_ptr<Teuchos::ParameterList> merged;  ///< that with what it shares with other lists, where it does
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;

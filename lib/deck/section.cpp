@@ -260,12 +260,18 @@ void Section::each(std::string_view meaning, const std::function<void(const std:
   for (const std::string& name : names) {
     Section inner = enter(name, meaning);
     List& one = *inner.state_->list;
+    one.itself = one.given;
     if (alike && one.given) one.merged = with_shared(list, name, {}), one.given = one.merged.get();
     use(name, inner);
   }
 }
 
 bool Section::given(std::string_view name) const { return state_->list->given && state_->list->given->isParameter(std::string(name)); }
+
+void Section::leave_out(std::string_view name) {
+  List& list = *state_->list;
+  if (list.merged && !list.itself->isParameter(std::string(name))) list.merged->remove(std::string(name), false);
+}
 
 bool Section::documenting() const { return state_->documenting; }
 

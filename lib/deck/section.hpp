@@ -98,6 +98,8 @@ class Section {
 
   /// Whether the user gave this key (for contradictory alternatives), and its path for messages.
   bool given(std::string_view name) const;
+  /// Leaves a key of a list of `each` out that the list does not set itself, but takes from `like` or `defaults`.
+  void leave_out(std::string_view name);
   bool documenting() const;  ///< whether the manual is being made: then every list is stated
   std::string path(std::string_view name = {}) const;
 

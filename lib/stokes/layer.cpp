@@ -96,7 +96,7 @@ void Layer::place_in_cell() {
       extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
     }
   }
-  if (!periodic_ || !(periodic_->cell() == *cell_) || !periodic_->holds(extent)) {
+  if (!periodic_ || !(periodic_->cell() == *cell_) || !periodic_->suits(extent)) {
     const auto kind = single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
     periodic_.emplace(kind, *cell_, share_of_rest * surface_.options.tolerance, extent);
     if (tree_) tree_->repeat(periodic_->images());

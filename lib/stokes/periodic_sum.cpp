@@ -10,8 +10,15 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Room left across, over the length there, so that a shape that moves does not ask for another table at once.
-constexpr double room_across = 0.25;
+/// Rounds the extent across outwards, to steps of between an eighth and a quarter of its length, so that a shape that moves seldom asks for another
+/// table, and the box depends on the shape only.
+std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent) {
+  for (int d = cell.n(); d < 3; ++d) {
+    const double step = std::exp2(std::floor(std::log2(extent[1][d] - extent[0][d]))) / 4;
+    extent[0][d] = step * std::floor(extent[0][d] / step), extent[1][d] = step * std::ceil(extent[1][d] / step);
+  }
+  return extent;
+}
 
 /// Numbers of steps to images that are near, so that the nearest of the others is about `far` lengths of the box away from every pair in it; and how
 /// near.
@@ -125,14 +132,15 @@ Eigen::Array4d product(const Differences& of, const double* table, int a, const 
 }  // namespace
 
 PeriodicSum::PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double asked, const std::array<Vec3, 2>& extent)
-    : kind_(kind), cell_(cell), away_(Vec3::Zero()), low_(Vec3::Constant(-0.5)), length_(Vec3::Ones()) {
+    : kind_(kind), cell_(cell), away_(Vec3::Zero()), low_(Vec3::Constant(-0.5)), length_(Vec3::Ones()), across_(rounded(cell, extent)) {
   const double tolerance = sharper(asked, kind);
-  for (int d = 0; d < 3; ++d) away_ += (d < cell.n() ? 5 : 5 * extent[1].norm()) * cell.vectors().col(d);
+  double highest = 0;
+  for (int d = cell.n(); d < 3; ++d) highest = std::max({highest, std::abs(across_[0][d]), std::abs(across_[1][d])});
+  for (int d = 0; d < 3; ++d) away_ += (d < cell.n() ? 5 : 5 * highest) * cell.vectors().col(d);
   Mat3 box = cell.vectors();
   for (int d = cell.n(); d < 3; ++d) {
-    const double length = extent[1][d] - extent[0][d];
-    length_[d] = (1 + 2 * room_across) * length;
-    low_[d] = extent[0][d] - room_across * length;
+    length_[d] = across_[1][d] - across_[0][d];
+    low_[d] = across_[0][d];
     box.col(d) *= length_[d];
   }
   low_ += cell.coordinates(away_);
@@ -161,10 +169,10 @@ PeriodicSum::PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, do
   components_ = kind == PeriodicKernel::Kind::stokeslet ? 12 : 24;
 }
 
-bool PeriodicSum::holds(const std::array<Vec3, 2>& extent) const {
-  const Vec3 origin = cell_.coordinates(away_);
+bool PeriodicSum::suits(const std::array<Vec3, 2>& extent) const {
+  const std::array<Vec3, 2> across = rounded(cell_, extent);
   for (int d = cell_.n(); d < 3; ++d)
-    if (extent[0][d] + origin[d] < low_[d] || extent[1][d] + origin[d] > low_[d] + length_[d]) return false;
+    if (across[0][d] != across_[0][d] || across[1][d] != across_[1][d]) return false;
   return true;
 }
 

@@ -23,8 +23,8 @@ class PeriodicSum {
   const PeriodicCell& cell() const { return cell_; }
   const std::vector<Vec3>& images() const { return images_; }  ///< H n of those near, 0 among them
 
-  /// Whether places with these lowest and highest coordinates are inside of what the rest is made for.
-  bool holds(const std::array<Vec3, 2>& extent) const;
+  /// Returns whether a sum made for these lowest and highest coordinates would be this one.
+  bool suits(const std::array<Vec3, 2>& extent) const;
 
   /// The place in the cell; far from the origin, near which kernels would take close points for equal ones.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
@@ -40,6 +40,7 @@ class PeriodicSum {
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
   Vec3 away_, low_, length_;  // of the box, in coordinates of the cell
+  std::array<Vec3, 2> across_;  // lowest and highest coordinates that the rest is made for, in directions that do not repeat
   ChebyshevBox box_;          // half a unit each way
   std::vector<Vec3> images_;
   std::array<std::vector<int>, 3> difference_;  // of nodes a, b of one direction: number n a + b

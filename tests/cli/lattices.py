@@ -127,6 +127,23 @@ def a_particle_that_meets_its_image_ends_the_run():
     refused(["Domain is smaller than Particle,", "image"], deck(text), "--set", "Particle/radius=1.5")
 
 
+def a_prescribed_body_keeps_its_velocity_outside_of_the_cell():
+    """Two bodies with one velocity stay at their distance, 0.7, in a flow with a gradient along the cell, though one of them is beyond its face."""
+    body = "motion: prescribed, velocity: [0.5, 0.0, 0.2], Surface: {elements per side: 3}"
+    deck(f"""
+Tanktread:
+  Flow: {{type: planar hyperbolic}}
+  Domain: {{side lengths: [6.5, 3.7, 3.9]}}
+  Particles:
+    one: {{{body}, center: [0.55, 0.0, 0.0]}}
+    two: {{{body}, center: [3.45, 0.0, 0.0], radius: 1.2}}
+  Time: {{scheme: bs3, fixed step: 0.01, final time: 0.03}}
+""")
+    run("deck.yaml", "--output", "pair", "--quiet")
+    gap = series("pair", "smallest_gap")
+    check(abs(gap - gap[0]).max() < 1e-9, "the gap changes:", gap)
+
+
 def what_no_lattice_can_do_is_refused():
     for lists, words in (
         ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "gradient"]),

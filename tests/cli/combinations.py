@@ -1,0 +1,575 @@
+#!/usr/bin/python3
+# ranks: 2
+# Decks that cover all pairs of choices. A pair is covered by a deck that runs and passes the checks, or the program rejects it with a sentence that has
+# a reason in REASONS. The program decides what it accepts, by --check, so that a pair which is accepted from now on counts as covered.
+#   combinations.py <tanktread> <source directory>             the decks that cover most pairs
+#   combinations.py <tanktread> <source directory> --long      all of them
+#   combinations.py <tanktread> <source directory> --list      prints the decks as choices, runs nothing
+#   combinations.py <tanktread> <source directory> --one 'kind=drop, flow=duct'     runs one deck and its checks, the other choices as they come
+import collections
+import concurrent.futures
+import functools
+import itertools
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+import time
+
+import numpy
+import yaml
+
+from harness import Failed, check, difference, run
+from metamorphic import _rotation, _rotation_vector
+
+FACTORS = {  # the first value of each is the one that a deck has if nothing speaks against it
+    "kind": ["capsule", "drop", "red cell", "vesicle", "free body", "prescribed body"],
+    "law": ["neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression", "surface tension", "none"],
+    "ratio": ["1", "5", "0.2"],
+    "surfactant": ["no", "yes"],
+    "Maxwell": ["no", "yes"],
+    "viscosity": ["no", "yes"],
+    "weight": ["no", "yes"],
+    "flow": ["simple shear", "quiescent", "uniform", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "round parabolic",
+             "plane parabolic", "duct", "changing"],
+    "medium": ["unbounded", "wall", "lattice of 1", "lattice of 2", "lattice of 3"],
+    "duct": ["none", "tube", "channel"],
+    "number": ["1", "2"],
+    "scheme": ["bs3", "rkc2", "tr-bdf2", "bdf3", "crank-nicolson", "auto"],
+    "step": ["fixed", "controlled"],
+    "adaptation": ["no", "yes"],
+    "symmetry": ["auto", "none"],
+}
+RIGID, FLUID = ("free body", "prescribed body"), ("drop", "vesicle")
+LATTICES = ("lattice of 1", "lattice of 2", "lattice of 3")
+ELASTIC = ("neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression")
+ONE_IS_NOT_REPEATED = True
+AFFINE = ("simple shear", "quiescent", "uniform", "four-roll", "planar hyperbolic", "uniaxial extension", "linear")
+
+# What the program rejects: words of its sentence, the choices that it names, and the reason. Entries without a reason in physics are to disappear.
+ANY = {factor: tuple(values) for factor, values in FACTORS.items()}
+REASONS = [
+    ("a rigid particle has no membrane", {"kind": RIGID, "law": ("none",)}, {"law": (*ELASTIC, "surface tension"), "Maxwell": ("yes",), "viscosity": ("yes",)},
+     "a rigid body has no membrane"),
+    ("there is no fluid in a rigid particle", {"kind": RIGID, "law": ("none",)}, {"ratio": ("5", "0.2")}, "a rigid body has no fluid inside"),
+    ("the viscosity of a fluid interface has no memory", {"kind": FLUID, "law": ("surface tension",), "surfactant": ("yes",)}, {"Maxwell": ("yes",)},
+     "an interface has no stress-free shape that springs could remember"),
+    ("it is on the interface of a drop", {"kind": ("capsule", "red cell", *RIGID), "law": (*ELASTIC, "none")}, {"surfactant": ("yes",)},
+     "surfactant is on an interface of two fluids"),
+    ("takes whatever force that needs", {"kind": ("prescribed body",)}, {"weight": ("yes",)}, "a motion that is given takes whatever force it needs"),
+    ("a flow must be along the wall", {"medium": ("wall",)}, {"flow": FACTORS["flow"]}, "there is no flow through a wall"),
+    ("a duct has walls of its own", {"medium": ("wall",)}, {"flow": ("duct",), "duct": ("tube", "channel")}, "a plane wall cuts a duct or is outside of it"),
+    ("images are of one plane", {"medium": ("wall",)}, {"duct": ("tube", "channel")}, "a plane wall cuts a duct or is outside of it"),
+    ("that flow fills unbounded space", {"duct": ("tube", "channel")}, {"flow": FACTORS["flow"]}, "the flow is not at rest at the wall of the duct"),
+    ("needs a list Tube", {"flow": ("duct",)}, {"duct": ("none",), "medium": ("wall", *LATTICES)}, "the flow of a duct needs a duct"),
+    ("Membrane/relaxation time needs Membrane/shear viscosity", {"Maxwell": ("yes",)}, {"viscosity": ("no",)}, "the springs are in series with dashpots"),
+    ("the velocity of a net force in every cell", {"medium": ("lattice of 1", "lattice of 2")}, {"kind": ("prescribed body",), "weight": ("yes",)},
+     "without walls nothing balances a net force in every cell"),
+]
+NOT_YET = [  # without a reason in physics
+    ("what repeats is named in the list Particles", {"medium": LATTICES}, {"number": ("1",)}, "one particle in a lattice"),
+    ("it is a steady problem", {"kind": ("prescribed body",)}, {"flow": ("changing",)}, "one prescribed body in a flow that changes"),
+    ("the mesh of a rigid particle stays as it is", {"kind": RIGID, "law": ("none",)}, {"adaptation": ("yes",)}, "the mesh of one body adapts"),
+    ("its concentration does not go over", {"surfactant": ("yes",)}, {"adaptation": ("yes",)}, "surfactant on another mesh"),
+    ("it is for one capsule|what repeats is named", {"Maxwell": ("yes",)}, {"number": ("2",), "medium": LATTICES}, "several Maxwell membranes"),
+    ("what the membrane remembers does not go over", {"Maxwell": ("yes",)}, {"adaptation": ("yes",)}, "Maxwell membranes on another mesh"),
+    ("is in no Jacobian", {"surfactant": ("yes",), "Maxwell": ("yes",)}, {"scheme": ("tr-bdf2", "bdf3", "crank-nicolson", "auto")}, "implicit steps of fields"),
+    ("a lattice can follow no flow but one", {"medium": LATTICES}, {"flow": ("round parabolic", "plane parabolic", "duct", "changing"), "duct": ("tube", "channel")},
+     "lattices with flows that repeat or change"),
+    ("a tube does not repeat", {"medium": LATTICES}, {"duct": ("tube", "channel")}, "ducts that repeat"),
+]
+NO_DECK = {*(("kind", kind, "law", "surface tension") for kind in ("capsule", "red cell")), *(("kind", kind, "law", law) for kind in FLUID for law in ELASTIC),
+           *(("kind", kind, "law", "none") for kind in FACTORS["kind"] if kind not in RIGID)}  # by the definition of the kinds
+RANK = {factor: k for k, factor in enumerate(FACTORS)}
+# Where a resumed run is not the same to the last bit, to be mended: by the choices, and what differs by how much.
+OPEN = {
+    "a resumed run counts an evaluation less": lambda c, off, counts: off and len(counts) == len(off),
+    "a resumed run differs by rounding": lambda c, off, counts: off and (c["medium"] != "unbounded" or c["adaptation"] == "yes") and
+                                         (c["ratio"] != "1" or c["kind"] in RIGID or c["viscosity"] == "yes" or c["number"] == "2") and
+                                         all(value < 1e-9 for name, value in off.items() if name not in counts and name != "power_residual"),
+}
+COUNTED = re.compile(r"evaluations|velocity_iterations|solver_iterations|iterations")
+GRADIENTS = {"simple shear": [[0, 0, 1], [0, 0, 0], [0, 0, 0]], "four-roll": [[0.65, 0, 0.35], [0, 0, 0], [-0.35, 0, -0.65]],
+             "planar hyperbolic": [[1, 0, 0], [0, 0, 0], [0, 0, -1]], "uniaxial extension": [[-0.5, 0, 0], [0, -0.5, 0], [0, 0, 1]],
+             "linear": [[0.3, -0.2, 1.0], [0.1, -0.4, 0.2], [-0.3, 0.5, 0.1]], "changing": [[0, 0, 1], [0, 0, 0], [0, 0, 0]]}
+STEP, STEPS = 0.005, 3
+FIRST = 12  # decks of the short run
+CHECKS = ("series", "resume", "ranks", "order", "symmetry", "motions")
+SIDES = [6.5, 3.7, 3.9]  # of a lattice, over the particle's radius
+OWN = re.compile(r"(.*/)?(wall_seconds|solver_iterations|velocity_iterations)")  # of the machine, or of sums in another order
+UNDEFINED = re.compile(r"(.*/)?(inclination|axis_1_x[123])")  # of equal semi-axes
+NEAREST = re.compile(r"first_of_gap|second_of_gap|particle_at_wall|gap_x[123]|nearest_to_wall_x[123]")  # where a distance is least: known to its root, or one of several
+INVARIANT = re.compile(r"(.*/)?(volume|area|energy|membrane_dissipation|local_area_change|axis_[123]|surfactant_mass|smallest_concentration"
+                       r"|largest_concentration|gap|smallest_gap|fluid_dissipation|disturbed_pressure_drop)")
+
+
+def complete(fixed):
+    """Adds to some choices those that suit them."""
+    c = dict(fixed)
+    if "kind" not in c:
+        wants = "drop" if "surfactant" in c and c["surfactant"] == "yes" else "capsule"
+        c["kind"] = {"surface tension": "drop", "none": "free body", None: wants}.get(c.get("law"), "capsule")
+    if "law" not in c:
+        c["law"] = "none" if c["kind"] in RIGID else "surface tension" if c["kind"] in FLUID else "neo-Hookean"
+    if c.get("Maxwell") == "yes":
+        c.setdefault("viscosity", "yes")
+    if c.get("duct", "none") != "none":
+        c.setdefault("flow", "duct")
+    if c.get("flow") == "duct":
+        c.setdefault("duct", "tube")
+    if c.get("medium") in LATTICES and ONE_IS_NOT_REPEATED:
+        c.setdefault("number", "2")
+    return {factor: c.get(factor, values[0]) for factor, values in FACTORS.items()}
+
+
+class Scene:
+    """A choice as a deck, moved by `shift` and turned by `turn`."""
+
+    def __init__(self, c, shift=(0, 0, 0), turn=numpy.eye(3), order=("one", "two"), more=(), symmetric=None):
+        self.c, self.shift, self.turn, self.order, self.more = c, numpy.array(shift, float), turn, order, more
+        self.symmetric = c["symmetry"] == "auto" if symmetric is None else symmetric
+        self.a = 0.4 if c["duct"] != "none" else 1.0
+
+    def place(self, x):
+        return [float(value) for value in self.turn @ numpy.array(x) * self.a + self.shift]
+
+    def vector(self, x):
+        return [float(value) for value in self.turn @ numpy.array(x, float)]
+
+    def flow(self):
+        c, name = self.c, self.c["flow"]
+        flow = {"type": name}
+        turned = not numpy.array_equal(self.turn, numpy.eye(3)) and name in GRADIENTS and c["duct"] == "none"
+        if name == "changing":
+            flow = {"type": "duct" if c["duct"] != "none" else "simple shear",
+                    "history": {"type": "sine", "mean": 1.0, "amplitude": 0.5, "frequency": 10.0}}
+        if turned or name == "linear":
+            flow["type"], gradient = "linear", self.turn @ numpy.array(GRADIENTS[name], float) @ self.turn.T
+            gradient -= numpy.eye(3) * numpy.trace(gradient) / 3
+            flow["gradient"] = [float(value) for value in gradient.ravel()]
+        elif name == "uniform":
+            flow["velocity"] = self.vector([0.7, -1.1, 0.0 if c["medium"] == "wall" else 0.4])
+        elif name == "four-roll":
+            flow["roll parameter"] = 0.3
+        elif name.endswith("parabolic"):
+            flow.update({"type": "parabolic", "profile": name.split()[0], "maximum velocity": 3.0, "half width": 3.0})
+        if c["weight"] == "yes":
+            flow["gravity"] = self.vector([0.4, -0.3, -1.0])
+        return flow
+
+    def particle(self, size, centre, symmetric):
+        c, kind, a = self.c, self.c["kind"], self.a * size
+        axes = _rotation(numpy.radians([20.0, 35.0, -15.0])) if not symmetric else numpy.eye(3)
+        particle = {"shape": "ellipsoid", "semi-axes": [float(a * x) for x in ([1.15, 1.05, 0.7] if kind == "vesicle" else [1.1, 1.0, 0.9])]}
+        if kind == "red cell":
+            particle = {"shape": "red cell", "radius": 1.2 * a}
+        particle["center"] = self.place(centre)
+        axes = self.turn @ axes
+        if not numpy.array_equal(axes, numpy.eye(3)):
+            particle["orientation"] = [float(x) for x in _rotation_vector(axes)]
+        if kind in ("capsule", "red cell"):
+            particle["initial shape"] = {"stretch": [1.05, 0.98, 1.0]}
+        if kind in RIGID:
+            particle["motion"] = kind.split()[0]
+        if kind == "prescribed body":
+            particle.update({"velocity": self.vector([0.5, 0.0, 0.2]), "angular velocity": self.vector([0.2, 0.1, 1.0])})
+        if c["ratio"] != "1":
+            particle["viscosity ratio"] = float(c["ratio"])
+        if c["weight"] == "yes":
+            particle["density difference"] = 0.8
+        return particle
+
+    def membrane(self):
+        c, law = self.c, self.c["law"]
+        membrane = {} if law == "none" else {"law": law, "surface tension" if law == "surface tension" else "shear modulus": 5.0}
+        if law in ("Skalak", "Evans-Skalak"):
+            membrane["area dilatation"] = 2.0
+        if law == "Mooney-Rivlin":
+            membrane["neo-Hookean share"] = 0.7
+        if law == "expression":
+            membrane.update({"energy": "(I1 - log(I2 + 1) + c*log(I2 + 1)^2)/2", "constants": {"c": {"value": 0.5}}})
+        if c["kind"] == "vesicle":
+            membrane.update({"bending number": 0.1, "bending reference": "flat", "global area dilatation": 5.0})
+        if c["kind"] == "red cell":
+            membrane["bending number"] = 0.02
+        if c["viscosity"] == "yes":
+            membrane["shear viscosity"] = 0.5 * self.a
+        if c["Maxwell"] == "yes":
+            membrane["relaxation time"] = 0.1
+        return {"Membrane": membrane} if membrane else {}
+
+    def lists(self):
+        c = self.c
+        lists = {**self.membrane(), "Surface": {"elements per side": 3}}
+        if c["surfactant"] == "yes":
+            lists["Interface"] = {"surfactant": {"elasticity number": 0.3, "diffusivity": 0.1 * self.a**2}}
+        if c["adaptation"] == "yes":
+            lists["Adaptation"] = {"enabled": True, "surface tolerance": 5e-6 * self.a, "levels": 1}  # to 218 points, after a step or two
+            lists["Surface"]["extraordinary points"] = "catmull-clark"
+        return lists
+
+    def deck(self):
+        c = self.c
+        symmetric = self.symmetric
+        off = numpy.zeros(3) if symmetric else numpy.array([0.1, -0.2, 0.15]) * (0.5 if c["duct"] != "none" else 1)
+        deck = {"Flow": self.flow()}
+        if c["number"] == "1":
+            deck.update({"Particle": self.particle(1.0, off, symmetric), **self.lists()})
+        else:
+            apart = numpy.array([1.45, 0.0, 0.0 if symmetric else 0.1])
+            two = {"one": self.particle(1.0, off - apart, symmetric), "two": self.particle(1.0 if symmetric else 0.9, off + apart, symmetric)}
+            deck["Particles"] = {name: {**two[name], **self.lists()} for name in self.order}
+        if c["duct"] == "tube":
+            deck["Tube"] = {"azimuthal elements": 8, "axial elements": 8}
+        if c["duct"] == "channel":
+            deck["Channel"] = {"azimuthal elements": 8, "axial elements": 16, "depth": 0.2, "half length": 1.5}
+        if c["medium"] == "wall":
+            deck["Wall"] = {"point": self.place([0, 0, -1.7]), "normal": self.vector([0, 0, 1])}
+        if c["medium"] in LATTICES:
+            directions = ["x1", "x2", "x3"][:int(c["medium"][-1])]
+            vectors = [self.a * side * numpy.array(axis) for side, axis in zip(SIDES, numpy.eye(3))]
+            deck["Domain"] = {"periodic": " ".join(directions), "lattice vectors": [x for vector in vectors for x in self.vector(vector)]}
+        deck["Time"] = {"scheme": c["scheme"], "final time": STEPS * STEP}
+        deck["Time"].update({"fixed step": STEP} if c["step"] == "fixed" else {"initial step": STEP, "maximum step": STEP, "tolerance": 1e-3})
+        if c["scheme"] == "crank-nicolson":
+            deck["Time"]["nonlinear solver"] = "anderson"  # the plain sub-iteration has a limit of stability
+        if c["symmetry"] == "none":
+            deck["Symmetry"] = {"use": "none"}
+        deck["Solvers"] = {"tolerance": 1e-12}
+        deck["Output"] = {"interval": STEP, "between steps": "land"}
+        if self.balances():
+            deck["Output"]["power balance"] = True
+        for section, key, value in self.more:
+            deck.setdefault(section, {})[key] = value
+        return deck
+
+    def balances(self):
+        return self.c["kind"] not in RIGID and not self.c["flow"].endswith("parabolic")
+
+    def steady(self):
+        return self.c["kind"] == "prescribed body" and self.c["number"] == "1" and self.c["medium"] not in LATTICES
+
+    def text(self):
+        return yaml.safe_dump({"Tanktread": self.deck()}, sort_keys=False, default_flow_style=None, width=1000)
+
+
+@functools.cache
+def _sentences(text):
+    with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
+        path = pathlib.Path(directory) / "deck.yaml"
+        path.write_text(text)
+        result = run(path, "--check", code=None)
+    check(result.returncode in (0, 2), f"exit code {result.returncode} of --check: {result.stderr}\n{text}")
+    return tuple(result.stderr.splitlines()) if result.returncode else ()
+
+
+def sentences(c):
+    """What the program says against a choice: nothing if it accepts it."""
+    return _sentences(Scene(c).text())
+
+
+def pairs_of(c):
+    return {((f, c[f]), (g, c[g])) for f, g in itertools.combinations(FACTORS, 2)}
+
+
+def reason(pair, said):
+    """The entries of the table that are about this pair and hold words of what is said."""
+    (f, a), (g, b) = pair
+    for entry in REASONS + NOT_YET:
+        words, one, other, _ = entry
+        for x, y in ((one, other), (other, one)):
+            if a in x.get(f, ()) and b in y.get(g, ()) and any(re.search(words, sentence) for sentence in said):
+                return entry
+    return None
+
+
+class Cover:
+    """Decks that cover all pairs that the program accepts, and a deck of each pair that it rejects.
+
+    Greedy: each deck starts from an uncovered pair and takes the values that cover most other pairs, as far as no pair of them is known to be
+    rejected. If the program rejects it, the pairs that its sentences are about are tried by themselves.
+    """
+
+    def __init__(self):
+        self.left = {((f, a), (g, b)): None for f, g in itertools.combinations(FACTORS, 2) for a in FACTORS[f] for b in FACTORS[g]
+                     if (f, a, g, b) not in NO_DECK}
+        self.barred = {((f, a), (g, b)) for f, a, g, b in NO_DECK}  # pairs that no deck holds
+        self.together = []  # three choices that the program rejects although it accepts each two of them
+        self.decks, self.rejected, self.without_reason = [], {}, {}
+        self.asked = 0
+        while self.left:
+            self.next_deck()
+
+    def next_deck(self):
+        count = collections.Counter(choice for pair in self.left for choice in pair)
+        start = max(self.left, key=lambda pair: count[pair[0]] + count[pair[1]])
+        c = self.grown(dict(start), count)
+        if c is None:  # each of the two is accepted with none of the choices that the other one needs
+            return self.reject(start)
+        self.asked += 1
+        said = sentences(c)
+        if not said:
+            self.decks.append(c)
+            self.left = {pair: None for pair in self.left if pair not in pairs_of(c)}
+            return None
+        blamed = sorted(pair for pair in pairs_of(c) if reason(pair, said))
+        if not any([pair in self.left and self.reject(pair) for pair in blamed]) and not self.third(blamed, c):
+            self.without_reason[said] = c
+            self.reject(start)
+        return None
+
+    def third(self, blamed, c):
+        """Finds a choice of c with which a pair is rejected that is accepted without it."""
+        for pair in blamed:
+            for choice in c.items():
+                self.asked += 1
+                if choice not in pair and reason(pair, sentences(complete(dict([*pair, choice])))):
+                    self.together.append({*pair, choice})
+                    return True
+        return False
+
+    def reject(self, pair):
+        """Tries a pair by itself. Returns whether it is rejected."""
+        c = complete(dict(pair))
+        self.asked += 1
+        said = sentences(c)
+        if not said:
+            self.decks.append(c)
+            self.left = {other: None for other in self.left if other not in pairs_of(c)}
+            return False
+        self.rejected[pair] = (c, said, reason(pair, said))
+        self.barred.add(pair)
+        self.left.pop(pair, None)
+        return True
+
+    def grown(self, c, count):
+        """Adds a value for each factor that is left, so that no pair is barred: depth first, values that cover most first. None if there are none."""
+        rest = sorted((f for f in FACTORS if f not in c), key=lambda f: (-sum(count[f, a] for a in FACTORS[f]), f))
+        if not rest:
+            return c
+        f = min(rest, key=lambda f: (sum(self.fits(c, f, a) for a in FACTORS[f]) > 1, rest.index(f)))  # values without an alternative first
+        for a in sorted((a for a in FACTORS[f] if self.fits(c, f, a)), key=lambda a: -sum(self.pair(g, c[g], f, a) in self.left for g in c)):
+            if whole := self.grown({**c, f: a}, count):
+                return whole
+        return None
+
+    def fits(self, c, f, a):
+        return all(self.pair(g, c[g], f, a) not in self.barred for g in c) and not any({(f, a)} <= three <= {*c.items(), (f, a)} for three in self.together)
+
+    @staticmethod
+    def pair(f, a, g, b):
+        return ((f, a), (g, b)) if RANK[f] < RANK[g] else ((g, b), (f, a))
+
+
+def _series(results):
+    """Every series of a run by its name, `particle/name` of a particle."""
+    import h5py
+
+    found = {}
+    with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
+        file["series"].visititems(lambda name, item: found.update({name: item[:]}) if hasattr(item, "shape") else None)
+    return found
+
+
+def _points(results):
+    """The last surface: of each particle, its points about their middle."""
+    import h5py
+
+    with h5py.File(sorted(pathlib.Path(results).glob("snapshot_*.hdf"))[-1], "r") as file:
+        points = file["VTKHDF/Points"][:]
+        particle = file["VTKHDF/PointData/particle"][:] if "particle" in file["VTKHDF/PointData"] else numpy.zeros(len(points))
+    return [points[particle == p] - points[particle == p].mean(0) for p in numpy.unique(particle)]
+
+
+class Trial:
+    """The checks of one deck, in a directory of its own."""
+
+    def __init__(self, c, directory):
+        self.scene, self.c, self.directory, self.wrong = Scene(c), c, pathlib.Path(directory), []
+
+    def run(self, name, scene, ranks=1):
+        path = self.directory / f"{name}.yaml"
+        path.write_text(scene.text())
+        run(path, "--output", self.directory / name, "--overwrite", "--quiet", ranks=ranks)
+        return self.directory / name
+
+    def compare(self, one, other, tolerance, chosen=None, excluded=OWN, rows=None):
+        a, b = ({name: values[:rows] for name, values in _series(results).items()} for results in (one, other))
+        check(a.keys() == b.keys(), f"other series: {sorted(a.keys() ^ b.keys())}")
+        off = {}
+        for name in a:
+            if excluded.fullmatch(name) or OWN.fullmatch(name) or UNDEFINED.fullmatch(name) or (chosen and not chosen.fullmatch(name)):
+                continue
+            off[name] = difference(a[name], b[name], name)
+        beyond = {name: f"{value:.1e}" for name, value in off.items() if value > tolerance}
+        check(not beyond, f"off by more than {tolerance:g}: {beyond}")
+
+    def check_series(self):
+        """Volume, mass, forces and power, and that everything is finite."""
+        c, found = self.c, _series(self.base)
+        for name, values in found.items():
+            last = name.split("/")[-1]
+            check(not numpy.isinf(values).any() and (UNDEFINED.fullmatch(name) or not numpy.isnan(values).any()), f"{name} is not finite: {values}")
+            if last == "volume_error":
+                check(abs(values).max() <= 1e-12, f"{name} {abs(values).max():.1e}")
+            if last == "surfactant_mass":
+                check(abs(values - 1).max() <= 1e-12, f"{name} {abs(values - 1).max():.1e}")
+            if last == "power_residual":
+                check(abs(values).max() <= 3e-2, f"{name} {abs(values).max():.1e}")
+            if last == "force_imbalance":  # of a wall of 8 elements around
+                check(abs(values).max() <= 5e-3, f"{name} {abs(values).max():.1e}")
+        if c["medium"] == "lattice of 3" and c["kind"] != "prescribed body":
+            weights = 0.8 * numpy.array([0.4, -0.3, -1.0]) if c["weight"] == "yes" else numpy.zeros(3)
+            gradient = numpy.array([found[f"pressure_gradient_x{k}"][-1] for k in (1, 2, 3)])
+            check(abs(abs(gradient) - abs(weights * found["volume_fraction"][-1])).max() <= 1e-6, f"pressure gradient {gradient} for weights {weights}")
+
+    def check_resume(self):
+        """To the last bit."""
+        parts = self.directory / "parts"
+        shutil.copytree(self.base, parts)
+        snapshots = sorted(parts.glob("snapshot_*.hdf"))
+        check(len(snapshots) > 2, f"{len(snapshots)} snapshots")
+        snapshots[-1].unlink()
+        run("--resume", parts, "--quiet")
+        a, b = _series(self.base), _series(parts)
+        check(all(a[name].shape == b[name].shape for name in a), "other numbers of rows")
+        off = {name: difference(a[name], b[name], name) for name in a if not name.endswith("wall_seconds") and a[name].tobytes() != b[name].tobytes()}
+        counts = [name for name in off if COUNTED.fullmatch(name)]
+        self.open = [what for what, holds in OPEN.items() if holds(self.c, off, counts)]
+        check(not off or self.open, f"resumed run differs: {off}")
+
+    def implicit(self):
+        return self.c["scheme"] in ("tr-bdf2", "bdf3", "auto")
+
+    def rounding(self):
+        """What sums in another order may change. Implicit steps multiply it, more so on a mesh that has just been refined: they are extrapolated with
+        the frozen operator, which is kept in single precision."""
+        return 1e-7 if self.c["adaptation"] == "yes" else 1e-8 if self.implicit() else 1e-10
+
+    def check_ranks(self):
+        self.compare(self.base, self.run("ranks", self.scene, ranks=2), self.rounding())
+
+    def check_order(self):
+        """In a scene without symmetry: rules at equal distances may differ."""
+        one, other = (self.run(name, Scene(self.c, order=order, symmetric=False)) for name, order in (("ordered", ("one", "two")), ("permuted", ("two", "one"))))
+        self.compare(one, other, self.rounding(), excluded=NEAREST)
+
+    def check_motions(self):
+        """Shift and rotation. Rotations change the single-precision numbers of the frozen operator, with which implicit steps are extrapolated."""
+        tolerance = 1e-5 if self.implicit() else 1e-8
+        c, more = self.c, [("Quadrature", "tolerance", 1e-9), ("Time", "newton tolerance", 1e-9), ("Time", "newton iterations", 50),
+                           ("Time", "iteration tolerance", 1e-12), ("Time", "final time", STEP)]
+        shifts = {"tube": [7.0, 0, 0], "channel": None}.get(c["duct"], [2.0, -3.0, 5.0])
+        if c["medium"] == "wall" or c["flow"] == "plane parabolic":
+            shifts = [2.0, -3.0, 0.0]
+        if c["flow"] == "round parabolic":
+            shifts = [2.0, 0.0, 0.0]
+        turn = {"tube": _rotation(numpy.array([numpy.pi / 4, 0, 0])), "channel": None}.get(c["duct"], _rotation(numpy.array([0.5, -0.9, 0.3])))
+        if c["flow"].endswith("parabolic") or (c["duct"] == "tube" and c["flow"] == "simple shear"):
+            turn = None
+        if shifts is None and turn is None:
+            return
+        exact = self.run("exact", Scene(c, more=more))
+        for name, scene in ("shifted", shifts is not None and Scene(c, shift=shifts, more=more)), ("turned", turn is not None and Scene(c, turn=turn, more=more)):
+            if not scene:
+                continue
+            other = self.run(name, scene)
+            self.compare(exact, other, 1e-8, chosen=INVARIANT, rows=1)
+            self.compare(exact, other, tolerance, chosen=INVARIANT)
+            if not self.scene.steady():
+                for one, moved in zip(_points(exact), _points(other)):
+                    check(one.shape == moved.shape, f"{name}: {len(one)} and {len(moved)} points")
+                    off = abs(one @ scene.turn.T - moved).max()
+                    check(off <= tolerance, f"{name}: points are off by {off:.1e}")
+
+    def check_symmetry(self):
+        """What is computed of the fundamental part only is what is computed of all."""
+        self.compare(self.base, self.run("whole", Scene(self.c, more=[("Symmetry", "use", "none")])), 1e-6 if self.implicit() else 1e-8, excluded=re.compile(NEAREST.pattern + "|.*(iterations|assemblies)"))
+
+    def checks(self, ranks):
+        yield self.check_series
+        if not self.scene.steady():
+            yield self.check_resume
+        if ranks:
+            yield self.check_ranks
+        if self.c["number"] == "2":
+            yield self.check_order
+        if self.c["symmetry"] == "auto":
+            yield self.check_symmetry
+        if self.c["adaptation"] == "no" or self.c["number"] == "1":  # 436 points take minutes
+            if "--long" in sys.argv or self.c["medium"] not in LATTICES:
+                yield self.check_motions
+
+    def faults(self, ranks, chosen):
+        """Runs the deck and its checks; returns what is wrong, which faults of OPEN it shows, and the seconds of each check."""
+        wrong, seconds, self.open = [], {}, []
+        try:
+            self.base = self.run("base", self.scene)
+        except Failed as failure:
+            return [f"run: {failure}"], [], seconds
+        for one in self.checks(ranks):
+            name, begin = one.__name__.removeprefix("check_"), time.monotonic()
+            if name in chosen:
+                try:
+                    one()
+                except Failed as failure:
+                    wrong.append(f"{name}: {failure}")
+                seconds[name] = round(time.monotonic() - begin, 1)
+        return wrong, self.open, seconds
+
+
+def said_of(c):
+    """The choices that are not those that suit the others."""
+    neutral = complete({})
+    return ", ".join(f"{factor}={value}" for factor, value in c.items() if value != neutral[factor]) or "neutral"
+
+
+def _option(name, default):
+    return sys.argv[sys.argv.index(name) + 1] if name in sys.argv else default
+
+
+def _tried(c, ranks):
+    with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
+        return Trial(c, directory).faults(ranks, _option("--checks", ",".join(CHECKS)).split(","))
+
+
+def _report(decks):
+    """Runs the decks, two at a time. Returns how many have faults."""
+    failed = 0
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for c, (wrong, still_open, seconds) in zip(decks, pool.map(_tried, decks, itertools.cycle([True, False, False]))):
+            failed += bool(wrong)
+            print("FAILED" if wrong else "passed", said_of(c), seconds if "--long" in sys.argv else "", *("\n    open: " + one for one in still_open), *("\n    " + one for one in wrong), flush=True)
+            if wrong:
+                print(Scene(c).text(), flush=True)
+    return failed
+
+
+def _main():
+    if one := _option("--one", ""):
+        c = complete(dict(word.strip().split("=") for word in one.split(",")))
+        if said := sentences(c):
+            sys.exit("\n".join(said))
+        sys.exit(bool(_report([c])))
+    cover = Cover()
+    met = [why for _, _, why in cover.rejected.values() if why]
+    for _, said, why in cover.rejected.values():
+        if why is None:
+            print("a rejection without a reason:", *said, sep="\n    ")
+    for said, c in cover.without_reason.items():
+        print("a rejection without a reason,", said_of(c), *said, sep="\n    ")
+    for entry in REASONS + NOT_YET:
+        if entry not in met:
+            print("no deck is rejected any more for:", entry[3], f"({entry[0]})")
+    decks = cover.decks if "--long" in sys.argv or "--list" in sys.argv else cover.decks[:FIRST]
+    covered = len(set().union(*map(pairs_of, decks)))
+    print(f"{len(decks)} of {len(cover.decks)} decks, {covered} pairs; {len(cover.rejected)} pairs are rejected, "
+          f"{sum(why in NOT_YET for _, _, why in cover.rejected.values())} of them without a reason in physics")
+    if "--list" in sys.argv:
+        return print("\n".join(map(said_of, decks)))
+    failed = _report(decks) + len(cover.without_reason) + sum(why is None for _, _, why in cover.rejected.values())
+    sys.exit(failed > 0)
+
+
+_main()
