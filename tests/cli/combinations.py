@@ -68,13 +68,8 @@ REASONS = [
      "without walls nothing balances a net force in every cell"),
 ]
 NOT_YET = [  # without a reason in physics
-    ("what repeats is named in the list Particles", {"medium": LATTICES}, {"number": ("1",)}, "one particle in a lattice"),
     ("it is a steady problem", {"kind": ("prescribed body",)}, {"flow": ("changing",)}, "one prescribed body in a flow that changes"),
     ("the mesh of a rigid particle stays as it is", {"kind": RIGID, "law": ("none",)}, {"adaptation": ("yes",)}, "the mesh of one body adapts"),
-    ("its concentration does not go over", {"surfactant": ("yes",)}, {"adaptation": ("yes",)}, "surfactant on another mesh"),
-    ("it is for one capsule|what repeats is named", {"Maxwell": ("yes",)}, {"number": ("2",), "medium": LATTICES}, "several Maxwell membranes"),
-    ("what the membrane remembers does not go over", {"Maxwell": ("yes",)}, {"adaptation": ("yes",)}, "Maxwell membranes on another mesh"),
-    ("is in no Jacobian", {"surfactant": ("yes",), "Maxwell": ("yes",)}, {"scheme": ("tr-bdf2", "bdf3", "crank-nicolson", "auto")}, "implicit steps of fields"),
     ("a lattice can follow no flow but one", {"medium": LATTICES}, {"flow": ("round parabolic", "plane parabolic", "duct", "changing"), "duct": ("tube", "channel")},
      "lattices with flows that repeat or change"),
     ("a tube does not repeat", {"medium": LATTICES}, {"duct": ("tube", "channel")}, "ducts that repeat"),
