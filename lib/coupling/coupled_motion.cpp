@@ -125,9 +125,13 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
     delta = with_shape(std::move(delta), capsule_.step_preconditioner(shape(delta)));
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Block& block = blocks_[k];
-      const Net dx = block.rows.rows(delta);
-      const Eigen::VectorXd driven = block.on.field->rate_change(dx, block.on.field->value_change(dx, Eigen::VectorXd::Zero(block.size)), {});
-      set_coefficients(delta, k, block.on.field->solve(shift, coefficients(delta, k) + shift * driven));
+      membrane::Field& field = *block.on.field;
+      Eigen::VectorXd r = coefficients(delta, k);
+      if (field.follows_shape()) {
+        const Net dx = block.rows.rows(delta);
+        r += shift * field.rate_change(dx, field.value_change(dx, Eigen::VectorXd::Zero(block.size)), {});
+      }
+      set_coefficients(delta, k, field.solve(shift, r));
     }
     Eigen::Map<Net>(out, rows_, 3) = delta;
   };

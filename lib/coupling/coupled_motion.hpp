@@ -15,8 +15,8 @@ namespace tanktread::coupling {
 ///
 ///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   the load of each field added to that of its particle                          (4.33)
 ///
-/// The Jacobian of the fields is exact; the Krylov solver sees x and q, preconditioned by the inverse of the lower block triangle with the field's
-/// own block. Calls are collective; every rank holds all fields.
+/// The Jacobian of the fields is exact. The Krylov solver sees x and q, preconditioned by the field's own block, and by the lower block triangle if
+/// the field follows the shape. Calls are collective; every rank holds all fields.
 class CoupledMotion : public Dynamics {
  public:
   struct On {

@@ -43,6 +43,9 @@ class Field {
   /// Returns an approximation of (1 - shift A)^-1 r, A = d(rate)/dq.
   virtual Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const = 0;
 
+  /// Returns whether the field follows the shape within a short time of its own. Implicit solvers then eliminate the field.
+  virtual bool follows_shape() const { return false; }
+
   /// Corrects the approximate solution dq of (1 - shift J) dq = r so that sums that J conserves agree with those of r to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
