@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <limits>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -53,7 +53,6 @@ class Deforming : public ParticleSystem {
 
   bool resume(Resumed& resumed) override {
     const bool another_mesh = restore(resumed.checkpoint, members_);
-    if (another_mesh) arrange(members_);
     const Net x = resumed.state.x.topRows(n_points());
     const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
     if (another_mesh || another_symmetry) settle(x);
@@ -132,7 +131,6 @@ class Deforming : public ParticleSystem {
     if (before_.empty()) return;
     for (auto& [p, body] : before_) members_[p].body = std::move(body);
     before_.clear();
-    arrange(members_);
     settle(x.topRows(n_points()));
   }
 
@@ -206,7 +204,9 @@ class Deforming : public ParticleSystem {
   const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
 
   /// Control points of all particles on their present meshes.
-  Eigen::Index n_points() const { return members_.back().block.first_point + members_.back().block.n_points; }
+  Eigen::Index n_points() const {
+    return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
+  }
 
   void add_power(const motion::State& state, Moment& whole) {
     const auto clock = phases_.time("power balance");

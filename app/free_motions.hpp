@@ -1,5 +1,5 @@
 #pragma once
-// What a steady search takes from the scene: the rigid motions that it leaves free, and the step of its iteration.
+// Parameters of a steady search that follow from the scene: free rigid motions and the step of the iteration.
 
 #include <vector>
 

@@ -110,9 +110,9 @@ struct Scene : ParticleKind {
   std::string sought() const { return steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum"; }
   bool load_is_strong() const { return membrane.load == "strong"; }
 
-  /// Whether the particles are unknowns of one coupled system. Otherwise the scene is one rigid body, of which its own resistance is enough.
+  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is one rigid body and its resistance problem.
   bool in_system() const { return !particles.empty() || !name.empty() || !particle.rigid() || domain.present; }
-  /// Whether particles meet others or images of themselves.
+  /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
   bool has_gaps() const { return !particles.empty() || domain.present; }
 
   /// The scene of each particle, as if it were alone.

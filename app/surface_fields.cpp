@@ -24,8 +24,7 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
   if (all_.empty()) return;
   std::vector<coupling::CoupledMotion::On> on;
   for (const One& one : all_) on.push_back({one.particle, one.field.get()});
-  const coupling::SolverOptions& solvers = members.front().scene.solvers;
-  motion_.emplace(capsule, std::move(on), solvers.of(solvers.implicit_step));
+  motion_.emplace(capsule, std::move(on));
 }
 
 const motion::State& SurfaceFields::of_shape(const motion::State& state) {

@@ -145,8 +145,12 @@ class Capsule : public Dynamics {
   RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx. Collective
   /// B v with B frozen, or v if control points slide. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
-  void prepare_step(double shift);                             ///< prepares step_preconditioner
+  void prepare_step(double shift);  ///< prepares step_preconditioner
+  bool preconditions_step() const { return area_.has_value(); }
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system of `solve`
+
+  /// Solves the linear system of an implicit step for `rhs`, a state of any number of rows, to this relative residual, and counts it. Collective.
+  Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
   bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
   void symmetrise(const membrane::Field& field, Eigen::VectorXd& q) const {
     if (parameters_.symmetry.order() > 1) field.symmetrise(parameters_.symmetry, q);

@@ -250,14 +250,18 @@ Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const 
     const Net delta = Eigen::Map<const Net>(in, n, 3);
     Eigen::Map<Net>(out, n, 3) = left(delta) - shift * (rate_change(delta, {}).rate + secants(delta));
   };
-  Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * n);
   prepare_step(shift);
   const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = step_preconditioner(Eigen::Map<const Net>(in, n, 3)); };
-  const LinearSystem system{{{"displacement", 3 * n}}, apply, area_ ? Apply(keep_area) : Apply()};
+  return symmetric(solve_step(apply, preconditions_step() ? Apply(keep_area) : Apply(), rhs, tolerance));
+}
+
+Net Capsule::solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
+  const LinearSystem system{{{"displacement", rhs.size()}}, product, precondition};
   const SolveReport report = step_solver_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
   ++work_.solves;
   work_.solver_iterations += report.iterations;
-  return symmetric(Eigen::Map<const Net>(solution.data(), n, 3));
+  return Eigen::Map<const Net>(solution.data(), rhs.rows(), 3);
 }
 
 void Capsule::improve_start(Net& y, const Net& before, double shift) {

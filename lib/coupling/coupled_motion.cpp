@@ -14,8 +14,7 @@ Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::nu
 Net rows_of(const spline::Block& block, const Net& net) { return net.rows() > 0 ? Net(block.rows(net)) : Net(); }
 }  // namespace
 
-CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields, const IterativeOptions& solver)
-    : capsule_(capsule), n_(capsule.n_points()), solver_(solver) {
+CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields) : capsule_(capsule), n_(capsule.n_points()) {
   Eigen::Index first = 3 * n_;
   for (const On& on : fields) {
     const Particle& particle = capsule.particles()[on.particle];
@@ -135,12 +134,7 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
     }
     Eigen::Map<Net>(out, rows_, 3) = delta;
   };
-  Eigen::VectorXd solution = Eigen::VectorXd::Zero(3 * rows_);
-  const LinearSystem linear{{{"displacement and fields", 3 * rows_}}, apply, precondition};
-  const SolveReport report = solver_.solve(linear, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance);
-  ++capsule_.work().solves;
-  capsule_.work().solver_iterations += report.iterations;
-  Net delta = Eigen::Map<const Net>(solution.data(), rows_, 3);
+  Net delta = capsule_.solve_step(apply, precondition, rhs, tolerance);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     Eigen::VectorXd q = coefficients(delta, k);
     blocks_[k].on.field->conserve(coefficients(rhs, k), q);
@@ -190,6 +184,7 @@ Net CoupledMotion::moved(const Net& y, const RigidMotion& motion) const {
   return with_shape(Net::Zero(y.rows(), 3), rigid_velocity(shape(y), motion, Vec3::Zero()));
 }
 
+/// The rate of the state if control points slide along the surfaces with these velocities and nothing else moves.
 Net CoupledMotion::slid(const Net& y, const Net& mesh_velocity) {
   set_fields(y);
   Net rate = with_shape(Net::Zero(rows_, 3), mesh_velocity);

@@ -1,7 +1,6 @@
 #pragma once
 // Motion of capsules and drops together with the fields on their surfaces, for all time integrators.
 
-#include <span>
 #include <vector>
 
 #include "coupling/capsule.hpp"
@@ -25,7 +24,7 @@ class CoupledMotion : public Dynamics {
   };
 
   /// `capsule` and the fields must outlive this.
-  CoupledMotion(Capsule& capsule, std::vector<On> fields, const IterativeOptions& solver);
+  CoupledMotion(Capsule& capsule, std::vector<On> fields);
 
   Net start(const Net& shape) const;                         ///< state at the start of a run with this shape
   Net shape(const Net& y) const { return y.topRows(n_); }    ///< control net
@@ -57,7 +56,6 @@ class CoupledMotion : public Dynamics {
   std::vector<Net> relabellings(const Net& y) override;
   Net moved(const Net& y, const RigidMotion& motion) const override;
   Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
-  Net slid(const Net& y, const Net& mesh_velocity) override;
   Net symmetric(Net rate) const override;
   double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
   /// The largest of the capsule's norm and the root mean square changes of the fields' coefficients.
@@ -70,6 +68,7 @@ class CoupledMotion : public Dynamics {
     double scale;
     spline::Block rows;        // of its particle
   };
+  Net slid(const Net& y, const Net& mesh_velocity);
   Net left(const Net& delta);
   Net right(const Net& delta, bool solved = false);
   Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
@@ -78,7 +77,6 @@ class CoupledMotion : public Dynamics {
   Capsule& capsule_;
   std::vector<Block> blocks_;
   Eigen::Index n_, rows_;  // control points; rows of a state
-  Krylov solver_;
 };
 
 }  // namespace tanktread::coupling

@@ -79,9 +79,6 @@ class Dynamics {
   /// Returns the state x turned about the origin.
   virtual Net turned(const Net& x, const Mat3& rotation) const { return x * rotation.transpose(); }
 
-  /// Returns the velocity of the state x if its control points slide along the surface with these velocities and nothing else moves.
-  virtual Net slid(const Net& /*x*/, const Net& mesh_velocity) { return mesh_velocity; }
-
   /// Rids a rate of change of what round-off adds where the scene is symmetric. A velocity is rid of it already; a difference of shapes is not,
   /// and what is extrapolated from it grows from step to step.
   virtual Net symmetric(Net rate) const { return rate; }

@@ -37,7 +37,7 @@ class Field {
   virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
   virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
 
-  /// Keeps the shape for solve(), in addition to what linearise() keeps.
+  /// Keeps the shape for solve(), in addition to what linearise() keeps. May replace the state set last.
   virtual void freeze(const Net& /*x*/) {}
 
   /// Returns an approximation of (1 - shift A)^-1 r, A = d(rate)/dq.

@@ -8,7 +8,6 @@
 
 #include "membrane/maxwell_element.hpp"
 #include "membrane/surfactant.hpp"
-#include "membrane/surfactant_kernel.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 

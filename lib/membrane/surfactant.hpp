@@ -92,8 +92,7 @@ class Surfactant : public Field {
   Net x_, known_x_;                                       // shapes set last and linearised at
   std::vector<ElementPoints> known_;                      // as linearised
   std::vector<std::vector<double>> known_slip_;           // at the Gauss points of each element, three fields; empty without slip
-  MassMatrix known_mass_;
-  Eigen::SparseMatrix<double> known_matrix_;              // mass matrix as linearised
+  mutable MassMatrix known_mass_;                         // as linearised
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
   mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // of M + s D K on the frozen shape
   mutable double factored_shift_ = 0;

@@ -70,7 +70,7 @@ void Surfactant::each_change(const Net& dx, const Eigen::VectorXd* dc, const Use
 
 void Surfactant::linearise(const Net& slip) {
   known_ = elements_;
-  if (known_x_.rows() != x_.rows() || known_x_ != x_) known_matrix_ = known_mass_.update(known_x_ = x_);
+  known_x_ = x_;
   known_slip_.clear();
   if (slip.rows() == 0) return;
   for (std::size_t e = 0; e < known_.size(); ++e) {
@@ -91,7 +91,7 @@ Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& d
     const std::vector<int>& points = space_.elements[e].points;
     for (std::size_t a = 0; a < points.size(); ++a) content(points[a], 0) -= rows[a];
   });
-  return solver_.solve(known_matrix_, content).col(0);
+  return solver_.solve(known_mass_.update(known_x_), content).col(0);
 }
 
 Net Surfactant::load_change(const Net& dx, const Eigen::VectorXd& dc) const {

@@ -37,7 +37,6 @@ class GuardedDynamics : public coupling::Dynamics {
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override { return motion_.relabellings(x); }
   Net turned(const Net& x, const Mat3& rotation) const override { return motion_.turned(x, rotation); }
-  Net slid(const Net& x, const Net& mesh_velocity) override { return motion_.slid(x, mesh_velocity); }
   Net moved(const Net& x, const coupling::RigidMotion& motion) const override { return motion_.moved(x, motion); }
   Net symmetric(Net rate) const override { return motion_.symmetric(std::move(rate)); }
   double distance(const Net& from, const Net& to) const override { return motion_.distance(from, to); }

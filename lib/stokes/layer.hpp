@@ -19,8 +19,7 @@
 
 namespace tanktread::stokes {
 
-/// What a density of a single layer is measured on: per area of the unstressed surface (3.7), per present area (3.6), or as `set_reference` says of
-/// each element.
+/// Area to which the density of a single layer refers: unstressed area (3.7), present area (3.6), or one of them for each element (`set_reference`).
 enum class Measure { reference, current, by_element };
 
 /// Rows of a dense operator: of doubles where systems are solved with them, of floats where the Jacobian keeps them in fewer bits still.

@@ -3,7 +3,7 @@
 # A membrane with a viscosity of its own: how a sphere relaxes, what it dissipates, ranks, and what a deck may not ask for.
 import numpy
 
-from harness import check, deck, main, run, series
+from harness import check, deck, main, refused, run, series
 
 DECK = """
 Tanktread:
@@ -106,8 +106,7 @@ def a_deck_that_makes_no_sense_is_refused():
         ("Membrane/shear viscosity=-1", "shear viscosity"),
         ("Membrane/load=strong", "viscosity is part of the weak load"),
     ):
-        told = run(deck(DECK), "--set", setting, "--check", code=2).stderr
-        check(sentence in told, setting, told)
+        refused([sentence], deck(DECK), "--set", setting)
 
 
 main()

@@ -40,7 +40,7 @@ struct Laden {
           return settings;
         }()),
         surfactant(scene.body().space, scene.body().rest, *scene.scene.surfactant, scene.scene.modulus(), diffusivity),
-        motion(*scene.capsule, {{0, &surfactant}}, scene.scene.solvers.of(scene.scene.solvers.implicit_step)) {}
+        motion(*scene.capsule, {{0, &surfactant}}) {}
 
   const spline::Space& space() const { return scene.body().space; }
   const Net& rest() const { return scene.body().rest; }
