@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -148,41 +147,45 @@ class Deforming : public ParticleSystem {
     return kernel_evaluations_ + capsule_->kernel_evaluations();
   }
 
-  std::vector<double> row(const motion::State& whole_state, const motion::StepReport& report, double wall_seconds) override {
+  Columns row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const Net v = material_velocity(state);
-    Moment whole;
-    whole.time = state.time, whole.wall_seconds = wall_seconds;
-    whole.step = report, whole.work = capsule_->work();
-    std::vector<double> of_particles;
-    std::vector<Moment> moments;
+    progress.time = state.time, progress.work = capsule_->work();
+    std::vector<Columns> columns(members_.size());
+    std::vector<std::unique_ptr<ParticleRow>> rows;
+    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, state, whole_state.x, columns[p]));
+    add_treading(state.x, v, rows);
+    Together whole;
+    Columns row, of_particles;
     for (std::size_t p = 0; p < members_.size(); ++p) {
-      moments.push_back(moment(p, state));
-      fields_->add_to(p, whole_state.x, moments.back());
-    }
-    add_treading(state.x, v, moments);
-    for (std::size_t p = 0; p < members_.size(); ++p) {
-      Moment& now = moments[p];
-      if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, report.step, now);
-      std::ranges::copy(tanktread::row(particle_series(members_[p].scene), now), std::back_inserter(of_particles));
+      ParticleRow& now = *rows[p];
+      if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, progress.step.step, now);
+      now.add_columns(members_[p].scene, columns[p]);
+      finish(columns[p]);
+      of_particles.append(columns[p], members_[p].column({}));
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
       whole.velocity += now.velocity / static_cast<double>(members_.size());
     }
     for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
+    progress.add_columns(scene_, row);
+    whole.add_columns(scene_, row);
     if (body().wall) {
       check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
-      add_tube(*capsule_, state.x, whole);
+      tube_row(*capsule_, state.x).add_columns(scene_, row);
     }
-    if (capsule_->cell()) whole.cell = capsule_->cell()->vectors();
-    if (const auto& cell = capsule_->cell(); cell && cell->n() == 3)
-      add_bulk_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), force_on_fluid(state.x), whole);
-    if (scene_.has_gaps()) whole.nearest = smallest_gap(members_, state.x, ranks_, capsule_->cell());
-    if (scene_.wall.present) add_wall(*scene_.wall.plane(), members_, state.x, whole);
-    if (scene_.output.power_balance) add_power(state, whole);
-    whole.contact_force = contacts_.force(), whole.contact_impulse = contacts_.impulse;
-    std::vector<double> row = tanktread::row(series(scene_, of_run), whole);
-    row.insert(row.end(), of_particles.begin(), of_particles.end());
+    if (const auto& cell = capsule_->cell()) {
+      DomainRow now{.cell = cell->vectors()};
+      if (cell->n() == 3)
+        now.set_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(state.x));
+      now.add_columns(scene_, row);
+    }
+    if (scene_.has_gaps()) smallest_gap(members_, state.x, ranks_, capsule_->cell()).add_columns(row);
+    if (scene_.wall.present) wall_row(*scene_.wall.plane(), members_, state.x).add_columns(scene_, row);
+    if (scene_.output.power_balance) powers(state).add_columns(row);
+    if (scene_.has_gaps() && scene_.contact.limiter) contacts_.add_columns(row);
+    finish(row);
+    row.append(of_particles);
     return row;
   }
 
@@ -208,15 +211,13 @@ class Deforming : public ParticleSystem {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
   }
 
-  void add_power(const motion::State& state, Moment& whole) {
+  coupling::Powers powers(const motion::State& state) {
     const auto clock = phases_.time("power balance");
     if (!power_)
       power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
     coupling::Powers powers = (*power_)(state.x, state.history.front());
     if (!fields_->empty()) powers.forces += fields_->power(capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.front());
-    whole.flow_power = powers.flow, whole.force_power = powers.forces, whole.fluid_dissipation = powers.fluids;
-    const double all = coupling::turnover(powers.flow, powers.forces, powers.fluids);
-    whole.power_residual = all > 0 ? powers.left_over / all : 0;
+    return powers;
   }
 
   /// The contacts' forces act from now on.
@@ -270,42 +271,42 @@ class Deforming : public ParticleSystem {
     return force;
   }
 
-  /// What a row is made of for particle p, but for its tank-treading.
-  Moment moment(std::size_t p, const motion::State& state) {
+  /// Returns what the row of particle p is made of, but for its tank-treading. Adds the columns of its fields.
+  std::unique_ptr<ParticleRow> particle_row(std::size_t p, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
-    if (member.scene.particle.rigid()) return rigid_moment(p, state);
-    const Body& body = *member.body;
+    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, state));
     const Net x = member.own(state.x), slope = member.own(state.history.front());
-    Moment now = tanktread::moment(member.scene, body, geometry(member), membrane(member), x, slope, ranks_);
+    DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
     now.energy += capsule_->whole_membrane_energy(state.x, p);
     if (member.scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
-    now.intrinsic_viscosity = intrinsic_viscosity(body, scene_.flow.viscosity, now);
-    return now;
+    now.intrinsic_viscosity = intrinsic_viscosity(*member.body, scene_.flow.viscosity, now);
+    fields_->add_to(p, y, now, to);
+    return std::make_unique<DeformingRow>(now);
   }
 
   /// Velocity and tank-treading of those that deform, where the fluids move by v. Each particle is one rank's.
-  void add_treading(const Net& x, const Net& v, std::vector<Moment>& moments) const {
+  void add_treading(const Net& x, const Net& v, const std::vector<std::unique_ptr<ParticleRow>>& rows) const {
     constexpr std::size_t n = 5;
-    std::vector<double> found(n * moments.size(), 0.);
-    for (const int k : ranks_.share(static_cast<int>(moments.size()))) {
+    std::vector<double> found(n * rows.size(), 0.);
+    for (const int k : ranks_.share(static_cast<int>(rows.size()))) {
       const Member& member = members_[k];
       if (member.scene.particle.rigid()) continue;
-      Moment& now = moments[k];
+      ParticleRow& now = *rows[k];
       tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(x), member.own(v), now);
       std::ranges::copy(std::array<double, n>{now.velocity[0], now.velocity[1], now.velocity[2], now.treading.velocity, now.treading.frequency},
                         &found[n * k]);
     }
     ranks_.add(found);
-    for (std::size_t p = 0; p < moments.size(); ++p) {
+    for (std::size_t p = 0; p < rows.size(); ++p) {
       const double* of = &found[n * p];
-      if (!members_[p].scene.particle.rigid()) moments[p].velocity = {of[0], of[1], of[2]}, moments[p].treading = {of[3], of[4]};
+      if (!members_[p].scene.particle.rigid()) rows[p]->velocity = {of[0], of[1], of[2]}, rows[p]->treading = {of[3], of[4]};
     }
   }
 
   /// The angle that the material of particle p has turned by.
-  void advance_phase(std::size_t p, const Net& x, double step, Moment& now) {
+  void advance_phase(std::size_t p, const Net& x, double step, ParticleRow& now) {
     Member& member = members_[p];
     const Body& body = *member.body;
     std::optional<double> angle;
@@ -315,12 +316,11 @@ class Deforming : public ParticleSystem {
     now.phase = member.phase_angle.degrees;
   }
 
-  /// The same for a rigid body.
-  Moment rigid_moment(std::size_t p, const motion::State& state) {
+  RigidRow rigid_row(std::size_t p, const motion::State& state) {
     const Member& member = members_[p];
     const coupling::RigidParticles& rigid = capsule_->rigid_about(state.x, scene_.time.tolerance);
-    Moment now = tanktread::rigid_moment(member.scene, *member.body, geometry(member), member.own(state.x), rigid.motion(p),
-                                         Eigen::Quaterniond(rigid.turn(p)), capsule_->stresslet(state.x, state.history.front(), p), ranks_);
+    RigidRow now = tanktread::rigid_row(member.scene, *member.body, geometry(member), member.own(state.x), rigid.motion(p),
+                                        Eigen::Quaterniond(rigid.turn(p)), capsule_->stresslet(state.x, state.history.front(), p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
     return now;
   }

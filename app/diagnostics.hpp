@@ -1,5 +1,5 @@
 #pragma once
-// What the rows of the series are made of.
+// What is measured on a particle, and the columns of a particle.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,10 @@
 #include <Eigen/Geometry>
 
 #include "app/body.hpp"
-#include "app/series.hpp"
+#include "base/columns.hpp"
+#include "membrane/membrane.hpp"
+#include "surface/geometry.hpp"
+#include "surface/transport.hpp"
 
 namespace tanktread {
 
@@ -25,24 +28,78 @@ std::vector<std::array<double, n>> gathered(const coupling::Ranks& ranks, const 
   return values;
 }
 
-/// What every capsule and drop has that its own shape x and slope tell. Collective.
-Moment moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
-              const Net& slope, const coupling::Ranks& ranks);
+/// What the row of a moving particle is made of. Vectors are in the axes of space.
+struct ParticleRow {
+  int n_points = 0;
+  surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
+  surface::Deformation shape{0, 0, 0, Vec3::Zero()};
+  surface::PrincipalAxes axes;
+  surface::Treading treading;
+  Mat3 stresslet = Mat3::Zero();
+  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero();
+  double energy = 0, intrinsic_viscosity = 0, phase = 0;
 
-/// Velocity of the centroid, and tank-treading, of a surface x whose material moves by v.
-void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, Moment& now);
+  virtual ~ParticleRow() = default;
+  /// Adds the columns of this particle, whose scene is `one`.
+  virtual void add_columns(const Scene& one, Columns& to) const = 0;
+
+ protected:
+  void add_moving(const Scene& one, Columns& to) const;   ///< of every moving particle
+  void add_turning(const Scene& one, Columns& to) const;  ///< semi-axes, tank-treading and migration
+};
+
+struct DeformingRow : ParticleRow {
+  double volume_error = 0, refit_error = 0, dissipation = 0, normal_velocity = 0, shape_velocity = 0;
+  membrane::TensionSummary tension;
+  void add_columns(const Scene& one, Columns& to) const override;
+};
+
+struct RigidRow : ParticleRow {
+  Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< the scalar part first
+  void add_columns(const Scene& one, Columns& to) const override;
+};
+
+/// Sums over all particles; their mean velocity.
+struct Together {
+  int n_points = 0;
+  double energy = 0;
+  Mat3 stresslet = Mat3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  void add_columns(const Scene& scene, Columns& to) const;
+};
+
+/// Columns that several kinds of rows have.
+void add_points(int n_points, Columns& to);
+void add_size(const surface::Measures& measures, Columns& to);
+void add_stresslet(const Mat3& stresslet, Columns& to);
+void add_drag(const Vec3& drag, const Vec3& torque, Columns& to);
+void add_gap(double to_wall, Columns& to);
+
+/// Returns components 11, 22, 33, 12, 13, 23 of a symmetric tensor.
+Eigen::Vector<double, 6> components(const Mat3& tensor);
+
+/// Returns true if the unbounded flow has one rate of strain, which is not zero, so that `intrinsic_viscosity` is defined.
+bool strains(const Scene& scene);
+
+/// Returns what the shape x and the slope of a capsule or drop determine. Collective.
+DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
+                           const Net& slope, const coupling::Ranks& ranks);
+
+/// Sets the velocity of the centroid, and tank-treading, of a surface x whose material moves by v.
+void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
 /// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane is that of the longest and the shortest
 /// semi-axis; if one of these is not distinct from the middle one, the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
-/// S:E/(2 mu V E:E) of the moment's stresslet S, E the symmetric part of the flow's gradient; 0 of a flow that is not affine.
-double intrinsic_viscosity(const Body& body, double viscosity, const Moment& now);
+/// S:E/(2 mu V E:E) of the row's stresslet S, E the symmetric part of the flow's gradient; 0 of a flow that is not affine.
+double intrinsic_viscosity(const Body& body, double viscosity, const ParticleRow& now);
 
-/// What every rigid body has at x, where it moves and turns by `quaternion`, whose centre is the moment's; its stresslet. Collective.
-Moment rigid_moment(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
-                    const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
+/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`, but for drag and torque. Collective.
+RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
+                   const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
 
 /// Angle of y in the plane, in degrees from its first direction in the sense of tank-treading, in (-180, 180].
 double angle_in(const FlowPlane& plane, const Vec3& y);

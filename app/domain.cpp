@@ -5,9 +5,11 @@
 
 #include <Eigen/LU>
 
+#include "app/diagnostics.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/section.hpp"
+#include "stokes/ambient_flow.hpp"
 
 namespace tanktread {
 
@@ -56,6 +58,34 @@ void DomainOptions::check(const stokes::FlowOptions& flow) const {
 std::optional<stokes::PeriodicCell> DomainOptions::cell() const {
   if (!present) return {};
   return stokes::PeriodicCell(vectors(), directions());
+}
+
+void DomainRow::set_stress(const Scene& scene, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
+                           const Vec3& force) {
+  const Mat3 gradient = stokes::AmbientFlow(scene.flow).gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  volume_fraction = volume / of.volume();
+  stress = stresslet / of.volume();
+  const Vec3 normal = (plane * stress * plane.transpose()).diagonal();
+  normal_stress_differences << normal[0] - normal[2], normal[2] - normal[1];
+  pressure_gradient = force / of.volume();
+  if (strain.isZero(0)) return;
+  relative_viscosity = 1 + stress.cwiseProduct(strain).sum() / (2 * scene.flow.viscosity * strain.squaredNorm());
+}
+
+void DomainRow::add_columns(const Scene& scene, Columns& to) const {
+  if (!to.when(scene.domain.present)) return;
+  to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3", {"cell_", "length", "vector and component # of the cell that repeats, at "
+         "this time; across directions that do not repeat unit vectors"});
+  if (!to.when(scene.domain.directions() == 3)) return;
+  to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles over that of the cell"});
+  to.add(components(stress), "11 22 33 12 13 23", {"particle_stress_", "force/length^2", "what the particles add to the mean stress (6.9), without "
+         "its trace, component #"});
+  to.add(pressure_gradient, "x1 x2 x3", {"pressure_gradient_", "force/length^3", "uniform one that balances the force of the particles on the fluid, "
+         "component #"});
+  if (!to.when(strains(scene))) return;
+  to.add(relative_viscosity, {"relative_viscosity", "1", "effective viscosity over mu (6.10)"});
+  to.add(normal_stress_differences, "1 2", {"normal_stress_difference_", "force/length^2", "number # of the particle stress, 11 - 33 and 33 - 22 "
+         "where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane"});
 }
 
 }  // namespace tanktread

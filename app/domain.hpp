@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "base/columns.hpp"
 #include "base/types.hpp"
 #include "stokes/flow_options.hpp"
 #include "stokes/periodic_images.hpp"
@@ -34,6 +35,23 @@ struct DomainOptions {
 
  private:
   Mat3 vectors() const;
+};
+
+struct Scene;
+
+/// What a row holds of the lattice.
+struct DomainRow {
+  Mat3 cell = Mat3::Zero();  ///< columns: the vectors of the cell
+  double volume_fraction = 0, relative_viscosity = 1;
+  Mat3 stress = Mat3::Zero();  ///< that the particles add to the mean stress (6.9)
+  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< in the axes of the plane of the flow
+  Vec3 pressure_gradient = Vec3::Zero();
+
+  /// Sets all but `cell` (6.9), (6.10) from volume and stresslet of all particles together, and their force on the fluid. `plane`: rows, the axes of
+  /// the plane of the flow.
+  void set_stress(const Scene& scene, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet, const Vec3& force);
+
+  void add_columns(const Scene& scene, Columns& to) const;
 };
 
 }  // namespace tanktread

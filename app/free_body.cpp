@@ -65,18 +65,22 @@ class Free : public ParticleSystem {
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
 
-  std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) override {
+  Columns row(const motion::State& state, ProgressRow progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
-    Moment now = rigid_moment(scene_, body_, geometry_, free_->surface(state.x), free_->motion(state.x), turn, free_->stresslet(state.x), ranks_);
+    RigidRow now = rigid_row(scene_, body_, geometry_, free_->surface(state.x), free_->motion(state.x), turn, free_->stresslet(state.x), ranks_);
     now.centre = coupling::centre_of(state.x);
-    now.time = state.time;
-    now.step = report;
-    now.wall_seconds = wall_seconds;
-    if (tube_) now.pressure_drop = free_->pressure_drop(state.x), now.gap = tube_->gap(), add_tube(*tube_, free_->force_density(state.x), now);
-    if (const auto wall = scene_.wall.plane()) add_wall(*wall, body_, free_->surface(state.x), now);
-    add_turning(state.x, report.step, now);
-    now.work = work();
-    return tanktread::row(series(scene_, of_free), now);
+    Columns row;
+    if (tube_) {
+      const double pressure_drop = free_->pressure_drop(state.x);
+      tube_row(*tube_, free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
+    }
+    if (const auto wall = scene_.wall.plane()) wall_row(*wall, body_, free_->surface(state.x)).add_columns(scene_, row);
+    turn_to(state.x, progress.step.step, now);
+    now.add_columns(scene_, row);
+    progress.time = state.time, progress.work = work();
+    progress.add_columns(scene_, row);
+    finish(row);
+    return row;
   }
 
   SurfacePicture picture(const motion::State& state) override {
@@ -95,7 +99,7 @@ class Free : public ParticleSystem {
   }
 
   /// Tank-treading and phase of a body that turns as one: (6.6) is its angular velocity about the normal of the plane.
-  void add_turning(const Net& place, double step, Moment& now) {
+  void turn_to(const Net& place, double step, RigidRow& now) {
     const FlowPlane& plane = body_.plane;
     const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
     const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);

@@ -187,6 +187,13 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
                   formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
 }
 
+void Nearest::add_columns(Columns& to) const {
+  to.add(gap, {"smallest_gap", "length", "smallest distance between two of several particles, or images of them in a lattice"});
+  to.add(first, {"first_of_gap", "1", "number of the first of these two, from 1 in the order of the deck"});
+  to.add(second, {"second_of_gap", "1", "number of the second one"});
+  to.add(place, "x1 x2 x3", {"gap_", "length", "place between their nearest points, component #"});
+}
+
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks,
                      const std::optional<stokes::PeriodicCell>& cell) {
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };

@@ -1,6 +1,7 @@
 #pragma once
 // The gaps between the particles of a run.
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,14 @@
 #include "surface/tube_wall.hpp"
 
 namespace tanktread {
+
+/// The two of several particles that are nearest to each other, by their numbers from 1 in the order of the deck, and the midpoint between them.
+struct Nearest {
+  double gap = std::numeric_limits<double>::infinity();
+  int first = 0, second = 0;
+  Vec3 place = Vec3::Zero();
+  void add_columns(Columns& to) const;
+};
 
 /// On a lattice, `cell`, particles meet images of each other and of themselves too.
 

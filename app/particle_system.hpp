@@ -9,6 +9,7 @@
 #include "app/body.hpp"
 #include "app/diagnostics.hpp"
 #include "app/run_totals.hpp"
+#include "app/series.hpp"
 #include "app/warnings.hpp"
 #include "coupling/contact.hpp"
 #include "coupling/dynamics.hpp"
@@ -54,7 +55,7 @@ class ParticleSystem {
   virtual coupling::Work work() const = 0;
   virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< of each particle, as of the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual std::vector<double> row(const motion::State& state, const motion::StepReport& report, double wall_seconds) = 0;
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;     ///< `progress`: time and work are set here
   virtual const surface::BezierMap& bezier() const = 0;                          ///< the extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };

@@ -20,11 +20,9 @@ Vec3 nearest(const stokes::PlaneWall& wall, const spline::Space& space, const Ne
   return wall.point() + wall.axes().transpose() * surface::lowest(surface::Patches(map, own), 2);
 }
 
-void add(const stokes::PlaneWall& wall, const spline::Space& space, const Net& x, int number, Moment& now) {
+WallRow row_of(const stokes::PlaneWall& wall, const spline::Space& space, const Net& x, int number) {
   const Vec3 place = nearest(wall, space, x);
-  const double gap = wall.height(place);
-  if (gap < now.at_wall.gap) now.at_wall = {gap, number, 0, place};
-  now.gap = now.at_wall.gap;
+  return {wall.height(place), number, place};
 }
 
 }  // namespace
@@ -41,11 +39,23 @@ void check_in_front(const Scene& scene, const Body& body) {
                   formatted("the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g.", gap, scene.wall.contact_gap, least));
 }
 
-void add_wall(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x, Moment& now) {
-  for (std::size_t p = 0; p < members.size(); ++p) add(wall, members[p].body->space, members[p].own(x), static_cast<int>(p) + 1, now);
+void WallRow::add_columns(const Scene& scene, Columns& to) const {
+  if (!to.when(scene.wall.present)) return;
+  constexpr const char* wall = "; beside a plane wall";
+  add_gap(gap, to);
+  to.add(place, "x1 x2 x3", {"nearest_to_wall_", "length", "place of a particle's surface that is nearest to the plane wall, component #", {}, wall});
+  if (scene.has_gaps())
+    to.add(particle, {"particle_at_wall", "1", "number of the particle that is nearest to it, from 1 in the order of the deck", {}, wall});
 }
 
-void add_wall(const stokes::PlaneWall& wall, const Body& body, const Net& x, Moment& now) { add(wall, body.space, x, 1, now); }
+WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x) {
+  WallRow nearest;
+  for (std::size_t p = 0; p < members.size(); ++p)
+    if (const WallRow one = row_of(wall, members[p].body->space, members[p].own(x), static_cast<int>(p) + 1); one.gap < nearest.gap) nearest = one;
+  return nearest;
+}
+
+WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x) { return row_of(wall, body.space, x, 1); }
 
 void refine_at_wall(const Scene& scene, Body& body) {
   if (!scene.wall.present || !scene.adaptation.enabled) return;

@@ -1,20 +1,29 @@
 #pragma once
 // Particles beside the plane wall of a scene.
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "app/member.hpp"
-#include "app/series.hpp"
+#include "base/columns.hpp"
 
 namespace tanktread {
 
 /// Throws UserError, with the numbers, where the body does not start in front of the scene's wall, `Wall/contact gap` at least away from it.
 void check_in_front(const Scene& scene, const Body& body);
 
-/// What the series beside a wall are taken from: the particles at x, or one alone.
-void add_wall(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x, Moment& now);
-void add_wall(const stokes::PlaneWall& wall, const Body& body, const Net& x, Moment& now);
+/// What a row holds of the wall: the particle that is nearest to it, by its number from 1 in the order of the deck, and its nearest place.
+struct WallRow {
+  double gap = std::numeric_limits<double>::infinity();
+  int particle = 0;
+  Vec3 place = Vec3::Zero();
+  void add_columns(const Scene& scene, Columns& to) const;
+};
+
+/// Returns the row's part for the particles at x, or for one body.
+WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x);
+WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x);
 
 /// Cuts the elements of a rigid body that stays alone beside a wall, at its present place, as Adaptation says.
 void refine_at_wall(const Scene& scene, Body& body);

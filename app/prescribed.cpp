@@ -11,6 +11,7 @@
 #include "app/plan.hpp"
 #include "app/plane_wall.hpp"
 #include "app/results.hpp"
+#include "app/series.hpp"
 #include "app/signals.hpp"
 #include "app/tube.hpp"
 #include "base/errors.hpp"
@@ -34,22 +35,6 @@ Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::fun
 
 double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
 
-Moment moment(const Scene& scene, const Body& body, const coupling::Resistance& resistance, const RigidSolution& s,
-              const stokes::Evaluations& kernel, double seconds) {
-  Moment now;
-  now.wall_seconds = seconds;
-  now.n_points = body.space.n_points;
-  now.work.solver_iterations = s.iterations;
-  now.kernel_evaluations = static_cast<double>(kernel.total());
-  now.measures = surface::measures(body.space, body.rest);
-  now.stresslet = -resistance.stresslet(s.density, scene.particle.shape.center);
-  now.drag = s.force, now.torque = s.torque;
-  now.drag_error = s.error, now.drag_error_of_traction = s.integral_error, now.torque_error = s.torque_error;
-  now.pressure_error = s.surface.pressure, now.normal_error = s.surface.normal;
-  now.pressure_drop = s.pressure_drop, now.gap = s.gap;
-  return now;
-}
-
 SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution& s) {
   const auto exact = exact_body(scene);
   return {body.rest, [&body, &s, exact](const auto& nodes) {
@@ -66,6 +51,25 @@ SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution
 }
 
 }  // namespace
+
+void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
+  add_size(measures, to);
+  add_stresslet(stresslet, to);
+  add_points(n_points, to);
+  add_drag(solution.force, solution.torque, to);
+  const auto exact = exact_body(scene);
+  if (to.when(exact && exact->force().norm() > 0)) {
+    to.add(solution.error, {"drag_error", "1", "|F - F_exact|/|F_exact|, where the exact force is known and not zero"});
+    to.add(solution.integral_error, {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"});
+  }
+  if (to.when(exact && exact->torque().norm() > 0))
+    to.add(solution.torque_error, {"torque_error", "1", "|T - T_exact|/|T_exact|, where the exact torque is known and not zero"});
+  if (to.when(exact && exact->presses()))
+    to.add(solution.surface.pressure, {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n (6.3), where that is known"});
+  if (to.when(exact.has_value()))
+    to.add(solution.surface.normal, {"normal_l2_error", "1", "L2 norm of n_h - n over that of n (6.3), where that is known"});
+  to.add(kernel_evaluations, {"kernel_evaluations", "1", "of the layer operator, all rules together"});
+}
 
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
   const Vec3& centre = scene.particle.shape.center;
@@ -87,7 +91,6 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Res
   }
   if (tube) {
     s.pressure_drop = resistance.pressure_drop(s.density) + drop_lacking;
-    s.gap = tube->gap();
     return s;
   }
   if (const auto exact = exact_body(scene)) {
@@ -120,15 +123,20 @@ int resist(const Scene& scene, const RunRequest& request) {
   stop_where_told();
   const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
-  const std::vector<Series> all = series(scene, of_prescribed);
-  Moment now = moment(scene, body, resistance, solution, kernel, seconds);
-  if (around) add_tube(*around, solution.density, now);
-  if (const auto wall = scene.wall.plane()) add_wall(*wall, body, body.rest, now);
-  const std::vector<double> only = row(all, now);
+  Columns row;
+  ProgressRow now{.wall_seconds = seconds};
+  now.work.solver_iterations = solution.iterations;
+  now.add_columns(scene, row);
+  PrescribedRow{solution, surface::measures(body.space, body.rest), -resistance.stresslet(solution.density, scene.particle.shape.center),
+                body.space.n_points, static_cast<double>(kernel.total())}
+      .add_columns(scene, row);
+  if (around) tube_row(*around, solution.density, solution.pressure_drop).add_columns(scene, row);
+  if (const auto wall = scene.wall.plane()) wall_row(*wall, body, body.rest).add_columns(scene, row);
+  finish(row);
 
   clock.emplace(phases, "output");
   Results results(scene, request, body, surface::BezierMap(body.space), ranks);
-  results.record(only);
+  results.record(row);
   motion::State state;
   state.x = body.rest;
   results.save({}, state, {}, picture(scene, body, solution), state.time);

@@ -15,14 +15,24 @@ namespace tanktread {
 /// Force and torque on the body, the traction that they are the integrals of, and errors; not a number where no exact solution is known.
 struct RigidSolution {
   Net density;         ///< force per area on the fluid, control values; the traction on the body is its negative
-  Vec3 force, torque;  ///< on the body, about its centre
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the body, about its centre
   Vec3 integral;       ///< force as the integral of the traction alone
   int iterations = 0;  ///< of the solver, for this traction
-  double pressure_drop = unknown, gap = unknown;  ///< that the body adds in a tube (2.7), and its distance from the wall
+  double pressure_drop = unknown;  ///< that the body adds in a tube (2.7)
   double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative
   SurfaceErrors surface{unknown, unknown, 0};
 
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What the row of a prescribed body is made of, but for walls.
+struct PrescribedRow {
+  RigidSolution solution;
+  surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
+  Mat3 stresslet = Mat3::Zero();
+  int n_points = 0;
+  double kernel_evaluations = 0;
+  void add_columns(const Scene& scene, Columns& to) const;
 };
 
 /// The body of `Particle/motion: prescribed` in the flow of the deck; `tube`: the one around it, or nothing. Collective.

@@ -142,7 +142,8 @@ std::map<std::string, std::string> Results::origin() const {
 
 Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map,
                  const coupling::Ranks& ranks)
-    : scene_(scene), request_(request), body_(&body), ranks_(ranks), writes_(ranks.rank() == 0), directory_(request.output) {
+    : scene_(scene), request_(request), body_(&body), ranks_(ranks), columns_(columns(scene)), writes_(ranks.rank() == 0),
+      directory_(request.output) {
   std::vector<output::Array> channel;
   if (const auto* flow = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()); flow && !request.resume) channel = channel_picture(*flow);
   write([&] {
@@ -174,7 +175,7 @@ void Results::keep(const std::filesystem::path& file, const std::filesystem::pat
 }
 
 void Results::declare_series() {
-  for (const Series& one : run_series(scene_))
+  for (const Column& one : columns_.all())
     record_->declare(one.name, one.unit, one.description, scene_.units ? scene_.units->in_si(one.unit) : std::string());
 }
 
@@ -224,9 +225,11 @@ void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::
          ": the run goes on from " + chosen);
 }
 
-void Results::record(const std::vector<double>& row) {
+void Results::record(const Columns& row) {
+  if (!std::ranges::equal(row.all(), columns_.all(), {}, &Column::name, &Column::name))
+    throw std::logic_error("the columns of a row are not those that were declared");
   write([&] {
-    record_->append(row);
+    record_->append(row.values());
     if (record_->rows() == 1 || Clock::now() >= due_) write_record();
   });
 }
@@ -296,7 +299,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
     if (!series.si.empty()) summary.final_in_si.emplace_back(series.name, scene_.units->in_si(series.unit, series.values.back()));
   }
   deck::UndefinedSeries undefined;
-  for (const Series& one : run_series(scene_))
+  for (const Column& one : columns_.all())
     if (!one.undefined_if.empty()) undefined[one.name] = one.undefined_if;
   std::string missed;
   for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table, undefined)) {

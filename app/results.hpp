@@ -11,6 +11,7 @@
 #include "app/particle_system.hpp"
 #include "app/scene.hpp"
 #include "app/simulation.hpp"
+#include "base/columns.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
 #include "output/file.hpp"
@@ -66,7 +67,7 @@ class Results {
 
   /// One finished step: a row of the record, which is written at every snapshot and otherwise once a second, or, where that takes long, after fifty
   /// times as much.
-  void record(const std::vector<double>& row);
+  void record(const Columns& row);
 
   /// A sentence about what the run has come near to, on standard error and in the summary.
   void warn(const std::string& sentence);
@@ -103,6 +104,7 @@ class Results {
   const RunRequest& request_;
   const Body* body_;
   const coupling::Ranks& ranks_;
+  const Columns columns_;  // of every row
   bool writes_;
   std::string run_;  // its identifier
   std::filesystem::path directory_;

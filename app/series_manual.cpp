@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "app/numbers.hpp"
 #include "app/series.hpp"
 #include "app/run_totals.hpp"
+#include "app/steady.hpp"
 
 namespace tanktread {
 
@@ -56,23 +59,54 @@ constexpr Entry entries[] = {
     {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
 };
 
-/// Which particles have a series.
-std::string owners(const Series& one) {
-  constexpr std::pair<unsigned, const char*> all[] = {{of_run | of_deforming, "capsule, drop"}, {of_rigid, "rigid one of several"},
-                                                      {of_free, "free body"}, {of_free_in_tube, "free body in a tube"},
-                                                      {of_prescribed, "prescribed body"}, {of_mode | of_spectrum, "spectrum of a capsule or drop"},
-                                                      {of_branch, "branch of steady shapes"},
-                                                      {of_folds, "folds in a second parameter"}, {of_periodic, "periodic motion"},
-                                                      {of_run | of_several, "several particles together"}};
-  std::string list;
-  for (const auto& [owner, text] : all)
-    if (one.owners & owner) list += (list.empty() ? "" : ", ") + std::string(text);
-  if (one.needs == Needs::surfactant) return "drop with surfactant";
-  if (one.needs == Needs::tube) return list + "; in a tube";
-  if (one.needs == Needs::channel) return list + "; in a channel";
-  if (one.needs == Needs::wall) return list + "; beside a plane wall";
-  if (one.needs == Needs::tube_or_wall) return list + "; in a tube, beside a plane wall";
-  return list + (one.needs == Needs::held_pressure ? "; where the pressure drop is held" : "");
+/// Runs or particles that have the same columns. `extends`: the kind before has the others of these columns too.
+struct Kind {
+  const char* name;
+  Columns columns;
+  bool extends = false;
+};
+
+std::vector<Kind> kinds() {
+  Scene deforming, free, free_in_tube, prescribed, several, returning;
+  free.particle.motion = free_in_tube.particle.motion = Motion::free, prescribed.particle.motion = Motion::prescribed;
+  free_in_tube.tube.present = true;
+  several.particles.resize(1), returning.periodic.present = true;
+  Scene among_others = free;
+  among_others.name = "one";
+  Columns capsule = run_columns(deforming, true), spectrum, branch, folds, periodic;
+  capsule.append(particle_columns(deforming, true));
+  motion::add_columns(std::vector<motion::Mode>(), spectrum);
+  motion::Mode().add_columns("k", spectrum);
+  motion::BranchPoint().add_columns(false, branch), motion::BranchPoint().add_columns(true, folds);
+  SteadyRow().add_columns(returning, periodic);
+  return {{"capsule, drop", capsule},
+          {"rigid one of several", particle_columns(among_others, true)},
+          {"free body", run_columns(free, true)},
+          {"free body in a tube", run_columns(free_in_tube, true), true},
+          {"prescribed body", run_columns(prescribed, true)},
+          {"spectrum of a capsule or drop", spectrum},
+          {"branch of steady shapes", branch},
+          {"folds in a second parameter", folds, true},
+          {"periodic motion", periodic},
+          {"several particles together", run_columns(several, true)}};
+}
+
+/// Returns the columns of all kinds, and for each name the kinds that have it.
+std::pair<Columns, std::map<std::string, std::string>> all_columns() {
+  std::map<std::string, std::string> owners;
+  std::set<std::string> before, here;
+  Columns all;
+  for (const Kind& kind : kinds()) {
+    before = std::exchange(here, {});
+    for (Column column : kind.columns.all()) {
+      std::string& of = owners[column.name];
+      if (!here.insert(column.name).second || (kind.extends && before.contains(column.name))) continue;
+      if (of.empty()) column.undefined_if.clear(), all.add(0, column);
+      of += (of.empty() ? "" : ", ") + std::string(kind.name);
+    }
+  }
+  put_in_order(all);
+  return {all, owners};
 }
 
 std::string line(std::string_view name, std::string_view unit, std::string_view of, std::string description) {
@@ -103,7 +137,9 @@ std::string series_manual() {
       "in another plane, whose two directions then stand for x1 and x3. A series whose description has the words `NaN if` may be undefined: it is "
       "NaN under that condition, and an `Expect` at such a time is missed. NaN in any other series ends the run.\n\n"
       "| series | unit | of | what it is |\n|---|---|---|---|\n";
-  for (const Series& one : all_series()) text += line(one.name, one.unit, owners(one), one.description);
+  const auto [all, owners] = all_columns();
+  for (const Column& one : all.all())
+    text += line(one.name, one.unit, (one.where.empty() || one.where[0] == ';' ? owners.at(one.name) : "") + one.where, one.description);
   text += "\n## Fields\n\n`/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the picture.\n" + table("field", fields);
   text += "\n## The empty tube\n\n`duct.h5`, of a run in a tube.\n\n| array | unit | what it is |\n|---|---|---|\n";
   for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))

@@ -276,8 +276,8 @@ class Run {
   void record() {
     const auto clock = phases_.time("diagnostics");
     particle_->dynamics().at(state_.time, began_);
-    row_ = particle_->row(state_, report_, earlier_wall_seconds_ + seconds_here());
-    coupling::take_first(row_);  // what is decided by it is decided alike
+    row_ = particle_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
+    coupling::take_first(row_.values());  // what is decided by it is decided alike
     warn_of_limits();
     const auto output = phases_.time("output");
     results_.record(row_);
@@ -301,8 +301,8 @@ class Run {
     signs.volume_error = std::max(largest("volume_error"), -smallest("volume_error"));
     signs.jacobian_ratio = quality_.jacobian_ratio;
     signs.aspect_ratio = quality_.aspect_ratio;
-    if (scene_.tube.present || (scene_.wall.present && !first_.adaptation.enabled)) signs.gap = entry("gap");
-    const std::vector<double> areas = entries_of_particles(series_, row_, "area");
+    if (scene_.tube.present || (scene_.wall.present && !first_.adaptation.enabled)) signs.gap = row_.value("gap");
+    const std::vector<double> areas = row_.of_particles("area");
     const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
     signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
     for (const std::string& sentence : warnings_.sentences(signs)) results_.warn(sentence);
@@ -329,16 +329,16 @@ class Run {
 
   /// Of a particle with the wall, whose list in the deck this is.
   void end_at_wall(const std::string& list, double contact_gap) {
-    const double gap = entry("gap"), least = contact_gap * scene_.least_radius();
+    const double gap = row_.value("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
     fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
   /// Of two of several particles.
   void end_at_contact() {
-    const double gap = entry("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
+    const double gap = row_.value("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
-    fail(touching(scene_, static_cast<int>(entry("first_of_gap")), static_cast<int>(entry("second_of_gap"))) +
+    fail(touching(scene_, static_cast<int>(row_.value("first_of_gap")), static_cast<int>(row_.value("second_of_gap"))) +
          formatted(": the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
   }
 
@@ -346,7 +346,7 @@ class Run {
   std::string reason_to_stop() {
     if (scene_.tube.present) {
       end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
-      warn_of_coarse_wall(entry("gap"));
+      warn_of_coarse_wall(row_.value("gap"));
     }
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
@@ -398,12 +398,10 @@ class Run {
   double smallest(std::string_view name) const { return std::ranges::min(entries(name)); }
   double largest(std::string_view name) const { return std::ranges::max(entries(name)); }
   std::vector<double> entries(std::string_view name) const {
-    std::vector<double> all = entries_of_particles(series_, row_, name);
+    std::vector<double> all = row_.of_particles(name);
     if (all.empty()) all.push_back(0);
     return all;
   }
-
-  double entry(std::string_view name) const { return tanktread::entry(series_, row_, name); }
 
   const Scene& scene_;
   const RunRequest& request_;
@@ -412,7 +410,6 @@ class Run {
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // of what no other phase counts
   coupling::Ranks ranks_;
-  std::vector<Series> series_ = run_series(scene_);
   std::unique_ptr<ParticleSystem> particle_;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
@@ -420,7 +417,7 @@ class Run {
   motion::StepReport report_;
   double began_ = 0;  // the last step
   RunTotals totals_;
-  std::vector<double> row_;
+  Columns row_;
   bool snapshot_due_ = false;
   bool adapting_ = false;     // within a step, or done with it
   bool interrupted_ = false;  // within a step, of which nothing is kept
@@ -436,7 +433,7 @@ class Run {
 
 std::vector<std::string> check_expectations(const Scene& scene) {
   std::vector<std::string> names;
-  for (const Series& one : run_series(scene)) names.push_back(one.name);
+  for (const Column& one : columns(scene).all()) names.push_back(one.name);
   deck::check_series(scene.expect.all, names);
   const double last = scene.continuation.present ? scene.continuation.points : 0;
   const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();

@@ -152,7 +152,7 @@ class SteadyRun {
     returns_.emplace(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
     const motion::PeriodicReport found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
     report_.iterations = found.iterations, report_.error = found.rest;
-    moment_.period = returns_->period();
+    found_.period = returns_->period();
     write();
     if (!found.converged)
       throw RunFailure(formatted("no shape that comes back was found: after %d periods it misses that by %.2g", found.iterations, found.rest));
@@ -194,7 +194,7 @@ class SteadyRun {
       results_.remesh(system_->particle->body(), system_->particle->bezier());
       state_.x = point->x, state_.time = k, totals_.step = k;
       report_.iterations = point->iterations, report_.error = point->rest;
-      moment_.parameter = point->parameter, moment_.second_parameter = point->second, moment_.fold = point->fold;
+      found_.point = *point;
       write();
       if (ranks_.rank() == 0 && !request_.quiet) tell(k, *point);
     }
@@ -272,11 +272,11 @@ class SteadyRun {
                                 options.number));
     const Net flux = capsule.geometry().volume_gradient(state_.x);
     if (returns_) {
-      keep(motion::recognised(*system->motion, shapes, state_.x, {}, exponents(shapes)));  // runs keep the volume
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(shapes));  // runs keep the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
-      keep(motion::spectrum(*system->motion, shapes, state_.x, flux, options, scene_.solvers.of(scene_.solvers.spectrum)));
+      found_.modes = motion::spectrum(*system->motion, shapes, state_.x, flux, options, scene_.solvers.of(scene_.solvers.spectrum));
     }
     if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
     system_->motion->velocity(state_.x);
@@ -290,19 +290,9 @@ class SteadyRun {
     for (const motion::Multiplier& one : motion::multipliers(*returns_, state_.x, shapes.displacement(start), scene_.spectrum.number)) {
       Eigen::VectorXcd y = shapes.coordinates(one.real).cast<std::complex<double>>();
       y += std::complex<double>(0, 1) * shapes.coordinates(one.imaginary);
-      pairs.push_back({std::log(one.value) / moment_.period, y.normalized()});
+      pairs.push_back({std::log(one.value) / found_.period, y.normalized()});
     }
     return pairs;
-  }
-
-  void keep(std::vector<motion::Mode> modes) {
-    modes_ = std::move(modes);
-    moment_.leading_rate = -std::numeric_limits<double>::infinity(), moment_.unstable_modes = 0;
-    for (const motion::Mode& mode : modes_) {
-      if (mode.kind != motion::ModeKind::shape) continue;
-      moment_.leading_rate = std::max(moment_.leading_rate, mode.rate.real());
-      moment_.unstable_modes += mode.rate.real() > 0;
-    }
   }
 
   /// The present system with nothing left out: modes of another parity than the shape's have velocities of all points.
@@ -332,21 +322,11 @@ class SteadyRun {
   void record() {
     const auto clock = phases_.time("diagnostics");
     count();
-    std::vector<double> row = system_->particle->row(state_, report_, std::chrono::duration<double>(Clock::now() - start_).count());
-    const std::vector<Series> all = series(scene_, of_run);
-    row[static_cast<std::size_t>(std::ranges::find(all, "evaluations", &Series::name) - all.begin())] = static_cast<double>(totals_.work.evaluations);
-    const auto append = [&](Owner owner, const Moment& now) {
-      std::ranges::copy(tanktread::row(series(scene_, owner), now), std::back_inserter(row));
-    };
-    if (scene_.continuation.present) append(of_branch, moment_);
-    if (scene_.continuation.second_parameter) append(of_folds, moment_);
-    if (scene_.periodic.present) append(of_periodic, moment_);
-    if (scene_.spectrum.present) append(of_spectrum, moment_);
-    for (const motion::Mode& mode : modes_) {
-      moment_.rate = mode.rate;
-      append(of_mode, moment_);
-    }
-    coupling::take_first(row);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds, .evaluations = totals_.work.evaluations});
+    found_.add_columns(scene_, row);
+    row.check();
+    coupling::take_first(row.values());
     results_.record(row);
   }
 
@@ -354,12 +334,12 @@ class SteadyRun {
     const auto clock = phases_.time("output");
     output::Checkpoint checkpoint;
     system_->particle->store(checkpoint);
-    for (int k = 0; const motion::Mode& mode : modes_) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
+    for (int k = 0; const motion::Mode& mode : found_.modes) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
     SurfacePicture picture = system_->particle->picture(state_);
     picture.fields = [this, of_shape = picture.fields](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);
       int k = 0;
-      for (const motion::Mode& mode : modes_) {
+      for (const motion::Mode& mode : found_.modes) {
         const std::string name = "mode " + std::to_string(++k);
         fields.push_back({name, nodes.values(mode.real)});
         if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary)});
@@ -376,7 +356,7 @@ class SteadyRun {
     account.counts = counts(totals_);
     if (!failure_.empty()) account.status = "failed: " + failure_, account.whole = false;
     int k = 0;
-    for (const motion::Mode& mode : modes_) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
+    for (const motion::Mode& mode : found_.modes) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
     const int code = results_.close(account, phases_);
     if (!failure_.empty()) throw RunFailure(failure_ + "; what was reached is in " + results_.directory().string());
     return code;
@@ -399,12 +379,17 @@ class SteadyRun {
   coupling::Work work_;          // of systems that are gone
   stokes::Evaluations kernel_;
   std::optional<motion::ReturnMap> returns_;
-  std::vector<motion::Mode> modes_;
-  Moment moment_;
+  SteadyRow found_;
   std::string failure_;
 };
 
 }  // namespace
+
+void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
+  if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
+  if (scene.periodic.present) to.add(period, {"period", "time", "after which the shape is back (Periodic)"});
+  if (scene.spectrum.present) motion::add_columns(modes, to);
+}
 
 int find_steady(const Scene& scene, const RunRequest& request) {
   if (request.resume) throw UserError("--resume goes on with a run in time: Steady and Spectrum have nothing to go on with.");

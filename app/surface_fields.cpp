@@ -82,7 +82,14 @@ void SurfaceFields::set_state(const Net& y, double distance) {
   else motion_->set_state(y);
 }
 
-void SurfaceFields::add_to(std::size_t p, const Net& y, Moment& now) const {
+void SurfactantRow::add_columns(Columns& to) const {
+  constexpr const char* of = "drop with surfactant";
+  to.add(mass, {"surfactant_mass", "1", "integral of the concentration over the interface, over the initial one: stays 1 to round-off", {}, of});
+  to.add(smallest, {"smallest_concentration", "1", "of surfactant over the initial one", {}, of});
+  to.add(largest, {"largest_concentration", "1", "the same", {}, of});
+}
+
+void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
   for (std::size_t k = 0; k < all_.size(); ++k) {
     const One& one = all_[k];
     if (one.particle != p) continue;
@@ -90,8 +97,8 @@ void SurfaceFields::add_to(std::size_t p, const Net& y, Moment& now) const {
     now.dissipation += one.field->dissipation();
     if (!one.surfactant) continue;
     now.tension.smallest = members_[p].scene.surfactant->tension(one.surfactant->largest());
-    now.surfactant_mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;
-    now.smallest_concentration = one.surfactant->smallest(), now.largest_concentration = one.surfactant->largest();
+    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;
+    SurfactantRow{mass, one.surfactant->smallest(), one.surfactant->largest()}.add_columns(to);
   }
 }
 

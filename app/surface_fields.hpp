@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "app/diagnostics.hpp"
 #include "app/member.hpp"
-#include "app/series.hpp"
 #include "coupling/coupled_motion.hpp"
 #include "membrane/maxwell_element.hpp"
 #include "membrane/surfactant.hpp"
@@ -16,6 +16,13 @@
 #include "output/snapshot.hpp"
 
 namespace tanktread {
+
+/// What a row holds of a particle's surfactant.
+struct SurfactantRow {
+  double mass = 0;                   ///< over the initial one
+  double smallest = 0, largest = 0;  ///< concentration over the initial one
+  void add_columns(Columns& to) const;
+};
 
 /// The surfactants and Maxwell elements of all members on their present meshes. Without any, states are control nets and nothing is stored.
 class SurfaceFields {
@@ -41,8 +48,8 @@ class SurfaceFields {
   /// Passes the state to capsule and fields; to the fields only if the capsule was evaluated within `distance` of it.
   void set_state(const Net& y, double distance = 0);
 
-  /// Adds what the fields of particle p contribute to its row, at the state set last; `y` is that state.
-  void add_to(std::size_t p, const Net& y, Moment& now) const;
+  /// Adds what the fields of particle p contribute to its row, and their own columns, at the state set last; `y` is that state.
+  void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of all fields' loads if the material moves by v.
   double power(const Net& v) const;
   /// Adds snapshot fields, and corrects the tensions of interfaces with surfactant.

@@ -61,6 +61,14 @@ void check_fits(const Scene& scene, const Body& body) {
                   where.c_str(), nearest.gap, scene.tube.contact_gap, least));
 }
 
+/// Adds the flow rate, and the pressure drop of the empty channel if it is one.
+TubeRow with_channel(const coupling::Tube& tube, TubeRow now) {
+  now.flow_rate = tube.flow_rate(now.pressure_drop * tube.copies());
+  const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
+  if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
+  return now;
+}
+
 }  // namespace
 
 void check_fit(const Scene& scene, const Body& body) {
@@ -125,23 +133,38 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
-void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now) {
-  coupling::Tube& tube = *capsule.tube();
-  now.tube = capsule.checks(x);
-  now.pressure_drop = capsule.response(x).pressure_drop / tube.copies();
-  now.gap = tube.gap();
-  add_channel(tube, now);
+void TubeRow::add_columns(const Scene& scene, Columns& to) const {
+  if (!to.when(scene.tube.present)) return;
+  constexpr const char *tube = "; in a tube", *channel = "; in a channel";
+  to.add(pressure_drop, {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7); of one period of a train", {},
+         tube});
+  add_gap(gap, to);
+  if (to.when(scene.flow.held == "pressure drop"))
+    to.add(flow_rate, {"flow_rate", "length^3/time", "through the tube, where Flow/held is `pressure drop`", {},
+           "; where the pressure drop is held"});
+  if (to.when(scene.tube.channel.has_value())) {
+    to.add(channel_pressure_drop, {"channel_pressure_drop", "force/length^2", "between the ends of the empty channel (2.30)", {}, channel});
+    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop", "force/length^2", "the same, over that of a straight tube of the inlet's "
+           "section and as long", {}, channel});
+  }
+  to.add(checks.flux, {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", {}, tube});
+  to.add(checks.force, {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: "
+         "should vanish (2.14)", {}, tube});
+  to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
+  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance "
+         "vanishes", {}, tube});
+  to.add(checks.pressure_by_force, {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance", {},
+         tube});
 }
 
-void add_tube(coupling::Tube& tube, const Net& density, Moment& now) {
-  now.tube = tube.checks(-density, {}, tube.respond(-density));
-  add_channel(tube, now);
+TubeRow tube_row(coupling::Capsule& capsule, const Net& x) {
+  const coupling::Tube& tube = *capsule.tube();
+  const coupling::Tube::Checks checks = capsule.checks(x);
+  return with_channel(tube, {.pressure_drop = capsule.response(x).pressure_drop / tube.copies(), .gap = tube.gap(), .checks = checks});
 }
 
-void add_channel(const coupling::Tube& tube, Moment& now) {
-  now.flow_rate = tube.flow_rate(now.pressure_drop * tube.copies());
-  const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
-  if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
+TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop) {
+  return with_channel(tube, {.pressure_drop = pressure_drop, .gap = tube.gap(), .checks = tube.checks(-density, {}, tube.respond(-density))});
 }
 
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {

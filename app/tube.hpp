@@ -22,14 +22,18 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
 /// The tube as the body meets it, which is all particles of the scene; nothing without one.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// What the series in a tube are taken from: the particles at x. Collective.
-void add_tube(coupling::Capsule& capsule, const Net& x, Moment& now);
+/// What a row holds of the tube. Pressure drops of one period of a train.
+struct TubeRow {
+  double pressure_drop = 0, gap = 0, flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;
+  coupling::Tube::Checks checks;
+  void add_columns(const Scene& scene, Columns& to) const;
+};
 
-/// Of a rigid body where the tube has it placed, with this force density on the fluid: the checks of its pressure drop.
-void add_tube(coupling::Tube& tube, const Net& density, Moment& now);
+/// Returns the row's part for the particles at x. Collective.
+TubeRow tube_row(coupling::Capsule& capsule, const Net& x);
 
-/// The flow rate, and the pressure drop of the empty channel if it is one.
-void add_channel(const coupling::Tube& tube, Moment& now);
+/// Returns it for a rigid body where the tube has it placed, with this force density on the fluid and this pressure drop. Collective.
+TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop);
 
 /// Throws RunFailure where particles at x have drawn apart by more than the wall is long, or are longer than the period of their train.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);

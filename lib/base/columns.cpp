@@ -10,20 +10,20 @@
 
 namespace tanktread {
 
-void Columns::add(Column column, double value) {
+void Columns::add(double value, Column column) {
   if (!column.undefined_if.empty()) column.description += "; NaN if " + column.undefined_if;
   columns_.push_back(std::move(column));
   values_.push_back(value);
 }
 
-void Columns::add(const Column& column, std::string_view components, const Eigen::Ref<const Eigen::VectorXd>& values) {
+void Columns::add(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view components, const Column& column) {
   std::istringstream names{std::string(components)};
   std::string component;
   for (Eigen::Index k = 0; names >> component; ++k) {
     Column one = column;
     one.name += component;
     if (const auto at = one.description.find('#'); at != std::string::npos) one.description.replace(at, 1, component);
-    add(std::move(one), values[k]);
+    add(values[k], std::move(one));
   }
 }
 

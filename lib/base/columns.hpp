@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,7 +18,7 @@ struct Column {
   std::string where = {};         ///< for the manual: what a run must have, `; in a tube`
 };
 
-/// The columns of one row and their values, of shape (size()).
+/// The columns of one row and their values.
 ///
 /// An owner (the run, a particle, a wall, a load, a field) adds its columns to this, in one function. The function is called at each recorded state,
 /// and once without a state if only the names are wanted: the values that it gives then, NaN too, are not used. Conditions on a column
@@ -30,11 +31,11 @@ class Columns {
   /// Returns whether a column with this condition is to be added.
   bool when(bool condition) const { return condition || every_; }
 
-  /// Adds a column. The clause `undefined_if` is appended to the description.
-  void add(Column column, double value);
+  /// Adds a column and its value. The clause `undefined_if` is appended to the description.
+  void add(double value, Column column);
 
   /// Adds one column per component, separated by spaces in `components`. The component is appended to the name and replaces `#` in the description.
-  void add(const Column& column, std::string_view components, const Eigen::Ref<const Eigen::VectorXd>& values);
+  void add(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view components, const Column& column);
 
   /// Adds the columns of another row, each with the prefix before its name: of one of several particles, `<particle>/`.
   void append(const Columns& other, const std::string& prefix = {});
@@ -46,7 +47,8 @@ class Columns {
   void check() const;
 
   std::size_t size() const { return columns_.size(); }
-  const std::vector<Column>& all() const { return columns_; }
+  const std::vector<Column>& all() const& { return columns_; }
+  std::vector<Column> all() && { return std::move(columns_); }
   const std::vector<double>& values() const { return values_; }
   std::vector<double>& values() { return values_; }
 

@@ -14,6 +14,12 @@ double Contacts::force() const {
   return std::accumulate(all.begin(), all.end(), 0., [](double sum, const Contact& one) { return sum + one.force; });
 }
 
+void Contacts::add_columns(Columns& to) const {
+  to.add(force(), {"contact_force", "force", "sum of the forces by which Contact/limiter held particles apart over the step that ended here; 0 where "
+         "the fluid did"});
+  to.add(impulse, {"contact_impulse", "force time", "sum of these forces times the time that they acted for, so far"});
+}
+
 void add_work(std::span<const Particle> particles, const Contact& contact, double force, Net& work) {
   for (std::size_t k = 0; k < 2; ++k) {
     const Particle& particle = particles[contact.particle[k]];

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/columns.hpp"
 #include "base/types.hpp"
 #include "coupling/particle.hpp"
 #include "spline/space.hpp"
@@ -27,6 +28,7 @@ struct Contacts {
   double impulse = 0;  ///< force x time
 
   double force() const;
+  void add_columns(Columns& to) const;
 };
 
 /// Adds the virtual work of a contact of this force for a unit displacement of each control point, +-force N_A normal, to rows of all particles.

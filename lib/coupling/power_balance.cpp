@@ -30,6 +30,14 @@ double turnover(double flow, double forces, double fluids) {
   return (std::abs(flow) + std::abs(forces) + std::abs(fluids) + std::abs(flow + forces - fluids)) / 2;
 }
 
+void Powers::add_columns(Columns& to) const {
+  const double all = turnover(flow, forces, fluids);
+  to.add(flow, {"flow_power", "force length/time", "power that the flow puts in beyond what the outer fluid alone would take (6.11)"});
+  to.add(forces, {"force_power", "force length/time", "power of weights, of forces on membranes and bodies, and of contacts"});
+  to.add(fluids, {"fluid_dissipation", "force length/time", "power that the fluids turn into heat, beyond what the outer one alone would (6.12)"});
+  to.add(all > 0 ? left_over / all : 0, {"power_residual", "1", "what the balance of power lacks (6.13), over half the magnitudes of its terms"});
+}
+
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
                            const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
     : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),

@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "base/columns.hpp"
 #include "base/types.hpp"
 #include "coupling/capsule.hpp"
 #include "coupling/ranks.hpp"
@@ -23,6 +24,8 @@ struct Powers {
   double membranes = 0;    ///< dissipated in them
   double fluids = 0;       ///< dissipated in the fluids, beyond what the ambient flow would dissipate everywhere: the rest of these (6.12)
   double left_over = 0;    ///< of what the velocities miss of (2.22) between the collocation sites (6.13)
+
+  void add_columns(Columns& to) const;
 };
 
 /// Of (6.12) half the sum of the magnitudes of what flow and forces put in, of what the fluids dissipate, and of the rest: what is put in where

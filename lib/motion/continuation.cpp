@@ -37,6 +37,12 @@ void ContinuationOptions::declare(deck::Section& section) {
     throw UserError(section.path("second parameter") + " and " + section.path("second values") + " come together, or not at all.");
 }
 
+void BranchPoint::add_columns(bool follows_fold, Columns& to) const {
+  to.add(parameter, {"parameter", "of the key", "Continuation/parameter"});
+  to.add(fold, {"fold", "1", "1 where the parameter turns back along the branch, else 0"});
+  if (follows_fold) to.add(second, {"second_parameter", "of the key", "Continuation/second parameter"});
+}
+
 Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,
                const coupling::SolverOptions& solvers, double parameter, double second, Net x)
     : family_(std::move(family)), remesh_(std::move(remesh)), options_(options), steady_(steady), solvers_(solvers), start_(parameter),

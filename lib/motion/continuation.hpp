@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/columns.hpp"
 #include "motion/steady.hpp"
 
 namespace tanktread::motion {
@@ -37,6 +38,8 @@ struct BranchPoint {
   bool fold = false;   ///< the parameter turns round here
   int iterations = 0;  ///< of NOX
   double rest = 0;     ///< the correction that was left
+
+  void add_columns(bool follows_fold, Columns& to) const;
 };
 
 /// The shapes at rest that hang together, from one on to a value of the parameter, or around a fold back to the first one. With t the direction from

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/QR>
@@ -35,6 +36,23 @@ void SpectrumOptions::declare(deck::Section& section) {
 const char* name(ModeKind kind) {
   constexpr const char* names[] = {"shape", "translation", "rotation", "labels", "volume"};
   return names[static_cast<int>(kind)];
+}
+
+void Mode::add_columns(const std::string& number, Columns& to) const {
+  to.add(rate.real(), {"rate_" + number, "1/time", "of mode k of the spectrum, as its displacement grows (Spectrum): the modes as Spectrum/number "
+         "and Spectrum/near order them"});
+  to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time", "of the same mode, 2 pi over the period with which it oscillates; not negative"});
+}
+
+void add_columns(const std::vector<Mode>& modes, Columns& to) {
+  double leading = -std::numeric_limits<double>::infinity();
+  int unstable = 0;
+  for (const Mode& mode : modes)
+    if (mode.kind == ModeKind::shape) leading = std::max(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
+  to.add(leading, {"leading_rate", "1/time", "largest rate of the modes that change the shape, translations and rotations left out: negative where "
+         "it is stable"});
+  to.add(unstable, {"unstable_modes", "1", "of those modes, how many grow"});
+  for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 
 Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/columns.hpp"
 #include "base/types.hpp"
 #include "coupling/dynamics.hpp"
 #include "coupling/eigenvalues.hpp"
@@ -42,7 +43,12 @@ struct Mode {
   std::complex<double> rate;
   Net real, imaginary;
   ModeKind kind = ModeKind::shape;
+
+  void add_columns(const std::string& number, Columns& to) const;
 };
+
+/// Adds the columns of a spectrum, and of its modes from 1.
+void add_columns(const std::vector<Mode>& modes, Columns& to);
 
 /// J y for the coordinates y of a displacement of x, by a central difference of velocities:
 ///

@@ -10,6 +10,7 @@
 
 #include "app/flow_plane.hpp"
 #include "app/run_totals.hpp"
+#include "app/series.hpp"
 #include "base/errors.hpp"
 #include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
@@ -18,41 +19,47 @@
 namespace tanktread {
 namespace {
 
-TEST(Series, AreStatedOnce) {
-  std::set<std::string_view> names;
-  for (const Series& one : all_series()) EXPECT_TRUE(names.insert(one.name).second) << one.name;
+TEST(Series, AreDeclaredOnce) {
+  Scene deforming, free, prescribed, several;
+  free.particle.motion = Motion::free, prescribed.particle.motion = Motion::prescribed;
+  several.particles.resize(2);
+  several.particles[0].name = "a", several.particles[1].name = "b", several.particles[1].particle.motion = Motion::free;
+  for (const Scene& scene : {deforming, free, prescribed, several}) {
+    std::set<std::string> names;
+    for (const Column& one : columns(scene).all()) EXPECT_TRUE(names.insert(one.name).second) << one.name;
+    EXPECT_TRUE(names.contains(scene.particles.empty() ? "volume" : "b/volume") || scene.particle.motion == Motion::free);
+  }
 }
 
-TEST(Series, ThatAreNotANumberEndTheRun) {
-  Moment now;
-  std::vector<Series> two;
-  std::ranges::copy_if(all_series(), std::back_inserter(two), [](const Series& one) { return one.name == "time" || one.name == "drag_error"; });
-  EXPECT_EQ(row(two, now), (std::vector<double>{0, 0}));
-  now.drag_error = std::numeric_limits<double>::quiet_NaN();
-  try {
-    row(two, now);
-    FAIL();
-  } catch (const RunFailure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("drag_error"), std::string::npos);
-  }
+TEST(Series, OfTheProgramComeInTheOrderOfTheManual) {
+  Columns row;
+  for (const char* name : {"of a part", "kernel_evaluations", "cell_2_x1", "axis_1_x1", "axis_3", "time"}) row.add(0, {name, "1", ""});
+  put_in_order(row);
+  std::vector<std::string> names;
+  for (const Column& one : row.all()) names.push_back(one.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"time", "axis_3", "axis_1_x1", "cell_2_x1", "kernel_evaluations", "of a part"}));
 }
 
 TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
-  Moment now;
+  DeformingRow now;
   now.shape.inclination = std::numeric_limits<double>::quiet_NaN();
   now.axes.lengths = Vec3(2, 1, 1);
   now.axes.directions = Mat3::Identity();
+  Columns row;
+  now.add_columns(Scene(), row);
+  EXPECT_NO_THROW(finish(row));
   std::set<std::string> undefined;
-  for (const Series& one : all_series()) {
-    if (one.undefined_if.empty()) continue;
-    undefined.insert(one.name);
-    EXPECT_TRUE(std::isnan(row({&one, 1}, now)[0])) << one.name;
-    EXPECT_NE(one.description.find("; NaN if " + one.undefined_if), std::string::npos) << one.name;
-  }
+  for (const Column& one : row.all())
+    if (std::isnan(row.value(one.name))) undefined.insert(one.name);
   EXPECT_EQ(undefined, (std::set<std::string>{"inclination", "axis_1_x1", "axis_1_x2", "axis_1_x3"}));
   now.axes.longest_defined = true;
-  const auto first = std::ranges::find(all_series(), "axis_1_x1", &Series::name);
-  EXPECT_EQ(row({&*first, 1}, now)[0], 1);
+  Columns defined;
+  now.add_columns(Scene(), defined);
+  EXPECT_EQ(defined.value("axis_1_x1"), 1);
+  now.volume_error = std::numeric_limits<double>::quiet_NaN();
+  Columns failed;
+  now.add_columns(Scene(), failed);
+  EXPECT_THROW(finish(failed), RunFailure);
 }
 
 /// The inclination of an ellipsoid in a flow.

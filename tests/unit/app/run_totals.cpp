@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "app/series.hpp"
 #include "deck/document.hpp"
 
 namespace tanktread {
@@ -66,13 +65,6 @@ TEST(RunTotals, WarningsGoOnWhereTheyWere) {
   Warnings third(scene);
   third.remember(second.memory());
   for (int k = 0; k < steps; ++k) EXPECT_TRUE(look(third).empty());  // it is said already
-}
-
-TEST(Series, AnUnknownNameIsAnError) {
-  const std::vector<Series>& all = all_series();
-  const std::vector<double> row(all.size(), 2.5);
-  EXPECT_EQ(entry(all, row, "area"), 2.5);
-  EXPECT_THROW(entry(all, row, "taylor"), std::out_of_range);
 }
 
 }  // namespace

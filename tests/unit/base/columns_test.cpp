@@ -20,8 +20,8 @@ std::vector<std::string> names(const Columns& columns) {
 
 TEST(Columns, HaveOneNameAndDescriptionPerComponent) {
   Columns row;
-  row.add({"time", "time", "simulated time"}, 0.5);
-  row.add({"gap_", "length", "place, component #", "there is none"}, "x1 x2 x3", Eigen::Vector3d(1, 2, 3));
+  row.add(0.5, {"time", "time", "simulated time"});
+  row.add(Eigen::Vector3d(1, 2, 3), "x1 x2 x3", {"gap_", "length", "place, component #", "there is none"});
   EXPECT_EQ(names(row), (std::vector<std::string>{"time", "gap_x1", "gap_x2", "gap_x3"}));
   EXPECT_EQ(row.values(), (std::vector<double>{0.5, 1, 2, 3}));
   EXPECT_EQ(row.all()[2].description, "place, component x2; NaN if there is none");
@@ -31,9 +31,9 @@ TEST(Columns, HaveOneNameAndDescriptionPerComponent) {
 
 TEST(Columns, ThatAreNotANumberEndTheRunUnlessTheyMayBeUndefined) {
   Columns row;
-  row.add({"inclination", "degree", "angle", "no axis is longest"}, nan);
+  row.add(nan, {"inclination", "degree", "angle", "no axis is longest"});
   EXPECT_NO_THROW(row.check());
-  row.add({"drag_error", "1", "error"}, nan);
+  row.add(nan, {"drag_error", "1", "error"});
   try {
     row.check();
     FAIL();
@@ -44,10 +44,10 @@ TEST(Columns, ThatAreNotANumberEndTheRunUnlessTheyMayBeUndefined) {
 
 TEST(Columns, OfParticlesFollowEachOtherAndAreFoundByName) {
   Columns row, one, other;
-  row.add({"area", "length^2", "of all"}, 7);
+  row.add(7, {"area", "length^2", "of all"});
   EXPECT_EQ(row.of_particles("area"), std::vector<double>{7});
-  one.add({"area", "length^2", "of one"}, 3);
-  other.add({"area", "length^2", "of one"}, 4);
+  one.add(3, {"area", "length^2", "of one"});
+  other.add(4, {"area", "length^2", "of one"});
   row.append(one, "a/"), row.append(other, "b/");
   EXPECT_EQ(names(row), (std::vector<std::string>{"area", "a/area", "b/area"}));
   EXPECT_EQ(row.of_particles("area"), (std::vector<double>{3, 4}));
@@ -56,7 +56,7 @@ TEST(Columns, OfParticlesFollowEachOtherAndAreFoundByName) {
 
 TEST(Columns, AreSortedByRankAndThenAsAdded) {
   Columns row;
-  for (const char* name : {"c", "b2", "b1", "a"}) row.add({name, "1", ""}, name[0]);
+  for (const char* name : {"c", "b2", "b1", "a"}) row.add(name[0], {name, "1", ""});
   row.sort([](const std::string& name) { return static_cast<std::size_t>(name[0]); });
   EXPECT_EQ(names(row), (std::vector<std::string>{"a", "b2", "b1", "c"}));
   EXPECT_EQ(row.values(), (std::vector<double>{'a', 'b', 'b', 'c'}));
