@@ -16,7 +16,4 @@ void check_in_front(const Scene& scene, const Body& body);
 void add_wall(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x, Moment& now);
 void add_wall(const stokes::PlaneWall& wall, const Body& body, const Net& x, Moment& now);
 
-/// Cuts the elements of a rigid body that stays alone beside a wall, at its present place, as Adaptation says.
-void refine_at_wall(const Scene& scene, Body& body);
-
 }  // namespace tanktread

@@ -25,6 +25,9 @@ struct RigidSolution {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// The resistance problem of the scene's body. `tube`: the one around it, or nothing.
+coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube);
+
 /// The body of `Particle/motion: prescribed` in the flow of the deck; `tube`: the one around it, or nothing. Collective.
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
                              const coupling::Tube* tube = nullptr);

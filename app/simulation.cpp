@@ -142,7 +142,7 @@ class Run {
     state_ = before;
     totals_ = totals;
     interrupted_ = true;
-    pictured_.reset();
+    pictured_.reset(), sampled_.reset();
     const std::string undone = error_of([&] {
       if (!adapting_) return;
       particle_->undo_adapt(state_.x);
@@ -175,13 +175,14 @@ class Run {
     const double snapshot = next_snapshot(scene_, state_.time);
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
-    pictured_.reset();
+    pictured_.reset(), sampled_.reset();
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     adapting_ = true;
+    if (pictured_ && adapts_) sampled_ = sample();
     adapt();
     for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
@@ -312,14 +313,19 @@ class Run {
     const auto clock = phases_.time("output");
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
-    const motion::State& pictured = pictured_ ? *pictured_ : state_;
-    particle_->dynamics().at(pictured.time, began_);
-    const SurfacePicture picture = particle_->picture(pictured);
+    const Results::Sampled picture = sampled_ ? *sampled_ : sample();
     if (pictured_) settle();  // the picture has taken work, and the next solution starts from its own
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
-    results_.save(std::move(checkpoint), state_, totals_, picture, pictured.time);
+    results_.save(std::move(checkpoint), state_, totals_, picture);
     particle_->forget_recycled();
+  }
+
+  /// The picture that is due, of the last step's end or of a moment within.
+  Results::Sampled sample() {
+    const motion::State& pictured = pictured_ ? *pictured_ : state_;
+    particle_->dynamics().at(pictured.time, began_);
+    return results_.sample(particle_->picture(pictured), pictured.time);
   }
 
   void save_or_fail() {
@@ -427,6 +433,8 @@ class Run {
   stokes::Evaluations earlier_kernel_;        // in earlier parts of the run
   output::Entries<double> earlier_seconds_;
   std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
+  std::optional<Results::Sampled> sampled_;  // the same as a picture, taken before the mesh changes
+  bool adapts_ = std::ranges::any_of(scene_.alone(), [](const Scene& one) { return one.adaptation.enabled; });
   surface::Quality quality_;
   Scene first_ = first_deforming(scene_);
   Warnings warnings_{first_};  // of several particles by the numbers of the first that deforms

@@ -132,7 +132,8 @@ class SteadyRun {
   void look() {
     if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {
-      system_->motion->restore_volume(state_.x);
+      do system_->motion->restore_volume(state_.x);
+      while (adapt());
       return write();
     }
     motion::SteadyReport found;
@@ -147,10 +148,12 @@ class SteadyRun {
   /// The shape that comes back after a period.
   void shoot() {
     const motion::PeriodicOptions& options = scene_.periodic;
-    coupling::Dynamics& dynamics = *system_->motion;
-    state_.x = motion::after_periods(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
-    returns_.emplace(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
-    const motion::PeriodicReport found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
+    state_.x = motion::after_periods(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
+    motion::PeriodicReport found;
+    do {
+      returns_.emplace(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
+      found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
+    } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     moment_.period = returns_->period();
     write();
@@ -272,7 +275,9 @@ class SteadyRun {
                                 options.number));
     const Net flux = capsule.geometry().volume_gradient(state_.x);
     if (returns_) {
-      keep(motion::recognised(*system->motion, shapes, state_.x, {}, exponents(shapes)));  // runs keep the volume
+      std::optional<motion::ReturnMap> of_parity;
+      if (options.parity) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
+      keep(motion::recognised(*system->motion, shapes, state_.x, {}, exponents(of_parity ? *of_parity : *returns_, shapes)));  // runs keep the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
@@ -283,11 +288,12 @@ class SteadyRun {
   }
 
   /// Floquet exponents: the rates at which what the returns multiply grows over a period.
-  std::vector<coupling::Eigenpair> exponents(const coupling::ShapeCoordinates& shapes) {
+  std::vector<coupling::Eigenpair> exponents(motion::ReturnMap& returns, const coupling::ShapeCoordinates& shapes) {
     Eigen::VectorXd start(shapes.size());
     for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // the same on every run
     std::vector<coupling::Eigenpair> pairs;
-    for (const motion::Multiplier& one : motion::multipliers(*returns_, state_.x, shapes.displacement(start), scene_.spectrum.number)) {
+    const auto admitted = [&](const Net& field) { return shapes.admitted(field); };
+    for (const motion::Multiplier& one : motion::multipliers(returns, state_.x, shapes.displacement(start), admitted, scene_.spectrum.number)) {
       Eigen::VectorXcd y = shapes.coordinates(one.real).cast<std::complex<double>>();
       y += std::complex<double>(0, 1) * shapes.coordinates(one.imaginary);
       pairs.push_back({std::log(one.value) / moment_.period, y.normalized()});
@@ -298,8 +304,9 @@ class SteadyRun {
   void keep(std::vector<motion::Mode> modes) {
     modes_ = std::move(modes);
     moment_.leading_rate = -std::numeric_limits<double>::infinity(), moment_.unstable_modes = 0;
+    const bool all_rigid = std::ranges::all_of(scene_.alone(), [](const Scene& one) { return one.particle.rigid(); });  // that turn, one by one
     for (const motion::Mode& mode : modes_) {
-      if (mode.kind != motion::ModeKind::shape) continue;
+      if (mode.kind != motion::ModeKind::shape && !(all_rigid && mode.kind == motion::ModeKind::rotation)) continue;
       moment_.leading_rate = std::max(moment_.leading_rate, mode.rate.real());
       moment_.unstable_modes += mode.rate.real() > 0;
     }
@@ -366,7 +373,7 @@ class SteadyRun {
       }
       return fields;
     };
-    results_.save(std::move(checkpoint), state_, totals_, picture, state_.time);
+    results_.save(std::move(checkpoint), state_, totals_, results_.sample(picture, state_.time));
   }
 
   int close() {

@@ -116,7 +116,7 @@ Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
   if (whole_) whole_->add_turning(delta, h);
-  if (repulsion_) repulsion_->add_tangent(delta, h);
+  if (repulsion_) repulsion_->add_tangent(delta, h), rigid_.clear(h);
   replicate_sums(h);
   if (whole_) whole_->add_stretching(delta, h);
   if (work.size() > 0) h += work;

@@ -8,6 +8,7 @@
 #include "coupling/agreement.hpp"
 #include "coupling/collocation.hpp"
 #include "coupling/interface_motion.hpp"
+#include "coupling/rigid_motion.hpp"
 
 namespace tanktread::coupling {
 
@@ -18,7 +19,9 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
   collocation_.factor(sites_);
   for (const int i : symmetry.fundamental()) {
     const auto holds = [i](const Particle& particle) { return particle.block.holds(i); };
-    if (std::ranges::find_if(particles, holds)->slides()) {
+    const Particle& particle = *std::ranges::find_if(particles, holds);
+    if (particle.rigid) continue;
+    if (particle.slides()) {
       const Vec3 normal = site_normal(space, x, space.collocation[static_cast<std::size_t>(i)]);
       add_along(i, normal);
       if (parity_.scalar_signs()[i] != 0) all_.push_back({i, projection_ ? Vec3(Vec3::Zero()) : normal});
@@ -35,8 +38,22 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
       if (!std::ranges::find_if(particles, holds)->slides()) normals_.row(static_cast<Eigen::Index>(i)).setZero();
     }
   }
-  for (const Particle& particle : particles)
+  for (const Particle& particle : particles) {
     if (particle.slides()) carry_whole(particle.block);
+    if (particle.rigid) add_rigid(particle.block, x);
+  }
+}
+
+void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
+  const Net own = block.rows(x);
+  const Vec3 centre = own.colwise().mean().transpose();
+  const std::size_t first = rigid_.size();
+  for (int k = 0; k < 6; ++k) {
+    Net field = Net::Zero(x.rows(), 3);
+    block.rows(field) = rigid_velocity(own, unit_motion(k), centre);
+    for (std::size_t other = first; other < rigid_.size(); ++other) field -= rigid_[other].cwiseProduct(field).sum() * rigid_[other];
+    rigid_.push_back(field / field.norm());
+  }
 }
 
 /// The directions across a normal that the parity leaves to a site.
@@ -99,17 +116,18 @@ Net ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
 Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());
-  for (Eigen::Index k = 0; k < size(); ++k)
+  for (std::size_t k = 0; k < all_.size(); ++k)
     if (projected(all_[k]))
-      outward[all_[k].site] = y[k];
+      outward[all_[k].site] = y[static_cast<Eigen::Index>(k)];
     else
-      at_sites.row(all_[k].site) += y[k] * all_[k].direction.transpose();
+      at_sites.row(all_[k].site) += y[static_cast<Eigen::Index>(k)] * all_[k].direction.transpose();
   parity_.complete(at_sites);
   Net d = collocation_.solve(at_sites);
   if (projection_) {
     parity_.complete(outward);
     d += projection_->control_values((projection_->values() * outward).asDiagonal() * normals_);
   }
+  for (std::size_t k = 0; k < rigid_.size(); ++k) d += y[static_cast<Eigen::Index>(all_.size() + k)] * rigid_[k];
   return d;
 }
 
@@ -140,8 +158,9 @@ Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
   const Net at_sites = sites_ * field;
   Eigen::VectorXd y(size()), outward;
   if (projection_) outward = projection_->scalar_values((projection_->values() * field).cwiseProduct(normals_).rowwise().sum());
-  for (Eigen::Index k = 0; k < size(); ++k)
-    y[k] = projected(all_[k]) ? outward[all_[k].site] : at_sites.row(all_[k].site).dot(all_[k].direction);
+  for (std::size_t k = 0; k < all_.size(); ++k)
+    y[static_cast<Eigen::Index>(k)] = projected(all_[k]) ? outward[all_[k].site] : at_sites.row(all_[k].site).dot(all_[k].direction);
+  for (std::size_t k = 0; k < rigid_.size(); ++k) y[static_cast<Eigen::Index>(all_.size() + k)] = rigid_[k].cwiseProduct(field).sum();
   return y;
 }
 

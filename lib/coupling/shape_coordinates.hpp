@@ -33,6 +33,8 @@ namespace tanktread::coupling {
 ///
 /// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone, or
 /// those of another parity (surface/parity.hpp), for whom nothing else may know of the symmetry.
+///
+/// Of a rigid body those of six orthonormal fields, its translations and rotations.
 class ShapeCoordinates {
  public:
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
@@ -41,10 +43,11 @@ class ShapeCoordinates {
   /// Lets meshes go along, as `dynamics` has them at x. Collective.
   void follow(Dynamics& dynamics, const Net& x);
 
-  Eigen::Index size() const { return static_cast<Eigen::Index>(all_.size()); }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates
   Eigen::VectorXd coordinates(const Net& field) const;  ///< of a field of these control values
   bool admits(const Net& field) const;                  ///< whether it is nearly one of those that symmetry leaves
+  Net admitted(Net field) const { return parity_.complete(field), field; }  ///< the one of those with its values at fundamental points
 
  private:
   struct Coordinate {
@@ -57,12 +60,14 @@ class ShapeCoordinates {
     Net field, rest;              // with these coordinates; less the one across the interface
   };
   void carry_whole(const spline::Block& block);
+  void add_rigid(const spline::Block& block, const Net& x);
   Net across(const Eigen::VectorXd& y) const;
   Net along(const Eigen::VectorXd& t) const;
   Eigen::VectorXd coordinates_along(const Net& field) const;
   void add_along(int site, const Vec3& normal);
 
   std::vector<Coordinate> all_;
+  std::vector<Net> rigid_;         // orthonormal motions of bodies, whose coordinates come last
   std::vector<Coordinate> along_;  // of drops, tangential
   Eigen::MatrixXd following_;      // those of the mesh that follows, of coordinates y; empty: it does not
   std::vector<Translation> translations_;  // of drops
