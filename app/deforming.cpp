@@ -47,6 +47,7 @@ class Deforming : public ParticleSystem {
 
   coupling::Dynamics& dynamics() override { return fields_->dynamics(); }
   const coupling::Capsule* capsule() const override { return capsule_.get(); }
+  coupling::CoupledMotion* fields() override { return fields_->motion(); }
   const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
   Net start() const override { return fields_->start(body().initial); }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }

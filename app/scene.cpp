@@ -328,8 +328,6 @@ void check_contradictions(const Scene& scene) {
   refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
   const std::string surfactant = "Interface/surfactant", memory = "Membrane/relaxation time";
   refuse(scene.surfactant && (rigid || !drop), surfactant, rigid ? motion : law, "it is on the interface of a drop");
-  refuse(scene.surfactant && scene.spectrum.present, surfactant, "Spectrum", "the modes leave its concentration out");
-  refuse(scene.maxwell_membrane() && scene.spectrum.present, memory, "Spectrum", "the modes leave out what the membrane remembers");
   refuse(scene.maxwell_membrane() && scene.steady.present && turns(scene), "Steady with " + memory, flow,
          "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
   refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");

@@ -265,15 +265,26 @@ class SteadyRun {
     motion::SpectrumOptions options = scene_.spectrum;
     const surface::Symmetry& shape = system_->particle->body().symmetry;
     coupling::Ranks whole_ranks;  // of other rows
-    const std::shared_ptr<System> system = options.parity ? whole(whole_ranks) : system_;
+    const coupling::CoupledMotion* on_it = system_->particle->fields();
+    const bool apart = on_it && std::ranges::any_of(on_it->fields(), [](const auto& on) { return !on.field->of_points(); });
+    if (apart && options.parity)
+      throw UserError("Spectrum/parity is of what has a value at each control point, and a membrane with Membrane/relaxation time has strains within "
+                      "elements: without the key there are modes of all parities.");
+    const std::shared_ptr<System> system = options.parity || (apart && shape.order() > 1) ? whole(whole_ranks) : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();
-    coupling::ShapeCoordinates shapes(body.space, capsule.particles(), shape, state_.x, capsule.projection(),
-                                            options.parity.value_or(Vec3::Ones()));
+    const Net x = state_.x.topRows(capsule.n_points());
+    coupling::ShapeCoordinates shapes(body.space, capsule.particles(), options.parity ? shape : body.symmetry, x, capsule.projection(),
+                                      options.parity.value_or(Vec3::Ones()));
+    std::vector<Net> kept{capsule.geometry().volume_gradient(x)};
+    if (coupling::CoupledMotion* fields = system->particle->fields()) {
+      shapes.add_fields(*fields, state_.x);
+      for (std::size_t k = 0; k < fields->fields().size(); ++k)
+        if (Net of_field = fields->conserved(k); of_field.rows() > 0) kept.push_back(std::move(of_field));
+    }
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));
-    const Net flux = capsule.geometry().volume_gradient(state_.x);
     if (returns_) {
       std::optional<motion::ReturnMap> of_parity;
       if (options.parity) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
@@ -281,7 +292,7 @@ class SteadyRun {
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
-      keep(motion::spectrum(*system->motion, shapes, state_.x, flux, options, scene_.solvers.of(scene_.solvers.spectrum)));
+      keep(motion::spectrum(*system->motion, shapes, state_.x, kept, options, scene_.solvers.of(scene_.solvers.spectrum)));
     }
     if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
     system_->motion->velocity(state_.x);
@@ -368,8 +379,9 @@ class SteadyRun {
       int k = 0;
       for (const motion::Mode& mode : modes_) {
         const std::string name = "mode " + std::to_string(++k);
-        fields.push_back({name, nodes.values(mode.real)});
-        if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary)});
+        const Eigen::Index n = system_->particle->capsule()->n_points();
+        fields.push_back({name, nodes.values(mode.real.topRows(n))});
+        if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary.topRows(n))});
       }
       return fields;
     };

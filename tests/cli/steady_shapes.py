@@ -242,7 +242,7 @@ Tanktread:
   Particle: {shape: spheroid, semi-axes: [1, 1, 0.4]}
   Membrane: {law: neo-Hookean, shear modulus: 1}
   Surface: {elements per side: 3, extraordinary points: catmull-clark}
-  Adaptation: {enabled: %s, indicator: variation, reference length: 0.4}
+  Adaptation: {enabled: %s, indicator: variation, reference length: 1, levels: 1}
   Spectrum: {number: 2, method: krylov}
 """
     for enabled in "true", "false":
