@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "app/adaptation.hpp"
-#include "app/drift.hpp"
+#include "app/free_motions.hpp"
 #include "app/gaps.hpp"
 #include "app/limiter.hpp"
 #include "app/member.hpp"
@@ -154,8 +154,7 @@ class Deforming : public ParticleSystem {
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const Net v = material_velocity(state);
     Moment whole;
-    whole.time = state.time, whole.wall_seconds = wall_seconds;
-    whole.step = report, whole.work = capsule_->work();
+    whole.time = state.time, whole.wall_seconds = wall_seconds, whole.step = report, whole.work = capsule_->work();
     std::vector<double> of_particles;
     std::vector<Moment> moments;
     for (std::size_t p = 0; p < members_.size(); ++p) {

@@ -328,4 +328,17 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   return missed;
 }
 
+std::vector<std::string> check_expectations(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Series& one : run_series(scene)) names.push_back(one.name);
+  deck::check_series(scene.expect.all, names);
+  const double last = scene.continuation.present ? scene.continuation.points : 0;
+  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
+  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
+}
+
+std::string stored_deck(const std::string& directory) {
+  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
+}
+
 }  // namespace tanktread

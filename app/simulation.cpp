@@ -54,6 +54,11 @@ motion::TimeOptions time_options(const Scene& scene) {
   return time;
 }
 
+/// Returns whether any mesh may change.
+bool adapts(const Scene& scene) {
+  return std::ranges::any_of(scene.alone(), [](const Scene& one) { return one.adaptation.enabled; });
+}
+
 /// Returns the scene of the first particle that deforms, as if it were alone; of the first one if all are rigid.
 Scene first_deforming(const Scene& scene) {
   std::vector<Scene> all = scene.alone();
@@ -142,7 +147,7 @@ class Run {
     state_ = before;
     totals_ = totals;
     interrupted_ = true;
-    pictured_.reset(), sampled_.reset();
+    pictured_.reset();
     const std::string undone = error_of([&] {
       if (!adapting_) return;
       particle_->undo_adapt(state_.x);
@@ -175,14 +180,14 @@ class Run {
     const double snapshot = next_snapshot(scene_, state_.time);
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
-    pictured_.reset(), sampled_.reset();
+    pictured_.reset();
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     adapting_ = true;
-    if (pictured_ && adapts_) sampled_ = sample();
+    if (pictured_ && adapts(scene_)) pictured_->sampled = sample();
     adapt();
     for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
@@ -268,10 +273,8 @@ class Run {
     double time = next_snapshot(scene_, before.time);
     for (double next = next_snapshot(scene_, time); next <= state_.time && next > time; next = next_snapshot(scene_, time)) time = next;
     const motion::DenseOutput dense(before, state_);
-    pictured_.emplace();
-    pictured_->time = time;
-    pictured_->x = dense.place(time);
-    pictured_->history = {dense.slope(time)};
+    motion::State& state = pictured_.emplace().state;
+    state.time = time, state.x = dense.place(time), state.history = {dense.slope(time)};
   }
 
   void record() {
@@ -313,7 +316,7 @@ class Run {
     const auto clock = phases_.time("output");
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
-    const Results::Sampled picture = sampled_ ? *sampled_ : sample();
+    const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
     if (pictured_) settle();  // the picture has taken work, and the next solution starts from its own
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
@@ -323,7 +326,7 @@ class Run {
 
   /// The picture that is due, of the last step's end or of a moment within.
   Results::Sampled sample() {
-    const motion::State& pictured = pictured_ ? *pictured_ : state_;
+    const motion::State& pictured = pictured_ ? pictured_->state : state_;
     particle_->dynamics().at(pictured.time, began_);
     return results_.sample(particle_->picture(pictured), pictured.time);
   }
@@ -432,24 +435,17 @@ class Run {
   bool interrupted_ = false;  // within a step, of which nothing is kept
   stokes::Evaluations earlier_kernel_;        // in earlier parts of the run
   output::Entries<double> earlier_seconds_;
-  std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
-  std::optional<Results::Sampled> sampled_;  // the same as a picture, taken before the mesh changes
-  bool adapts_ = std::ranges::any_of(scene_.alone(), [](const Scene& one) { return one.adaptation.enabled; });
+  struct Pictured {
+    motion::State state;
+    std::optional<Results::Sampled> sampled;  // before the mesh changes
+  };
+  std::optional<Pictured> pictured_;  // where a snapshot is due within the last step
   surface::Quality quality_;
   Scene first_ = first_deforming(scene_);
   Warnings warnings_{first_};  // of several particles by the numbers of the first that deforms
 };
 
 }  // namespace
-
-std::vector<std::string> check_expectations(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Series& one : run_series(scene)) names.push_back(one.name);
-  deck::check_series(scene.expect.all, names);
-  const double last = scene.continuation.present ? scene.continuation.points : 0;
-  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
-  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
-}
 
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
@@ -460,10 +456,6 @@ int simulate(const Scene& scene, const RunRequest& request) {
 
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
-}
-
-std::string stored_deck(const std::string& directory) {
-  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
 }
 
 }  // namespace tanktread

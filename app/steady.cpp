@@ -6,13 +6,13 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "app/branch_parameters.hpp"
 #include "app/free_motions.hpp"
 #include "app/particle_system.hpp"
 #include "app/plan.hpp"
@@ -60,45 +60,6 @@ struct System {
   std::optional<motion::GuardedDynamics> motion;
   std::optional<motion::SteadyEquations> equations;
 };
-
-/// The one of a branch, and the second, 0 where there is none.
-using Parameters = std::array<double, 2>;
-
-/// The scene with other values of the parameters of its branch.
-Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values) {
-  Scene other = scene;
-  other.particles.clear(), other.expect.all.clear();
-  std::vector<std::string> settings{scene.continuation.parameter + "=" + deck::real_text(values[0])};
-  if (scene.continuation.second_parameter) settings.push_back(*scene.continuation.second_parameter + "=" + deck::real_text(values[1]));
-  deck::Document changed = deck::read({}, settings, deck);
-  changed.declare(other);
-  other.particles = with_copies(other.particles, other.domain);
-  other.check();
-  return other;
-}
-
-/// The number that the deck gives to the key at `path`, of which the key `of` tells. Throws UserError where it has none.
-double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
-  deck::Document read = deck::read_text(deck);
-  Scene again = scene;
-  again.particles.clear(), again.expect.all.clear();
-  read.declare(again);
-  const auto values = read.values();
-  const auto found = values.find(path);
-  if (found == values.end()) throw UserError(of + " must be the path of a key that this deck gives, but is " + deck::in_quotes(path) + ".");
-  char* end = nullptr;
-  const double value = std::strtod(found->second.c_str(), &end);
-  if (end == found->second.c_str() || *end != 0) throw UserError(of + " must be the path of a number, but " + path + " is " + found->second + ".");
-  return value;
-}
-
-/// With which the branch begins.
-Parameters first_parameters(const Scene& scene, const std::string& deck) {
-  const motion::ContinuationOptions& branch = scene.continuation;
-  const double first = number_of(scene, deck, branch.parameter, "Continuation/parameter");
-  if (first == branch.to) throw UserError("Continuation/to must differ from " + branch.parameter + ", where the branch begins.");
-  return {first, branch.second_parameter ? number_of(scene, deck, *branch.second_parameter, "Continuation/second parameter") : 0};
-}
 
 /// The shapes that are looked at, one after another, and what is written of each.
 class SteadyRun {

@@ -692,19 +692,6 @@ double Capsule::volume_error(const Net& x) const {
   return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
 }
 
-double Capsule::distance(const Net& from, const Net& to) const { return norm(Corotation::deformation(particles(), from, to)); }
-
-double Capsule::norm(const Net& displacement) const {
-  const double along = tube_ && !tube_->fixed() ? displacement.col(0).mean() : 0;
-  double largest = 0;
-  for (const Particle& particle : particles()) {
-    const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
-    const double norm = moved.norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
-    largest = norm <= largest ? largest : norm;  // what is not a number stays so
-  }
-  return largest;
-}
-
 Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
   const Particle& particle = particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };

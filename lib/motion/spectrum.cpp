@@ -151,7 +151,8 @@ namespace {
 using Pairs = std::vector<coupling::Eigenpair>;
 
 /// All of J, which is made column by column.
-Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept, const SpectrumOptions& options) {
+Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+            const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
   Eigen::MatrixXd jacobian(n, n);
   const Linearised linearised(dynamics, shapes, x, kept, options.difference);

@@ -72,8 +72,8 @@ class Linearised {
   Eigen::MatrixXd kept_;         // orthonormal gradients by y, a column each
 };
 
-/// Eigenpairs in coordinates of shapes as fields on the surface, what is no change of shape recognised. `kept`: the gradients of what the motion keeps,
-/// first of the volume, which tell the modes that have the rate 0 only for that. Collective.
+/// Eigenpairs in coordinates of shapes as fields on the surface, what is no change of shape recognised. `kept`: the gradients of what the motion
+/// keeps, first of the volume, which tell the modes that have the rate 0 only for that. Collective.
 std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 

@@ -87,9 +87,8 @@ def meshes_that_adapt_keep_the_mass():
     check(numpy.all(numpy.diff(largest) > -1e-3), "the concentration jumps where the mesh changes")
 
 
-def theory(l, tension, elasticity, diffusivity):
+def _theory(l, tension, elasticity, diffusivity):
     """Matrix of d(f, g)/dt of the second harmonics of the radius and of the concentration of a nearly spherical drop, as tests/verify/surfactant.cpp."""
-    "not a test"
     mobility = numpy.array([[10 * (l + 1), 6 * (3 * l + 2)], [3 * l + 2, 13 * l + 12]]) / ((19 * l + 16) * (2 * l + 3))
     load, motion = numpy.array([[-4, 2 * elasticity], [0, -elasticity]]), numpy.array([[1, 0], [-2, 6]])
     return tension * motion @ mobility @ load - numpy.diag([0, 6 * diffusivity])
@@ -108,7 +107,7 @@ def modes_of_a_drop_at_rest_are_those_of_linear_theory():
   Spectrum: {number: 12}
 """
     for l in 1, 4:
-        exact = numpy.linalg.eigvals(theory(l, 0.7 * 1.5, 0.3 / 0.7, 0.05))
+        exact = numpy.linalg.eigvals(_theory(l, 0.7 * 1.5, 0.3 / 0.7, 0.05))
         errors = []
         for n in 3, 6:
             run(deck(text % (l, n)), "--output", f"on_{n}", "--quiet", "--overwrite")
