@@ -6,12 +6,15 @@
 #include <limits>
 #include <optional>
 
+#include "app/gaps.hpp"
+#include "app/tube.hpp"
 #include "coupling/agreement.hpp"
 #include "motion/adaptation.hpp"
 #include "spline/refinement.hpp"
 #include "spline/locate.hpp"
 #include "spline/transfer.hpp"
 #include "surface/metrics.hpp"
+#include "surface/shapes.hpp"
 
 namespace tanktread {
 
@@ -231,6 +234,32 @@ Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block
   coarser.refused = finer.refused;
   coarser.full = finer.full;
   return coarser;
+}
+
+void refine_alone(const Scene& scene, Body& body, Phases& phases, const std::function<Net(const Body& on)>& force_density) {
+  if (!scene.adaptation.enabled) return;
+  constexpr int most = 10;
+  for (int k = 0; k < most; ++k) {
+    Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
+    if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
+    const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
+    if (around) x = around->in_wall_frame(x);
+    std::vector<Member> only(1);
+    only[0].scene = scene;
+    only[0].body = std::make_unique<Body>(std::move(body));
+    only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
+    std::vector<double> widths;
+    if (around || scene.wall.present) widths = films(only, 0, x, {}, around ? &around->wall() : nullptr);
+    motion::State state;
+    state.x = only[0].body->rest;
+    Adapted change = adapted(scene, *only[0].body, only[0].block, state, load, false, widths);
+    body = std::move(*only[0].body);
+    if (!change.body || !change.finer) return;
+    body = std::move(*change.body);
+    body.rest = surface::fitted_again(body.space, body.rest, scene.particle.shape);
+    body.initial = body.unstressed = body.rest;
+    body.symmetry = surface::Symmetry(body.space.n_points);
+  }
 }
 
 }  // namespace tanktread

@@ -1,6 +1,7 @@
 #pragma once
 // The same particle on another mesh.
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -26,5 +27,10 @@ struct Adapted {
 /// on every rank.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films);
+
+/// Gives a rigid body that is alone the mesh that Adaptation asks for at its first place, film to a wall included, with its shape fitted again; that
+/// of a body which does not deform is looked at once. `force_density`: control values on a body's mesh there; asked for where
+/// Adaptation limits the error or the variation of the load.
+void refine_alone(const Scene& scene, Body& body, Phases& phases, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "app/adaptation.hpp"
-#include "app/drift.hpp"
+#include "app/free_motions.hpp"
 #include "app/gaps.hpp"
 #include "app/limiter.hpp"
 #include "app/member.hpp"
@@ -46,6 +46,7 @@ class Deforming : public ParticleSystem {
 
   coupling::Dynamics& dynamics() override { return fields_->dynamics(); }
   const coupling::Capsule* capsule() const override { return capsule_.get(); }
+  coupling::CoupledMotion* fields() override { return fields_->motion(); }
   const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
   Net start() const override { return fields_->start(body().initial); }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
@@ -134,7 +135,6 @@ class Deforming : public ParticleSystem {
   }
 
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
-
   coupling::Work work() const override { return capsule_->work(); }
 
   std::vector<PhaseAngle> phase_angle() const override {

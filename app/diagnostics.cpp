@@ -145,6 +145,9 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
   add_moving(one, to);
   to.add(angular_velocity, axes_of_space, {"angular_velocity_", "1/time", "of the rigid body, component #"});
   to.add(quaternion, "0 1 2 3", {"quaternion_", "1", "turn from the initial place, component #, of which 0 is the scalar part"});
+  if (to.when(one.time.steady_tolerance.has_value()))
+    to.add(shape_velocity, {"shape_velocity", "1", "how fast the body turns, as the shape velocity (6.8) of what deforms: `Time/steady tolerance` is "
+           "held against it"});
   if (one.in_system()) {
     add_size(measures, to);
     add_centroid(centre, to);
@@ -234,6 +237,12 @@ RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry
   now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
   now.quaternion << turn.w(), turn.vec();
   now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
+  if (!scene.time.steady_tolerance) return now;
+  std::vector<int> elements(static_cast<std::size_t>(geometry.bezier().n_elements()));
+  std::iota(elements.begin(), elements.end(), 0);
+  const Net v = coupling::rigid_velocity(x, motion, now.centre);
+  const std::vector<double> sums = surface::shape_velocity_sums(geometry.bezier(), x, v, body.radius, elements);
+  now.shape_velocity = surface::shape_velocity(sums, scene.tube.present) / unit_speed(scene, body);
   return now;
 }
 

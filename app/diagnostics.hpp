@@ -57,6 +57,7 @@ struct DeformingRow : ParticleRow {
 struct RigidRow : ParticleRow {
   Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
   Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< the scalar part first
+  double shape_velocity = 0;                             ///< where Time/steady tolerance asks for it
   void add_columns(const Scene& one, Columns& to) const override;
 };
 

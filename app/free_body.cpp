@@ -4,9 +4,11 @@
 #include <cmath>
 #include <iterator>
 
+#include "app/adaptation.hpp"
 #include "app/member.hpp"
 #include "app/particle_system.hpp"
 #include "app/plane_wall.hpp"
+#include "app/prescribed.hpp"
 #include "app/tube.hpp"
 #include "coupling/rigid_body.hpp"
 #include "surface/geometry.hpp"
@@ -18,15 +20,8 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), body_(refined(scene)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
-        resistance_(body_.space, body_.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube_.get(), scene.wall.plane()) {
-    const Vec3& centre = scene.particle.shape.center;
-    if (tube_ || scene.wall.present)
-      free_ = std::make_unique<coupling::FreeBodyInTube>(resistance_, centre, body_.radius, body_.flow, scene.flow.viscosity, scene.solvers,
-                                                         rigid(scene, body_));
-    else
-      free_ = std::make_unique<coupling::FreeBody>(resistance_, centre, body_.radius, body_.flow, rigid(scene, body_));
-  }
+      : scene_(scene), ranks_(ranks), body_(refined(scene, ranks, phases)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
+        resistance_(resistance_of(scene, body_, ranks, phases, tube_.get())), free_(driven(scene, body_, resistance_)) {}
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
@@ -92,10 +87,24 @@ class Free : public ParticleSystem {
   }
 
  private:
-  static Body refined(const Scene& scene) {
+  static Body refined(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
     Body body = tanktread::body(scene);
-    refine_at_wall(scene, body);
+    refine_alone(scene, body, phases, [&](const Body& on) {
+      const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
+      coupling::Resistance resistance = resistance_of(scene, on, ranks, phases, wall.get());
+      const auto free = driven(scene, on, resistance);
+      return free->force_density(coupling::placed(free->centre()));
+    });
     return body;
+  }
+
+  /// The body where its resistance is that.
+  static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::Resistance& resistance) {
+    const Vec3& centre = scene.particle.shape.center;
+    if (scene.tube.present || scene.wall.present)
+      return std::make_unique<coupling::FreeBodyInTube>(resistance, centre, body.radius, body.flow, scene.flow.viscosity, scene.solvers,
+                                                        rigid(scene, body));
+    return std::make_unique<coupling::FreeBody>(resistance, centre, body.radius, body.flow, rigid(scene, body));
   }
 
   /// Tank-treading and phase of a body that turns as one: (6.6) is its angular velocity about the normal of the plane.

@@ -1,11 +1,13 @@
 #pragma once
-// Parameters of a steady search that follow from the scene: free rigid motions and the step of the iteration.
+// Rigid motions that a scene leaves free, what holds a particle against them, and the step of a steady search.
 
 #include <vector>
 
 #include "app/scene.hpp"
 #include "coupling/rigid_motion.hpp"
+#include "motion/integrator.hpp"
 #include "stokes/ambient_flow.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread {
 
@@ -16,5 +18,14 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
 /// Returns Steady/step, or its default. The default is bounded by the relaxation times of the membranes because the iteration amplifies errors of the
 /// velocity in motions that no membrane opposes by the step over these times.
 double steady_step(const Scene& scene);
+
+/// Whether the centroid is put back after every step: `Particle/drift`. By itself `held` at the point of rest of an affine flow that draws away
+/// from it (planar hyperbolic, four-roll, extension): whatever rounding displaces grows there like e^(rate t), and carries off a particle whose
+/// shape is steady.
+bool holds_centre(const Scene& scene);
+
+/// Moves the state so that its centroid is at `place`, and the slopes and earlier places of the scheme along: v(x + c) = v(x) + L c in an affine
+/// flow, whatever the shape, so that x(t) + c(t) with dc/dt = L c is a motion where x(t) is one, and was displaced by exp(-L s) c at a time s ago.
+void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
 }  // namespace tanktread

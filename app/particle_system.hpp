@@ -12,6 +12,7 @@
 #include "app/series.hpp"
 #include "app/warnings.hpp"
 #include "coupling/contact.hpp"
+#include "coupling/coupled_motion.hpp"
 #include "coupling/dynamics.hpp"
 #include "motion/integrator.hpp"
 #include "output/checkpoint.hpp"
@@ -39,6 +40,7 @@ class ParticleSystem {
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
   virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< of what deforms
+  virtual coupling::CoupledMotion* fields() { return nullptr; }                   ///< the motion with the fields on surfaces, if there are any
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now

@@ -192,6 +192,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("assembled", formatted("%.1f MB ", (scene.wall.present ? 144e-6 : 72e-6) * n * n) + on_ranks(ranks));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
+  if (scene.adaptation.enabled) lines.emplace_back("mesh", "refined once at the first place, where the shape, a film or the traction asks for it");
   lines.emplace_back("symmetry", "none used");
   return lines;
 }

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
-#include "app/adaptation.hpp"
-#include "app/gaps.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "surface/geometry.hpp"
-#include "surface/shapes.hpp"
 
 namespace tanktread {
 
@@ -56,25 +53,5 @@ WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& membe
 }
 
 WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x) { return row_of(wall, body.space, x, 1); }
-
-void refine_at_wall(const Scene& scene, Body& body) {
-  if (!scene.wall.present || !scene.adaptation.enabled) return;
-  constexpr int most = 10;
-  for (int k = 0; k < most; ++k) {
-    std::vector<Member> only(1);
-    only[0].scene = scene;
-    only[0].body = std::make_unique<Body>(std::move(body));
-    only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
-    motion::State state;
-    state.x = only[0].body->rest;
-    Adapted change = adapted(scene, *only[0].body, only[0].block, state, Net::Zero(state.x.rows(), 3), false, films(only, 0, state.x));
-    body = std::move(*only[0].body);
-    if (!change.body || !change.finer) return;
-    body = std::move(*change.body);
-    body.rest = surface::fitted_again(body.space, body.rest, scene.particle.shape);
-    body.initial = body.unstressed = body.rest;
-    body.symmetry = surface::Symmetry(body.space.n_points);
-  }
-}
 
 }  // namespace tanktread

@@ -25,7 +25,4 @@ struct WallRow {
 WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x);
 WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x);
 
-/// Cuts the elements of a rigid body that stays alone beside a wall, at its present place, as Adaptation says.
-void refine_at_wall(const Scene& scene, Body& body);
-
 }  // namespace tanktread

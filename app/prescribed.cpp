@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 
+#include "app/adaptation.hpp"
 #include "app/plan.hpp"
 #include "app/plane_wall.hpp"
 #include "app/results.hpp"
@@ -71,6 +72,10 @@ void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(kernel_evaluations, {"kernel_evaluations", "1", "of the layer operator, all rules together"});
 }
 
+coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube) {
+  return {body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube, scene.wall.plane()};
+}
+
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
   const Vec3& centre = scene.particle.shape.center;
   const coupling::RigidMotion motion = prescribed_motion(scene);
@@ -111,12 +116,15 @@ int resist(const Scene& scene, const RunRequest& request) {
   Phases phases = started();
   std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
   Body body = tanktread::body(scene);
-  refine_at_wall(scene, body);
+  refine_alone(scene, body, phases, [&](const Body& on) {
+    const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
+    coupling::Resistance there = resistance_of(scene, on, ranks, phases, wall.get());
+    return rigid_solution(scene, on, there, phases, wall.get()).density;
+  });
   const output::Entries<std::string> chosen = plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
-  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, around.get(),
-                                  scene.wall.plane());
+  coupling::Resistance resistance = resistance_of(scene, body, ranks, phases, around.get());
   clock.reset();
   stop_where_told();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
@@ -139,7 +147,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   results.record(row);
   motion::State state;
   state.x = body.rest;
-  results.save({}, state, {}, picture(scene, body, solution), state.time);
+  results.save({}, state, {}, results.sample(picture(scene, body, solution), state.time));
   clock.reset();
   Account account;
   account.plan = chosen;

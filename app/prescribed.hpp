@@ -35,6 +35,9 @@ struct PrescribedRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
+/// The resistance problem of the scene's body. `tube`: the one around it, or nothing.
+coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube);
+
 /// The body of `Particle/motion: prescribed` in the flow of the deck; `tube`: the one around it, or nothing. Collective.
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
                              const coupling::Tube* tube = nullptr);

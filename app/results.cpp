@@ -252,16 +252,22 @@ void Results::write_surface(const Net& surface) {
   write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
 }
 
-void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const SurfacePicture& picture,
-                   double picture_time) {
+Results::Sampled Results::sample(const SurfacePicture& picture, double time) {
+  Sampled sampled;
+  write([&] {
+    sampled = {time, nodes_->mesh(), output::picture(*nodes_, picture.surface)};
+    std::ranges::move(picture.fields(*nodes_), std::back_inserter(sampled.fields));
+  });
+  return sampled;
+}
+
+void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture) {
   write([&] {
     write_record();
-    complete(checkpoint, state, totals, picture_time);
-    std::vector<output::Field> fields = output::picture(*nodes_, picture.surface);
-    std::ranges::move(picture.fields(*nodes_), std::back_inserter(fields));
-    output::write_snapshot(directory_ / output::snapshot_name(totals.step), checkpoint, nodes_->mesh(), fields, durable());
+    complete(checkpoint, state, totals, picture.time);
+    output::write_snapshot(directory_ / output::snapshot_name(totals.step), checkpoint, picture.mesh, picture.fields, durable());
     if (durable() == output::Durable::yes) output::sync(directory_);
-    series_->add(totals.step, picture_time);
+    series_->add(totals.step, picture.time);
   });
   last_saved_ = totals.step;
 }
@@ -323,6 +329,19 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   if (durable() == output::Durable::yes)
     for (const char* name : {"summary.yaml", "run.hdf.series", "."}) output::sync(directory_ / name);
   return missed;
+}
+
+std::vector<std::string> check_expectations(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Column& one : columns(scene).all()) names.push_back(one.name);
+  deck::check_series(scene.expect.all, names);
+  const double last = scene.continuation.present ? scene.continuation.points : 0;
+  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
+  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
+}
+
+std::string stored_deck(const std::string& directory) {
+  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
 }
 
 }  // namespace tanktread

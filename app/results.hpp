@@ -72,8 +72,16 @@ class Results {
   /// A sentence about what the run has come near to, on standard error and in the summary.
   void warn(const std::string& sentence);
 
+  /// What a picture shows at the nodes of the present mesh, on the first rank: it can be written after the mesh has changed.
+  struct Sampled {
+    double time = 0;
+    output::LagrangeMesh mesh;
+    std::vector<output::Field> fields;
+  };
+  Sampled sample(const SurfacePicture& picture, double time);
+
   /// Checkpoint of the present step and a picture, of the same moment or of one within the step. `checkpoint` holds what else the run goes on from.
-  void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const SurfacePicture& picture, double picture_time);
+  void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture);
 
   /// The surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);

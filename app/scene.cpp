@@ -226,6 +226,12 @@ void check_motion(const Scene& scene) {
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: the expected one, in the deck's unit of time.");
+  if (const auto& history = scene.flow.history; scene.periodic.present && history && history->frequency) {
+    const double cycles = scene.periodic.period * *history->frequency;
+    if (cycles < 0.5 || std::abs(cycles - std::round(cycles)) > 1e-9 * cycles)
+      throw UserError(formatted("Periodic/period must be a multiple of the period of Flow/history, %.10g, but is %.10g.", 1 / *history->frequency,
+                                scene.periodic.period));
+  }
 }
 
 /// Whether a flow with the same gradient everywhere has a vorticity.
@@ -252,7 +258,7 @@ void check_contradictions(const Scene& scene) {
     if (both) found.push_back(contradiction(one, other, why));
   };
   const ParticleOptions& particle = scene.particle;
-  const bool rigid = particle.rigid(), told = particle.motion == Motion::prescribed, alone = scene.name.empty(), held = particle.drift == "held";
+  const bool rigid = particle.rigid(), told = particle.motion == Motion::prescribed, held = particle.drift == "held";
   const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
   const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
@@ -260,17 +266,13 @@ void check_contradictions(const Scene& scene) {
   const std::string sought = scene.sought();
   const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
   const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
-  refuse(scene.flow.history && told && alone, "Flow/history", motion, "it is a steady problem");
   refuse(scene.steady.present && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
-  refuse(adapts && scene.periodic.present, "Periodic", "Adaptation/enabled", "shapes that come back are compared on one mesh");
-  refuse(scene.spectrum.parity && scene.periodic.present, "Periodic", "Spectrum/parity", "returns are of the symmetry of the scene");
   refuse(steady && scene.tube.channel && scene.flow.held == "flow rate", sought, "Flow/held `flow rate`",
          "what is carried along in a channel rests only where a pressure drop does not push it through");
-  refuse(steady && rigid, sought, motion, "a rigid particle has no shape that could change");
+  refuse(steady && told, sought, motion, "a body that moves as told has no place or attitude to be found");
   if (scene.continuation.present && !scene.steady.present) found.emplace_back("Continuation needs a list Steady: it continues steady shapes.");
-  refuse(steady && scene.flow.history, sought, "Flow/history", "nothing is steady in a flow that changes");
+  refuse(steady && scene.flow.history && !scene.periodic.present, sought, "Flow/history", "nothing is steady in a flow that changes");
   refuse(steady && scene.domain.present, sought, "Domain", "the lattice moves along with the flow");
-  refuse(steady && adapts && !scene.steady.present, sought, "Adaptation/enabled", "the mesh stays what it is");
   refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
   refuse(steady && drop && scene.interface_motion() == "material", sought, "Interface/motion `material`",
          "points that go with the fluid along an interface do not rest");
@@ -284,7 +286,7 @@ void check_contradictions(const Scene& scene) {
          "with which the wall goes along");
   refuse(tube && desingularised, "Quadrature/rule `desingularised`", confined, "the wall is not closed");
   const std::string repulsion = confined + "/repulsion";
-  refuse(scene.tube.repulsion && rigid, repulsion, motion, "it acts on membranes");
+  refuse(scene.tube.repulsion && told, repulsion, motion, "a body that moves as told takes whatever force that needs");
   refuse(scene.domain.present && tube, "Domain", confined, "a tube does not repeat");
   refuse(scene.contact.limiter && steady, "Contact/limiter", sought, "it holds gaps after steps in time");
   const std::pair<bool, std::string> works[] = {{scene.contact.limiter, "Contact/limiter"}, {weight, "Particle/density difference"},
@@ -315,11 +317,8 @@ void check_contradictions(const Scene& scene) {
   refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
   refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
   refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");
-  refuse(rigid && adapts && alone && !scene.wall.present, "Adaptation/enabled", motion, "the mesh of a rigid particle stays as it is");
   refuse(rigid && particle.shape.initial, "Particle/initial shape", motion, "a rigid particle has the shape that it has");
-  refuse(rigid && scene.time.steady_tolerance, "Time/steady tolerance", motion, "it ends runs of a particle that deforms");
-  refuse(adapts && !scene.lands_on_snapshots(), "Output/between steps `interpolate`", "Adaptation/enabled",
-         "the mesh may change between two steps");
+  refuse(told && scene.time.steady_tolerance, "Time/steady tolerance", motion, "a body that moves as told does not come to rest");
   refuse(adapts && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`", "a spline space from a file has no mesh to refine");
   refuse(scene.volume.constraint == "none" && !strong && scene.membrane.load_measure == "reference", "Volume/constraint `none`",
          "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
@@ -329,8 +328,6 @@ void check_contradictions(const Scene& scene) {
   refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
   const std::string surfactant = "Interface/surfactant", memory = "Membrane/relaxation time";
   refuse(scene.surfactant && (rigid || !drop), surfactant, rigid ? motion : law, "it is on the interface of a drop");
-  refuse(scene.surfactant && scene.spectrum.present, surfactant, "Spectrum", "the modes leave its concentration out");
-  refuse(scene.maxwell_membrane() && scene.spectrum.present, memory, "Spectrum", "the modes leave out what the membrane remembers");
   refuse(scene.maxwell_membrane() && scene.steady.present && turns(scene), "Steady with " + memory, flow,
          "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
   refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
@@ -343,7 +340,6 @@ void check_contradictions(const Scene& scene) {
 void check_power(const Scene& scene) {
   if (!scene.output.power_balance || !scene.name.empty()) return;
   const std::string word = "Output/power balance";
-  refuse(scene.particle.rigid(), word, "Particle/motion " + text(scene.particle.motion), "nothing deforms");
   refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, "Flow/type `" + scene.flow.type + "`",
          "it is for flows of one gradient, and for tubes");
   refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
@@ -437,6 +433,7 @@ void Scene::declare(deck::Section& root) {
       "Spectrum", spectrum,
       "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at rest, grow or "
       "decay");
+  periodic.driven = flow.history.has_value();
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
   root.section("Output", output, "results");

@@ -54,6 +54,11 @@ motion::TimeOptions time_options(const Scene& scene) {
   return time;
 }
 
+/// Returns whether any mesh may change.
+bool adapts(const Scene& scene) {
+  return std::ranges::any_of(scene.alone(), [](const Scene& one) { return one.adaptation.enabled; });
+}
+
 /// Returns the scene of the first particle that deforms, as if it were alone; of the first one if all are rigid.
 Scene first_deforming(const Scene& scene) {
   std::vector<Scene> all = scene.alone();
@@ -182,6 +187,7 @@ class Run {
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
     adapting_ = true;
+    if (pictured_ && adapts(scene_)) pictured_->sampled = sample();
     adapt();
     for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
@@ -267,10 +273,8 @@ class Run {
     double time = next_snapshot(scene_, before.time);
     for (double next = next_snapshot(scene_, time); next <= state_.time && next > time; next = next_snapshot(scene_, time)) time = next;
     const motion::DenseOutput dense(before, state_);
-    pictured_.emplace();
-    pictured_->time = time;
-    pictured_->x = dense.place(time);
-    pictured_->history = {dense.slope(time)};
+    motion::State& state = pictured_.emplace().state;
+    state.time = time, state.x = dense.place(time), state.history = {dense.slope(time)};
   }
 
   void record() {
@@ -312,14 +316,19 @@ class Run {
     const auto clock = phases_.time("output");
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
-    const motion::State& pictured = pictured_ ? *pictured_ : state_;
-    particle_->dynamics().at(pictured.time, began_);
-    const SurfacePicture picture = particle_->picture(pictured);
+    const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
     if (pictured_) settle();  // the picture has taken work, and the next solution starts from its own
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
-    results_.save(std::move(checkpoint), state_, totals_, picture, pictured.time);
+    results_.save(std::move(checkpoint), state_, totals_, picture);
     particle_->forget_recycled();
+  }
+
+  /// The picture that is due, of the last step's end or of a moment within.
+  Results::Sampled sample() {
+    const motion::State& pictured = pictured_ ? pictured_->state : state_;
+    particle_->dynamics().at(pictured.time, began_);
+    return results_.sample(particle_->picture(pictured), pictured.time);
   }
 
   void save_or_fail() {
@@ -423,22 +432,17 @@ class Run {
   bool interrupted_ = false;  // within a step, of which nothing is kept
   stokes::Evaluations earlier_kernel_;        // in earlier parts of the run
   output::Entries<double> earlier_seconds_;
-  std::optional<motion::State> pictured_;  // where a snapshot is due within the last step
+  struct Pictured {
+    motion::State state;
+    std::optional<Results::Sampled> sampled;  // before the mesh changes
+  };
+  std::optional<Pictured> pictured_;  // where a snapshot is due within the last step
   surface::Quality quality_;
   Scene first_ = first_deforming(scene_);
   Warnings warnings_{first_};  // of several particles by the numbers of the first that deforms
 };
 
 }  // namespace
-
-std::vector<std::string> check_expectations(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Column& one : columns(scene).all()) names.push_back(one.name);
-  deck::check_series(scene.expect.all, names);
-  const double last = scene.continuation.present ? scene.continuation.points : 0;
-  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
-  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
-}
 
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
@@ -449,10 +453,6 @@ int simulate(const Scene& scene, const RunRequest& request) {
 
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
-}
-
-std::string stored_deck(const std::string& directory) {
-  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
 }
 
 }  // namespace tanktread

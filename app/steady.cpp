@@ -6,13 +6,13 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "app/branch_parameters.hpp"
 #include "app/free_motions.hpp"
 #include "app/particle_system.hpp"
 #include "app/plan.hpp"
@@ -61,45 +61,6 @@ struct System {
   std::optional<motion::SteadyEquations> equations;
 };
 
-/// The one of a branch, and the second, 0 where there is none.
-using Parameters = std::array<double, 2>;
-
-/// The scene with other values of the parameters of its branch.
-Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values) {
-  Scene other = scene;
-  other.particles.clear(), other.expect.all.clear();
-  std::vector<std::string> settings{scene.continuation.parameter + "=" + deck::real_text(values[0])};
-  if (scene.continuation.second_parameter) settings.push_back(*scene.continuation.second_parameter + "=" + deck::real_text(values[1]));
-  deck::Document changed = deck::read({}, settings, deck);
-  changed.declare(other);
-  other.particles = with_copies(other.particles, other.domain);
-  other.check();
-  return other;
-}
-
-/// The number that the deck gives to the key at `path`, of which the key `of` tells. Throws UserError where it has none.
-double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
-  deck::Document read = deck::read_text(deck);
-  Scene again = scene;
-  again.particles.clear(), again.expect.all.clear();
-  read.declare(again);
-  const auto values = read.values();
-  const auto found = values.find(path);
-  if (found == values.end()) throw UserError(of + " must be the path of a key that this deck gives, but is " + deck::in_quotes(path) + ".");
-  char* end = nullptr;
-  const double value = std::strtod(found->second.c_str(), &end);
-  if (end == found->second.c_str() || *end != 0) throw UserError(of + " must be the path of a number, but " + path + " is " + found->second + ".");
-  return value;
-}
-
-/// With which the branch begins.
-Parameters first_parameters(const Scene& scene, const std::string& deck) {
-  const motion::ContinuationOptions& branch = scene.continuation;
-  const double first = number_of(scene, deck, branch.parameter, "Continuation/parameter");
-  if (first == branch.to) throw UserError("Continuation/to must differ from " + branch.parameter + ", where the branch begins.");
-  return {first, branch.second_parameter ? number_of(scene, deck, *branch.second_parameter, "Continuation/second parameter") : 0};
-}
-
 /// The shapes that are looked at, one after another, and what is written of each.
 class SteadyRun {
  public:
@@ -132,7 +93,8 @@ class SteadyRun {
   void look() {
     if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {
-      system_->motion->restore_volume(state_.x);
+      do system_->motion->restore_volume(state_.x);
+      while (adapt());
       return write();
     }
     motion::SteadyReport found;
@@ -147,10 +109,12 @@ class SteadyRun {
   /// The shape that comes back after a period.
   void shoot() {
     const motion::PeriodicOptions& options = scene_.periodic;
-    coupling::Dynamics& dynamics = *system_->motion;
-    state_.x = motion::after_periods(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
-    returns_.emplace(dynamics, scene_.time, scene_.solvers.nox, options, state_.x);
-    const motion::PeriodicReport found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
+    state_.x = motion::after_periods(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
+    motion::PeriodicReport found;
+    do {
+      returns_.emplace(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
+      found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
+    } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period();
     write();
@@ -262,32 +226,47 @@ class SteadyRun {
     motion::SpectrumOptions options = scene_.spectrum;
     const surface::Symmetry& shape = system_->particle->body().symmetry;
     coupling::Ranks whole_ranks;  // of other rows
-    const std::shared_ptr<System> system = options.parity ? whole(whole_ranks) : system_;
+    const coupling::CoupledMotion* on_it = system_->particle->fields();
+    const bool apart = on_it && std::ranges::any_of(on_it->fields(), [](const auto& on) { return !on.field->of_points(); });
+    if (apart && options.parity)
+      throw UserError("Spectrum/parity is of what has a value at each control point, and a membrane with Membrane/relaxation time has strains within "
+                      "elements: without the key there are modes of all parities.");
+    const std::shared_ptr<System> system = options.parity || (apart && shape.order() > 1) ? whole(whole_ranks) : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();
-    coupling::ShapeCoordinates shapes(body.space, capsule.particles(), shape, state_.x, capsule.projection(),
-                                            options.parity.value_or(Vec3::Ones()));
+    const Net x = state_.x.topRows(capsule.n_points());
+    coupling::ShapeCoordinates shapes(body.space, capsule.particles(), options.parity ? shape : body.symmetry, x, capsule.projection(),
+                                      options.parity.value_or(Vec3::Ones()));
+    std::vector<Net> kept{capsule.geometry().volume_gradient(x)};
+    if (coupling::CoupledMotion* fields = system->particle->fields()) {
+      shapes.add_fields(*fields, state_.x);
+      for (std::size_t k = 0; k < fields->fields().size(); ++k)
+        if (Net of_field = fields->conserved(k); of_field.rows() > 0) kept.push_back(std::move(of_field));
+    }
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));
-    const Net flux = capsule.geometry().volume_gradient(state_.x);
     if (returns_) {
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(shapes));  // runs keep the volume
+      std::optional<motion::ReturnMap> of_parity;
+      if (options.parity) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
+      motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // runs keep the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
-      found_.modes = motion::spectrum(*system->motion, shapes, state_.x, flux, options, scene_.solvers.of(scene_.solvers.spectrum));
+      found_.modes = motion::spectrum(*system->motion, shapes, state_.x, kept, options, scene_.solvers.of(scene_.solvers.spectrum));
     }
     if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
     system_->motion->velocity(state_.x);
   }
 
   /// Floquet exponents: the rates at which what the returns multiply grows over a period.
-  std::vector<coupling::Eigenpair> exponents(const coupling::ShapeCoordinates& shapes) {
+  std::vector<coupling::Eigenpair> exponents(motion::ReturnMap& returns, const coupling::ShapeCoordinates& shapes) {
     Eigen::VectorXd start(shapes.size());
     for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // the same on every run
     std::vector<coupling::Eigenpair> pairs;
-    for (const motion::Multiplier& one : motion::multipliers(*returns_, state_.x, shapes.displacement(start), scene_.spectrum.number)) {
+    const auto admitted = [&](const Net& field) { return shapes.admitted(field); };
+    for (const motion::Multiplier& one : motion::multipliers(returns, state_.x, shapes.displacement(start), admitted, scene_.spectrum.number)) {
       Eigen::VectorXcd y = shapes.coordinates(one.real).cast<std::complex<double>>();
       y += std::complex<double>(0, 1) * shapes.coordinates(one.imaginary);
       pairs.push_back({std::log(one.value) / found_.period, y.normalized()});
@@ -341,12 +320,13 @@ class SteadyRun {
       int k = 0;
       for (const motion::Mode& mode : found_.modes) {
         const std::string name = "mode " + std::to_string(++k);
-        fields.push_back({name, nodes.values(mode.real)});
-        if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary)});
+        const Eigen::Index n = system_->particle->capsule()->n_points();
+        fields.push_back({name, nodes.values(mode.real.topRows(n))});
+        if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary.topRows(n))});
       }
       return fields;
     };
-    results_.save(std::move(checkpoint), state_, totals_, picture, state_.time);
+    results_.save(std::move(checkpoint), state_, totals_, results_.sample(picture, state_.time));
   }
 
   int close() {
@@ -388,7 +368,8 @@ class SteadyRun {
 void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
   if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
   if (scene.periodic.present) to.add(period, {"period", "time", "after which the shape is back (Periodic)"});
-  if (scene.spectrum.present) motion::add_columns(modes, to);
+  const auto rigid = [](const Scene& one) { return one.particle.rigid(); };
+  if (scene.spectrum.present) motion::add_columns(modes, std::ranges::all_of(scene.alone(), rigid), to);
 }
 
 int find_steady(const Scene& scene, const RunRequest& request) {

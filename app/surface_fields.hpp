@@ -31,6 +31,7 @@ class SurfaceFields {
   SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule);
 
   bool empty() const { return all_.empty(); }
+  coupling::CoupledMotion* motion() { return motion_ ? &*motion_ : nullptr; }
   coupling::Dynamics& dynamics() { return motion_ ? static_cast<coupling::Dynamics&>(*motion_) : capsule_; }
   Net start(const Net& shape) const { return motion_ ? motion_->start(shape) : shape; }
   Net shape(const Net& y) const { return motion_ && y.rows() > 0 ? motion_->shape(y) : y; }

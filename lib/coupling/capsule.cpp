@@ -236,6 +236,7 @@ const Net& Capsule::energy_gradient(const Net& x) {
     if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
   for (const Net& work : external_)
     if (work.size() > 0) gradient_ -= work;
+  rigid_.clear(gradient_);  // push_bodies has theirs
   gradient_at_ = x;
   return gradient_;
 }
@@ -255,8 +256,17 @@ void Capsule::press(Net work, External kind) {
   Net& known = external_[static_cast<std::size_t>(kind)];
   if (same(work, known)) return;
   if (kind == External::contacts) rigid_.push(work);
-  if (work.size() > 0) rigid_.clear(work);
   known = std::move(work), latest_ = {}, gradient_at_ = {};
+}
+
+/// Contacts and the wall push bodies, beside what is given.
+void Capsule::push_bodies(const Net& x) {
+  if (!repulsion_ || rigid_.empty()) return;  // contacts do since `press`
+  Net push = Net::Zero(x.rows(), 3);
+  repulsion_->add_load(x, own_elements_, push);
+  replicate_sums(push);
+  const Net& contacts = external_[static_cast<std::size_t>(External::contacts)];
+  rigid_.push(contacts.size() > 0 ? Net(contacts - push) : Net(-push));
 }
 
 /// -int f.x dV is the energy of a body force f.
@@ -398,6 +408,7 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
   rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  push_bodies(x);
   if (tractions_) return evaluate_tractions(x);
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
@@ -679,19 +690,6 @@ void Capsule::restore_volume(Net& x) {
 
 double Capsule::volume_error(const Net& x) const {
   return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
-}
-
-double Capsule::distance(const Net& from, const Net& to) const { return norm(Corotation::deformation(particles(), from, to)); }
-
-double Capsule::norm(const Net& displacement) const {
-  const double along = tube_ && !tube_->fixed() ? displacement.col(0).mean() : 0;
-  double largest = 0;
-  for (const Particle& particle : particles()) {
-    const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
-    const double norm = moved.norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
-    largest = norm <= largest ? largest : norm;  // what is not a number stays so
-  }
-  return largest;
 }
 
 Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {

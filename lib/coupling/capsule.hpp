@@ -254,6 +254,7 @@ class Capsule : public Dynamics {
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
   void add_weight(const Net& x, Net& gradient) const;
+  void push_bodies(const Net& x);
   bool pressed() const { return external_[0].size() > 0 || external_[1].size() > 0; }
   bool pulled(const Particle& particle) const { return particle.patch_forces.rows() > 0; }
   const std::vector<Net>& whole_gradients(const Net& x);

@@ -116,7 +116,7 @@ Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
   if (whole_) whole_->add_turning(delta, h);
-  if (repulsion_) repulsion_->add_tangent(delta, h);
+  if (repulsion_) repulsion_->add_tangent(delta, h), rigid_.clear(h);
   replicate_sums(h);
   if (whole_) whole_->add_stretching(delta, h);
   if (work.size() > 0) h += work;
@@ -287,6 +287,19 @@ Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
   const auto clock = phases_.time("stiffness");
   linearise(x);
   return symmetric(velocity_change(delta, {}).rate);
+}
+
+double Capsule::distance(const Net& from, const Net& to) const { return norm(Corotation::deformation(particles(), from, to)); }
+
+double Capsule::norm(const Net& displacement) const {
+  const double along = tube_ && !tube_->fixed() ? displacement.col(0).mean() : 0;
+  double largest = 0;
+  for (const Particle& particle : particles()) {
+    const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
+    const double norm = moved.norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
+    largest = norm <= largest ? largest : norm;  // what is not a number stays so
+  }
+  return largest;
 }
 
 }  // namespace tanktread::coupling

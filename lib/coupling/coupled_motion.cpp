@@ -14,9 +14,10 @@ Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::nu
 Net rows_of(const spline::Block& block, const Net& net) { return net.rows() > 0 ? Net(block.rows(net)) : Net(); }
 }  // namespace
 
-CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields) : capsule_(capsule), n_(capsule.n_points()) {
+CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields)
+    : capsule_(capsule), fields_(std::move(fields)), n_(capsule.n_points()) {
   Eigen::Index first = 3 * n_;
-  for (const On& on : fields) {
+  for (const On& on : fields_) {
     const Particle& particle = capsule.particles()[on.particle];
     const Eigen::Index size = on.field->size();
     blocks_.push_back({on, first, size, particle.radius * std::sqrt(particle.block.n_points / static_cast<double>(size)), particle.block});
@@ -184,13 +185,19 @@ Net CoupledMotion::moved(const Net& y, const RigidMotion& motion) const {
   return with_shape(Net::Zero(y.rows(), 3), rigid_velocity(shape(y), motion, Vec3::Zero()));
 }
 
-/// The rate of the state if control points slide along the surfaces with these velocities and nothing else moves.
-Net CoupledMotion::slid(const Net& y, const Net& mesh_velocity) {
+Net CoupledMotion::slid(const Net& y, const Net& along) {
   set_fields(y);
-  Net rate = with_shape(Net::Zero(rows_, 3), mesh_velocity);
-  for (std::size_t k = 0; k < blocks_.size(); ++k)
-    set_coefficients(rate, k, blocks_[k].on.field->relabelled(blocks_[k].rows.rows(mesh_velocity)));
-  return rate;
+  Net change = with_shape(Net::Zero(rows_, 3), along);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(change, k, blocks_[k].on.field->relabelled(blocks_[k].rows.rows(along)));
+  return change;
+}
+
+Net CoupledMotion::conserved(std::size_t k) const {
+  const Eigen::VectorXd of_q = blocks_[k].on.field->conserved();
+  if (of_q.size() == 0) return {};
+  Net gradient = Net::Zero(rows_, 3);
+  set_coefficients(gradient, k, of_q / (blocks_[k].scale * blocks_[k].scale));
+  return gradient;
 }
 
 std::vector<Net> CoupledMotion::relabellings(const Net& y) {

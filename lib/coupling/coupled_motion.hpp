@@ -31,6 +31,14 @@ class CoupledMotion : public Dynamics {
   Net with_shape(Net y, const Net& shape) const;             ///< the state with another control net
   Eigen::VectorXd coefficients(const Net& y, std::size_t k) const;
   void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
+  const std::vector<On>& fields() const { return fields_; }
+  Eigen::Index n_rows() const { return rows_; }  ///< of a state
+
+  /// The gradient of the sum that field k conserves, as a state; of no rows if there is none.
+  Net conserved(std::size_t k) const;
+
+  /// The change of the state y if control points move along the surfaces by this small displacement and nothing else does.
+  Net slid(const Net& y, const Net& along);
 
   /// Sets the state of the fields only.
   void set_fields(const Net& y);
@@ -68,13 +76,13 @@ class CoupledMotion : public Dynamics {
     double scale;
     spline::Block rows;        // of its particle
   };
-  Net slid(const Net& y, const Net& mesh_velocity);
   Net left(const Net& delta);
   Net right(const Net& delta, bool solved = false);
   Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   Net slip_at(const Net& x);
 
   Capsule& capsule_;
+  std::vector<On> fields_;
   std::vector<Block> blocks_;
   Eigen::Index n_, rows_;  // control points; rows of a state
 };

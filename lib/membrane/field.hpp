@@ -56,6 +56,12 @@ class Field {
   /// function maps a site of this space to the same place in the other one.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
+  /// Returns the gradient by q of a sum that the motion conserves; empty if there is none.
+  virtual Eigen::VectorXd conserved() const { return {}; }
+
+  /// Returns whether q has one coefficient per control point, a scalar, so that symmetries of the surface apply to it.
+  virtual bool of_points() const { return false; }
+
   /// Makes q invariant under the symmetry, to which the state conforms but for round-off.
   virtual void symmetrise(const surface::Symmetry&, Eigen::VectorXd& /*q*/) const {}
 };

@@ -54,6 +54,8 @@ class Surfactant : public Field {
   Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< with the diffusion on the frozen shape
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
+  Eigen::VectorXd conserved() const override { return share_; }
+  bool of_points() const override { return true; }
   void symmetrise(const surface::Symmetry& symmetry, Eigen::VectorXd& q) const override;
 
   /// The concentration is sampled at the Gauss points and scaled to the same mass.

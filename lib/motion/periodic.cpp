@@ -21,7 +21,9 @@ namespace tanktread::motion {
 
 void PeriodicOptions::declare(deck::Section& section) {
   std::optional<double> expected;
-  section.key("period", expected, deck::positive(), "time", "expected (required); the one that is found lies between half and one and a half of it");
+  section.key("period", expected, deck::positive(), "time",
+              "expected (required); the one that is found lies between half and one and a half of it. With Flow/history that of the flow, which "
+              "repeats what it is from time 0 to there");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
               "about x2, by which the shape is turned when it is back: 180 after half a round of a membrane in shear, which is half the work");
@@ -61,12 +63,20 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
 
 ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox,
                      const PeriodicOptions& options, Net c)
-    : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)), normal_(dynamics.velocity(origin_)) {
+    : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)) {
+  if (options_.driven) return;
+  normal_ = dynamics.velocity(origin_);
   if (!normal_.allFinite() || normal_.isZero(0)) throw RunFailure("a shape that is at rest, or has no velocity, cannot come back");
   normal_ /= normal_.norm();
 }
 
 Net ReturnMap::operator()(const Net& x) {
+  if (options_.driven) {
+    const State after = run(dynamics_, time_, nox_, x, options_.period, [](const State&, const State&) { return false; });
+    dynamics_.at(0, 0);
+    period_ = options_.period;
+    return turned_back(dynamics_, after.x, options_.turn);
+  }
   const auto ahead = [&](const Net& y) { return beyond(turned_back(dynamics_, y, options_.turn)); };
   Net found;
   const double most = 1.5 * options_.period;
@@ -109,15 +119,15 @@ PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::Para
   return {found.iterations, found.converged, rest};
 }
 
-std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, int number) {
+std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number) {
   constexpr double exhausted = 1e-8;
   const auto product = [&](const Net& d) -> Net {
     const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / map.dynamics().norm(d);
     const double e = map.options().difference * radius / d.rowwise().norm().maxCoeff();
-    return map.dynamics().symmetric((map(x + e * d) - map(x - e * d)) / (2 * e));  // what breaks the symmetry would stay for ever, as 1
+    return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));  // what breaks the symmetry would stay for ever, as 1
   };
   const int most = static_cast<int>(std::min<Eigen::Index>(2 * number + 4, x.size()));
-  std::vector<Net> basis{map.dynamics().symmetric(start / start.norm())};
+  std::vector<Net> basis{admitted(start / start.norm())};
   Eigen::MatrixXd h = Eigen::MatrixXd::Zero(most + 1, most);
   int m = 0;
   while (m < most) {

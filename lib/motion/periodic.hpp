@@ -2,6 +2,7 @@
 // Periodic motions: shapes that come back after a period.
 
 #include <complex>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct PeriodicOptions {
   double tolerance = 1e-5;    ///< of what it misses of being back, in the norm of `Time/tolerance`
   int iterations = 20;        ///< most
   double difference = 1e-2;   ///< size of the displacements whose returns the multipliers are made of, over R_C
+  bool driven = false;        ///< whether the flow itself changes with this period, so that returns are at its end
 
   void declare(deck::Section& section);
 };
@@ -35,7 +37,8 @@ struct PeriodicOptions {
 ///
 ///   P(x) = R^-1 phi_T(x),   n.(P(x) - c) = 0,   n along v(c)                                                        (4.27)
 ///
-/// T being between half and one and a half of the expected period. Within the last step the plane is met by DenseOutput.
+/// T being between half and one and a half of the expected period. Within the last step the plane is met by DenseOutput. In a flow that changes in
+/// time T is the flow's period, and there is no plane.
 class ReturnMap {
  public:
   /// Through c. Motion and options outlive it. Collective, as is all else.
@@ -81,7 +84,8 @@ struct Multiplier {
 };
 
 /// Those of largest size of the derivative of P at its fixed point x, by central differences and Arnoldi's method from the displacement `start` on:
-/// the Floquet multipliers but that of the time itself, 1. What is smaller than noise of a run over `difference` is noise. Collective.
-std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, int number);
+/// the Floquet multipliers but that of the time itself, 1. `admitted`: a displacement without what the symmetry of `start` does not admit. What is
+/// smaller than noise of a run over `difference` is noise. Collective.
+std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number);
 
 }  // namespace tanktread::motion

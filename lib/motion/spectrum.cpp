@@ -34,7 +34,7 @@ void SpectrumOptions::declare(deck::Section& section) {
 }
 
 const char* name(ModeKind kind) {
-  constexpr const char* names[] = {"shape", "translation", "rotation", "labels", "volume"};
+  constexpr const char* names[] = {"shape", "translation", "rotation", "labels", "volume", "mass"};
   return names[static_cast<int>(kind)];
 }
 
@@ -44,24 +44,32 @@ void Mode::add_columns(const std::string& number, Columns& to) const {
   to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time", "of the same mode, 2 pi over the period with which it oscillates; not negative"});
 }
 
-void add_columns(const std::vector<Mode>& modes, Columns& to) {
+void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
   double leading = -std::numeric_limits<double>::infinity();
   int unstable = 0;
   for (const Mode& mode : modes)
-    if (mode.kind == ModeKind::shape) leading = std::max(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
+    if (mode.kind == ModeKind::shape || (all_rigid && mode.kind == ModeKind::rotation))
+      leading = std::max(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
   to.add(leading, {"leading_rate", "1/time", "largest rate of the modes that change the shape, translations and rotations left out: negative where "
          "it is stable"});
   to.add(unstable, {"unstable_modes", "1", "of those modes, how many grow"});
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 
-Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                        double difference)
-    : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference), volume_(shapes.size()) {
-  for (Eigen::Index k = 0; k < volume_.size(); ++k)
-    volume_[k] = flux.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(volume_.size(), k))).sum();
-  if (volume_.norm() > 1e-6 * flux.norm()) volume_.normalize();
-  else volume_.setZero();  // of another parity than the volume
+    : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference / dynamics.norm(dynamics.moved(x, coupling::unit_motion(1)))),
+      kept_(shapes.size(), static_cast<Eigen::Index>(kept.size())) {
+  Eigen::Index n = 0;
+  for (const Net& gradient : kept) {
+    Eigen::VectorXd by_y(shapes.size());
+    for (Eigen::Index k = 0; k < by_y.size(); ++k)
+      by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
+    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // of another parity
+    by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
+    kept_.col(n++) = by_y.normalized();
+  }
+  kept_.conservativeResize(Eigen::NoChange, n);
   const std::vector<Net> fields = dynamics.relabellings(x);
   if (fields.empty()) return;
   Eigen::MatrixXd all(x.size(), static_cast<Eigen::Index>(fields.size()));
@@ -78,13 +86,12 @@ Net Linearised::velocity(const Net& x) const {
 }
 
 Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
-  const Net d = shapes_.displacement(of_the_volume(y));
+  const Net d = shapes_.displacement(keeping(y));
   if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
-  const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / dynamics_.norm(d);
-  const double e = difference_ * radius / d.rowwise().norm().maxCoeff();
+  const double e = difference_ / d.rowwise().norm().maxCoeff();
   const Net change = (velocity(x_ + e * d) - velocity(x_ - e * d)) / (2 * e);
   if (!change.allFinite()) throw RunFailure("the velocity of a shape close to the one that is linearised about cannot be had");
-  return of_the_volume(shapes_.coordinates(change));
+  return keeping(shapes_.coordinates(change));
 }
 
 namespace {
@@ -107,27 +114,27 @@ Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std:
 
 /// The same of the translations (first = 0) or rotations (3) of x.
 Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
-  const Vec3 centre = x.colwise().mean().transpose();
+  const Net net = x.topRows(shapes.n_points());
+  const Vec3 centre = net.colwise().mean().transpose();
   std::vector<Net> fields;
-  for (int k = first; k < first + 3; ++k) fields.push_back(coupling::rigid_velocity(x, coupling::unit_motion(k), centre));
+  for (int k = first; k < first + 3; ++k) fields.push_back(coupling::rigid_velocity(net, coupling::unit_motion(k), centre));
   return orthonormal(shapes, fields);
 }
 
 /// What tells the modes that are no change of shape.
 class Recognition {
  public:
-  Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux)
+  Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x)
       : shapes_(shapes),
-        flux_(flux),
         translations_(rigid_motions(shapes, x, 0)),
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
-  /// What a mode gains of the volume, over its size. All but those of rate 0 gain none, for the motion keeps it: rate x b.d = 0.
-  double gain(const Eigen::VectorXcd& mode) const {
+  /// What a mode gains of what the motion keeps and this is the gradient of, over its size. All but those of rate 0 gain none: rate x b.d = 0.
+  double gain(const Net& kept, const Eigen::VectorXcd& mode) const {
     const Net real = shapes_.displacement(mode.real()), imaginary = shapes_.displacement(mode.imag());
-    const double gained = std::hypot(flux_.cwiseProduct(real).sum(), flux_.cwiseProduct(imaginary).sum());
-    return gained / (flux_.norm() * std::hypot(real.norm(), imaginary.norm()));
+    const double gained = std::hypot(kept.cwiseProduct(real.topRows(kept.rows())).sum(), kept.cwiseProduct(imaginary.topRows(kept.rows())).sum());
+    return gained / (kept.norm() * std::hypot(real.norm(), imaginary.norm()));
   }
 
   /// What it is where it is not that of the volume.
@@ -141,7 +148,6 @@ class Recognition {
 
  private:
   const coupling::ShapeCoordinates& shapes_;
-  const Net& flux_;
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
@@ -150,7 +156,9 @@ Mode mode(const coupling::ShapeCoordinates& shapes, const Recognition& recogniti
   const std::complex<double> square = (y.array() * y.array()).sum();
   if (std::abs(square) > 0) y /= std::sqrt(square / std::abs(square));
   Mode found{rate, shapes.displacement(y.real()), shapes.displacement(y.imag()), recognition.kind(y)};
-  const double largest = std::sqrt((found.real.rowwise().squaredNorm() + found.imaginary.rowwise().squaredNorm()).maxCoeff());
+  const Eigen::VectorXd squares = found.real.rowwise().squaredNorm() + found.imaginary.rowwise().squaredNorm();
+  const double moved = std::sqrt(squares.head(shapes.n_points()).maxCoeff()), any = std::sqrt(squares.maxCoeff());
+  const double largest = moved > 1e-6 * any ? moved : any;
   found.real /= largest, found.imaginary /= largest;
   return found;
 }
@@ -162,21 +170,22 @@ namespace {
 using Pairs = std::vector<coupling::Eigenpair>;
 
 /// All of J, which is made column by column.
-Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux, const SpectrumOptions& options) {
+Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+            const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
   Eigen::MatrixXd jacobian(n, n);
-  const Linearised linearised(dynamics, shapes, x, flux, options.difference);
+  const Linearised linearised(dynamics, shapes, x, kept, options.difference);
   for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(Eigen::VectorXd::Unit(n, k));
   coupling::take_first({jacobian.data(), static_cast<std::size_t>(jacobian.size())});
   return coupling::eigenpairs(std::move(jacobian));
 }
 
 /// Those with the largest (1 - rate/shift)^-1: (I - J/shift)^-1 by GMRES, with what an implicit step has for it as preconditioner.
-Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
               const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
   const double step = 1 / options.shift.value();
-  const Linearised linearised(dynamics, shapes, x, flux, options.difference);
+  const Linearised linearised(dynamics, shapes, x, kept, options.difference);
   dynamics.freeze(x);
   dynamics.linearise(x);
   const Eigen::Index n = shapes.size();
@@ -204,26 +213,29 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
 
 }  // namespace
 
-std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
-  Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, flux, options) : shifted(dynamics, shapes, x, flux, options, solver);
+  Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, kept, options) : shifted(dynamics, shapes, x, kept, options, solver);
   const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
   std::ranges::stable_sort(pairs, {}, rank);
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));
-  return recognised(dynamics, shapes, x, flux, pairs);
+  return recognised(dynamics, shapes, x, kept, pairs);
 }
 
-std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs) {
-  const Recognition recognition(dynamics, shapes, x, flux);
+  const Recognition recognition(dynamics, shapes, x);
   std::vector<Mode> modes;
-  std::vector<double> gains;
-  for (const coupling::Eigenpair& pair : pairs) {
-    modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
-    gains.push_back(flux.size() > 0 ? recognition.gain(pair.vector) : 0);
+  for (const coupling::Eigenpair& pair : pairs) modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
+  std::vector<bool> told(modes.size(), false);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    std::vector<double> gains;
+    for (std::size_t i = 0; i < modes.size(); ++i) gains.push_back(told[i] ? 0 : recognition.gain(kept[k], pairs[i].vector));
+    const auto most = std::ranges::max_element(gains);
+    if (most == gains.end() || *most <= 1e-3) continue;
+    const std::size_t i = static_cast<std::size_t>(most - gains.begin());
+    modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;  // near a fold it is hardly told by its shape
   }
-  const auto most = std::ranges::max_element(gains);
-  if (*most > 1e-3) modes[static_cast<std::size_t>(most - gains.begin())].kind = ModeKind::volume;  // near a fold it is hardly told by its shape
   return modes;
 }
 

@@ -35,10 +35,11 @@ struct SpectrumOptions {
 };
 
 /// What a mode is beside a change of shape.
-enum class ModeKind { shape, translation, rotation, labels, volume };
+enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
-/// A displacement that grows like Re(mode e^{rate t}), its largest displacement 1.
+/// A displacement, or a change of a state with fields, that grows like Re(mode e^{rate t}), its largest displacement 1; where nothing moves, its
+/// largest number.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;
@@ -47,44 +48,44 @@ struct Mode {
   void add_columns(const std::string& number, Columns& to) const;
 };
 
-/// Adds the columns of a spectrum, and of its modes from 1.
-void add_columns(const std::vector<Mode>& modes, Columns& to);
+/// Adds the columns of a spectrum, and of its modes from 1. `all_rigid`: no particle deforms, and rotations are what changes.
+void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 
 /// J y for the coordinates y of a displacement of x, by a central difference of velocities:
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
 ///
 /// v without the relabellings (Dynamics::relabellings) that it consists of at a shape at rest: modes are changes of shape as seen from outside.
-/// Before and after, what a displacement gains of the volume is taken away along its normals. At a fold two modes of rate 0 would else have one
-/// shape, and errors of J would move their rates by their square roots.
+/// Before and after, what a displacement gains of what the motion keeps, the volume and the masses of surfactants, is taken away. At a fold two modes
+/// of rate 0 would else have one shape, and errors of J would move their rates by their square roots.
 class Linearised {
  public:
-  /// About x, where dV/dx is `flux`; the motion outlives it, as all else here. Collective.
-  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux, double difference);
+  /// About x, where `kept` are the gradients of what the motion keeps; the motion outlives it, as all else here. Collective.
+  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept, double difference);
 
   /// J y. Throws RunFailure where a velocity cannot be had. Collective.
   Eigen::VectorXd operator()(const Eigen::VectorXd& y) const;
 
  private:
   Net velocity(const Net& x) const;
-  Eigen::VectorXd of_the_volume(Eigen::VectorXd y) const { return y - volume_.dot(y) * volume_; }
+  Eigen::VectorXd keeping(const Eigen::VectorXd& y) const { return y - kept_ * (kept_.transpose() * y); }
 
   coupling::Dynamics& dynamics_;
   const coupling::ShapeCoordinates& shapes_;
   const Net& x_;
-  double difference_;
+  double difference_;            // a length
   Eigen::VectorXd relabelling_;  // parts of v(x)
-  Eigen::VectorXd volume_;       // dV/dy over its size
+  Eigen::MatrixXd kept_;         // orthonormal gradients by y, a column each
 };
 
-/// Eigenpairs in coordinates of shapes as fields on the surface, what is no change of shape recognised. `flux`: dV/dx, which tells the mode that only
-/// the conserved volume keeps at rate 0. Collective.
-std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+/// Eigenpairs in coordinates of shapes as fields on the surface, what is no change of shape recognised. `kept`: the gradients of what the motion
+/// keeps, first of the volume, which tell the modes that have the rate 0 only for that. Collective.
+std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 
 /// The leading modes of the motion about x, as `options` ask, whose shift is given. `solver`: of the shift-inverted systems. Collective. Throws
 /// RunFailure where a velocity or the eigenvalues cannot be had.
-std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const Net& flux,
+std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver);
 
 }  // namespace tanktread::motion

@@ -33,6 +33,15 @@ Tanktread:
   Time: { scheme: bs3, fixed step: 0.002, final time: 0.006 }
   Output: { interval: 0.1 }
 """
+BETWEEN = """
+Tanktread:
+  Flow: { type: simple shear }
+  Membrane: { law: neo-Hookean, capillary number: 0.3 }
+  Surface: { elements per side: 3, extraordinary points: catmull-clark }
+  Adaptation: { enabled: %s, surface tolerance: 5.0e-4 }
+  Time: { fixed step: 0.07, final time: 0.7 }
+  Output: { interval: 0.1, between steps: interpolate }
+"""
 NAMES = ["time", "taylor_inertia", "n_control_points", "energy", "smallest_tension", "evaluations"]
 
 
@@ -110,6 +119,18 @@ def a_change_of_the_mesh_that_fails_is_undone():
     run("--resume", "out", "--set", "Adaptation/largest number of points=900", "--quiet")
     for name in NAMES:
         check(series("whole", name).tobytes() == series("out", name).tobytes(), f"{name} differs")
+
+
+def a_picture_within_a_step_is_of_the_mesh_of_that_step():
+    """At a time before the mesh changed, the shape is that of a run whose mesh stays."""
+    pictures = {}
+    for enabled in "true", "false":
+        run(deck(BETWEEN % enabled), "--output", enabled, "--quiet")
+        step = int(numpy.argmax(_points("true") > _points("true")[0]))
+        check(step > 0, "the mesh has not changed")
+        with h5py.File(f"{enabled}/snapshot_{step:06}.hdf", "r") as file:
+            pictures[enabled] = file["VTKHDF/Points"][:]
+    check(numpy.allclose(pictures["true"], pictures["false"], rtol=0, atol=1e-12), "another shape")
 
 
 main()

@@ -42,7 +42,7 @@ def what_is_no_channel_is_refused():
     _refused(["Channel/outline", "eight.csv", "crosses itself"], "Channel/section=file", "Channel/outline=eight.csv")
     _refused(["Channel/repulsion range", "belong together"], "Channel/repulsion=10")
     _refused(["Channel/repulsion", "round"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
-    for setting, mistakes in ("Membrane/load=strong", 1), ("Particle/motion=free", 2):  # the latter also contradicts Membrane
+    for setting, mistakes in ("Membrane/load=strong", 1), ("Particle/motion=prescribed", 2):  # the latter also contradicts Membrane
         _refused(["Channel/repulsion", setting.split("=")[1], "contradict"], "Channel/repulsion=10", "Channel/repulsion range=0.01", setting,
                  mistakes=mistakes)
     _refused(["does not fit", "0.7"], "Particle/radius=0.75", "Particle/center=[0, 0, 0]")

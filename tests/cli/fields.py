@@ -4,7 +4,7 @@
 import numpy
 import yaml
 
-from harness import check, deck, main, run, series
+from harness import check, deck, main, run, series, summary
 
 DROP = {"shape": "sphere", "Membrane": {"law": "surface tension", "capillary number": 0.1}, "Surface": {"elements per side": 4},
         "Interface": {"surfactant": {"elasticity number": 0.3, "diffusivity": 0.1}}}
@@ -85,6 +85,37 @@ def meshes_that_adapt_keep_the_mass():
     check(abs(mass - 1).max() < 1e-12, f"the mass is off by {abs(mass - 1).max()}")
     largest = series("adapted", "largest_concentration")
     check(numpy.all(numpy.diff(largest) > -1e-3), "the concentration jumps where the mesh changes")
+
+
+def _theory(l, tension, elasticity, diffusivity):
+    """Matrix of d(f, g)/dt of the second harmonics of the radius and of the concentration of a nearly spherical drop, as tests/verify/surfactant.cpp."""
+    mobility = numpy.array([[10 * (l + 1), 6 * (3 * l + 2)], [3 * l + 2, 13 * l + 12]]) / ((19 * l + 16) * (2 * l + 3))
+    load, motion = numpy.array([[-4, 2 * elasticity], [0, -elasticity]]), numpy.array([[1, 0], [-2, 6]])
+    return tension * motion @ mobility @ load - numpy.diag([0, 6 * diffusivity])
+
+
+def modes_of_a_drop_at_rest_are_those_of_linear_theory():
+    """Second harmonics of shape and surfactant on a sphere, which decay together; nothing else decays more slowly but the first of the surfactant."""
+    text = """Tanktread:
+  Flow: {type: quiescent}
+  Particle: {viscosity ratio: %g}
+  Membrane: {law: surface tension, surface tension: 1.5}
+  Interface: {surfactant: {elasticity number: 0.3, diffusivity: 0.05}}
+  Surface: {elements per side: %d}
+  Quadrature: {tolerance: 1.0e-7}
+  Solvers: {projection: least squares, tolerance: 1.0e-9}
+  Spectrum: {number: 12}
+"""
+    for l in 1, 4:
+        exact = numpy.linalg.eigvals(_theory(l, 0.7 * 1.5, 0.3 / 0.7, 0.05))
+        errors = []
+        for n in 3, 6:
+            run(deck(text % (l, n)), "--output", f"on_{n}", "--quiet", "--overwrite")
+            rates = [series(f"on_{n}", f"rate_{k}")[-1] for k in range(1, 13)]
+            errors.append(max(min(abs(rate / e - 1) for rate in rates) for e in exact))
+        check(errors[1] < min(1e-5, errors[0] / 8), errors)
+        kinds = list(summary("on_6")["modes"].values())
+        check(kinds.count("mass") == kinds.count("volume") == 1, kinds)
 
 
 main()

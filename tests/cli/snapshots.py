@@ -56,10 +56,4 @@ def a_run_with_pictures_between_steps_goes_on_to_the_same_end():
         check(time == other_time and points.tobytes() == other_points.tobytes(), f"the pictures at {time} differ")
 
 
-def a_mesh_that_changes_between_steps_has_no_pictures_between_them():
-    deck(DECK)
-    result = run("deck.yaml", "--set", "Output/between steps=interpolate", "--set", "Adaptation/enabled=true", code=2)
-    check("Output/between steps" in result.stderr and "Adaptation/enabled" in result.stderr, result.stderr)
-
-
 main()

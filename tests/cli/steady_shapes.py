@@ -234,6 +234,22 @@ def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
     check(series("tread", "leading_rate")[-1] < -0.5, series("tread", "leading_rate"))
 
 
+def modes_are_those_on_a_mesh_that_fits_the_shape():
+    """Of an oblate capsule at rest: the mesh is refined before its modes are looked for."""
+    at_rest = """
+Tanktread:
+  Flow: {type: quiescent}
+  Particle: {shape: spheroid, semi-axes: [1, 1, 0.4]}
+  Membrane: {law: neo-Hookean, shear modulus: 1}
+  Surface: {elements per side: 3, extraordinary points: catmull-clark}
+  Adaptation: {enabled: %s, indicator: variation, reference length: 1, levels: 1}
+  Spectrum: {number: 2, method: krylov}
+"""
+    for enabled in "true", "false":
+        run(deck(at_rest % enabled), "--output", enabled, "--quiet")
+    check(series("true", "n_control_points")[-1] > series("false", "n_control_points")[-1], "nothing is refined")
+
+
 def a_parameter_must_be_a_number_of_the_deck():
     said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.1", "--set",
                "Continuation/second parameter=Particle/viscosity ratio", "--output", "no", "--quiet", code=2).stderr

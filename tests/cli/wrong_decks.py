@@ -35,7 +35,7 @@ SETTINGS = [
     (["Solvers/rigid bodies=first kind"], ["Solvers/rigid bodies", "Particle deforms"]),
     (["Periodic/turn=180"], ["Periodic/period", "missing"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
-    (["Spectrum/number=4", "Particle/motion=free"], ["Spectrum", "Particle/motion", "rigid"], 2),  # and Membrane
+    (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "as told"], 2),  # and Membrane
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),
     (["Spectrum/number=0"], ["Spectrum/number", "0"]),
     (["Flow/gravity=[0, -1]"], ["Flow/gravity", "three numbers"]),

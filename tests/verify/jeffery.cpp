@@ -39,7 +39,7 @@ struct Tumbling {
   Vec3 axis() const { return coupling::rotation_of(state.x) * scene.particle.shape.rotation() * Vec3(1, 0, 0); }
 
   double inclination() {
-    return entry(run_series(scene), body->row(state, {}, 0), "inclination");
+    return body->row(state, {}).value("inclination");
   }
 };
 

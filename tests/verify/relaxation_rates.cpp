@@ -51,7 +51,7 @@ struct Sphere {
     shapes.follow(*scene.capsule, x);
     motion::SpectrumOptions options;
     options.number = static_cast<int>(shapes.size());
-    modes = motion::spectrum(*scene.capsule, shapes, x, scene.capsule->geometry().volume_gradient(x), options, {});
+    modes = motion::spectrum(*scene.capsule, shapes, x, {scene.capsule->geometry().volume_gradient(x)}, options, {});
   }
 
   /// The rate, within 5 % of this one, of the mode that is most nearly a displacement of harmonic 2, Y r and grad Y.
@@ -152,9 +152,9 @@ TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {
   motion::SpectrumOptions options;
   options.number = 6, options.shift = 1;
   const Net flux = run.capsule->geometry().volume_gradient(x);
-  const auto all = motion::spectrum(*run.capsule, shapes, x, flux, options, {"GMRES"});
+  const auto all = motion::spectrum(*run.capsule, shapes, x, {flux}, options, {"GMRES"});
   options.method = "krylov";
-  const auto some = motion::spectrum(*run.capsule, shapes, x, flux, options, {"GMRES"});
+  const auto some = motion::spectrum(*run.capsule, shapes, x, {flux}, options, {"GMRES"});
   ASSERT_EQ(some.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::abs(some[k].rate - all[k].rate), 0, 1e-5) << k;
 }

@@ -1,4 +1,4 @@
-#include "app/drift.hpp"
+#include "app/free_motions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -53,7 +53,7 @@ TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
   EXPECT_NEAR(map.period(), period, 1e-6);
   Net start(1, 3);
   start << 0.3, 1, -0.2;
-  const std::vector<Multiplier> found = multipliers(map, x, start, 2);
+  const std::vector<Multiplier> found = multipliers(map, x, start, [](const Net& d) { return d; }, 2);
   ASSERT_EQ(found.size(), 2U);
   const double slow = std::exp(-damping * period), fast = std::exp(-2 * inward * period);
   EXPECT_NEAR(found[0].value.real(), slow, 1e-4 * slow);

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# One rigid body in scenes that used to need something that deforms: steady attitudes and their rates, periodic orbits, the balance of power, a wall
+# that pushes, meshes that are refined, a body that moves as told in a flow that changes.
+import numpy
+
+from harness import check, close, deck, main, run, series
+
+SPHEROID = """Tanktread:
+  Flow: {type: %s}
+  Particle: {motion: free, shape: spheroid, semi-axes: [1, 1, 2], orientation: [0, %g, 0]}
+  Surface: {elements per side: 4}
+  Solvers: {rigid bodies: first kind}
+  %s
+"""
+ALONE = """Tanktread:
+  Flow: {%s}
+  Particle: {motion: %s}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.4, fixed step: 0.1}
+  %s
+"""
+FLATTENING = (2**2 - 1) / (2**2 + 1)  # (r^2 - 1)/(r^2 + 1) of the aspect ratio, Jeffery 1922
+
+
+def a_spheroid_aligns_with_an_extension():
+    """Off the axis its axis returns at the rate 3/2 times the flattening times that of the extension."""
+    run(deck(SPHEROID % ("uniaxial extension", 60, "Steady: {tolerance: 1.0e-7}\n  Spectrum: {number: 6}")), "--output", "found", "--quiet")
+    rates = sorted(series("found", f"rate_{k}")[-1] for k in range(1, 7))
+    expected = sorted([1, -0.5, -0.5, 0, -1.5 * FLATTENING, -1.5 * FLATTENING])
+    for rate, exact in zip(rates, expected):
+        close(rate, exact, 2e-3, "rate")
+    close(series("found", "leading_rate")[-1], 0, 2e-3, "of a rotation about the axis")
+
+
+def a_run_ends_when_a_body_no_longer_turns():
+    text = SPHEROID % ("uniaxial extension", 60, "Time: {final time: 20, steady tolerance: 1.0e-3}\n  Output: {interval: 20}")
+    for settings in [], ["--set", "Output/power balance=true", "--set", "Solvers/rigid bodies=second kind"]:
+        run(deck(text), *settings, "--output", "found", "--quiet", "--overwrite")
+        check(series("found", "time")[-1] < 15 and series("found", "shape_velocity")[-1] < 1e-3 < series("found", "shape_velocity")[0], "it goes on")
+
+
+def a_spheroid_tumbles_with_the_period_of_jeffery():
+    exact = numpy.pi * (2 + 0.5)
+    run(deck(SPHEROID % ("simple shear", 30, "Time: {tolerance: 1.0e-6}\n  Periodic: {period: 7.7, turn: 180, tolerance: 1.0e-5}")),
+        "--output", "found", "--quiet")
+    close(series("found", "period")[-1], exact, 1e-3 * exact, "half a period")
+
+
+def powers_balance_around_one_body():
+    """What a shear puts in, all is dissipated in the fluid: 20/3 pi mu R^3 E:E of a sphere, E:E = 1/2."""
+    run(deck(ALONE % ("type: simple shear", "free", "Output: {power balance: true}")), "--output", "found", "--quiet")
+    exact = 20 / 3 * numpy.pi / 2
+    close(series("found", "flow_power")[-1], exact, 2e-3 * exact, "power of the flow")
+    check(abs(series("found", "power_residual")).max() < 5e-3, series("found", "power_residual"))
+
+
+def a_wall_pushes_a_body():
+    """The force is the integral of what the wall does over the sphere, whose gap is known everywhere."""
+    text = """Tanktread:
+  Flow: {type: quiescent}
+  Particle: {motion: free, radius: 0.6, center: [0, 0.2, 0.1]}
+  Surface: {elements per side: 4}
+  Tube: {radius: 1.0, azimuthal elements: 12, axial elements: 10, repulsion: 2.0, repulsion range: 0.1}
+  Time: {final time: 0.02, fixed step: 0.01}
+"""
+    run(deck(text), "--output", "found", "--quiet")
+    cosine, weight = numpy.polynomial.legendre.leggauss(40)
+    turn = 2 * numpy.pi * (numpy.arange(80) + 0.5) / 80
+    sine = numpy.sqrt(1 - cosine**2)[:, None]
+    y, z = 0.2 + 0.6 * sine * numpy.cos(turn), 0.1 + 0.6 * sine * numpy.sin(turn)
+    push = 2 * numpy.exp(-(1 - numpy.hypot(y, z)) / 0.1) / numpy.hypot(y, z) * weight[:, None] * 0.36 * 2 * numpy.pi / 80
+    for component, exact in (2, -(push * y).sum()), (3, -(push * z).sum()):
+        close(-series("found", f"drag_x{component}")[0], exact, 2e-3 * abs(exact), "push")
+        check(series("found", f"velocity_x{component}")[0] < 0, "it moves towards the wall")
+
+
+def what_is_told_of_a_body_holds_in_a_flow_that_changes():
+    """At rest in a shear a(t), the torque on a sphere is 8 pi mu R^3 a(t)/2."""
+    told = "type: simple shear, history: {type: sine, mean: 1, amplitude: 0.5, frequency: 1}"
+    run(deck(ALONE % (told, "prescribed", "")), "--output", "found", "--quiet")
+    a = 1 + 0.5 * numpy.sin(2 * numpy.pi * series("found", "time"))
+    torque = numpy.hypot(series("found", "torque_x1"), numpy.hypot(series("found", "torque_x2"), series("found", "torque_x3")))
+    check(abs(torque / (4 * numpy.pi * a) - 1).max() < 5e-3, torque, 4 * numpy.pi * a)
+
+
+def a_mesh_is_refined_for_a_body_that_does_not_deform():
+    """A slender one of few elements, whose pressure is known."""
+    text = """Tanktread:
+  Flow: {type: quiescent}
+  Particle: {motion: prescribed, shape: spheroid, semi-axes: [0.3, 0.3, 1.5], velocity: [0, 0, 1]}
+  Surface: {elements per side: 3}
+  Quadrature: {tolerance: 1.0e-6}
+  Adaptation: {enabled: %s, load tolerance: 0.01}
+"""
+    for enabled in "false", "true":
+        run(deck(text % enabled), "--output", enabled, "--quiet")
+    check(series("true", "n_control_points")[-1] > 200, "nothing is refined")
+    check(series("true", "pressure_l2_error")[-1] < 0.01 < series("false", "pressure_l2_error")[-1], "pressure")
+
+
+main()
