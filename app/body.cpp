@@ -6,6 +6,10 @@
 #include "app/member.hpp"
 #include "app/plane_wall.hpp"
 #include "app/tube.hpp"
+#include "membrane/patch_forces.hpp"
+#include "membrane/wall_repulsion.hpp"
+#include "membrane/weight.hpp"
+#include "membrane/whole_membrane.hpp"
 #include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
@@ -21,6 +25,13 @@ membrane::Law law(const membrane::Options& options, double modulus) {
   if (options.law == "expression") return membrane::UserLaw{modulus, options.strain_energy()};
   if (options.law == "surface tension") return membrane::SurfaceTension{modulus};
   return membrane::NeoHookean{modulus};
+}
+
+membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::TubeWall& wall) {
+  const double mouth = tube.radius.value();
+  std::function<double(double)> radius = [mouth](double) { return mouth; };
+  if (const auto channel = wall.channel) radius = [mouth, channel](double s) { return mouth * channel->section(s).factor[0]; };
+  return {std::move(radius), *tube.repulsion, *tube.repulsion_range};
 }
 
 }  // namespace
@@ -90,14 +101,24 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   const bool channel = body.wall && body.wall->channel;
   if (scene.particle.rigid() || (body.wall && !channel) || scene.domain.present) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, scene.body_force(), patch_forces(scene, body));
-  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, scene.body_force(), patch_forces(scene, body),
+  if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
+  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
                             scene.wall.present ? scene.wall.normal : Vec3::Zero());
 }
 
-Net patch_forces(const Scene& scene, const Body& body) {
-  if (scene.particle.rigid() || scene.membrane.forces.all.empty()) return {};
-  return scene.membrane.forces.virtual_work(body.space, scene.membrane.stress_free == "resting" ? body.unstressed : body.rest);
+coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {
+  coupling::LoadList all;
+  if (wall && scene.tube.repulsion) all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(scene.tube, *wall)));
+  if (scene.particle.rigid()) return all;
+  const membrane::Options& given = scene.membrane;
+  const membrane::WholeStiffness whole{given.global_area_dilatation * body.modulus, given.leaf_modulus * given.bending(body.modulus, body.radius),
+                                       given.leaf_difference};
+  if (whole.any()) all.push_back(std::make_shared<membrane::WholeMembrane>(body.space, body.unstressed, body.radius, whole));
+  if (const Vec3 force = scene.body_force(); !force.isZero(0)) all.push_back(std::make_shared<membrane::Weight>(body.space, force));
+  if (!given.forces.all.empty())
+    all.push_back(std::make_shared<membrane::PatchLoad>(given.forces, body.space, given.stress_free == "resting" ? body.unstressed : body.rest));
+  for (const auto& part : scene.loads) all.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
+  return all;
 }
 
 stokes::Measure load_measure(const Scene& scene) {

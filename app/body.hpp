@@ -9,6 +9,7 @@
 #include "base/types.hpp"
 #include "coupling/capsule.hpp"
 #include "coupling/ranks.hpp"
+#include "coupling/symmetry.hpp"
 #include "membrane/laws.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
@@ -55,8 +56,9 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 /// The symmetry of the scene, as far as the deck wants it to be used, and of the shape x that the particle has by now.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
-/// Virtual work of the forces on patches of its membrane, on its present mesh; of no rows where there are none.
-Net patch_forces(const Scene& scene, const Body& body);
+/// Makes the loads of a particle, in addition to elasticity and bending, on its present mesh; of a rigid one only the repulsion. `wall`: of its tube,
+/// or null.
+coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
 /// What the load is measured on: that of a drop, which has no unstressed state, and the strong one are always per current area.
 stokes::Measure load_measure(const Scene& scene);

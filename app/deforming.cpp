@@ -196,7 +196,7 @@ class Deforming : public ParticleSystem {
     const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
     return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
-              fields_->add_to(nodes, fields);
+              fields_->add_to(nodes, state.x, fields);
               if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, state.x)});
               return fields;
             }};
@@ -279,7 +279,7 @@ class Deforming : public ParticleSystem {
     DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
     now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
-    now.energy += capsule_->whole_membrane_energy(state.x, p);
+    now.energy += capsule_->load_energy(state.x, p);
     if (member.scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
     now.intrinsic_viscosity = intrinsic_viscosity(*member.body, scene_.flow.viscosity, now);
     fields_->add_to(p, y, now, to);

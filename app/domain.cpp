@@ -39,7 +39,7 @@ void DomainOptions::check(const stokes::FlowOptions& flow) const {
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
-  if (flow.type == "parabolic" || flow.type == "duct")
+  if (flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()))
     throw UserError("Domain and Flow/type `" + flow.type + "` contradict each other: a lattice can follow no flow but one whose gradient is the same "
                     "everywhere.");
   if (flow.history) throw UserError("Domain and Flow/history contradict each other: a lattice can follow no flow but one that stays as it is.");

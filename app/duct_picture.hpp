@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "coupling/channel_flow.hpp"
 #include "output/arrays.hpp"
 #include "stokes/duct_flow.hpp"
 
@@ -14,5 +15,8 @@ namespace tanktread {
 ///   maximum (3)      x2, x3 of the largest velocity, and this velocity
 ///   pressure_gradient, mean_velocity, radius (R_T)
 std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow);
+
+/// A channel and the flow through it without particles, for pictures: the file `channel.h5` of a run's results. Collective.
+std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow);
 
 }  // namespace tanktread

@@ -8,22 +8,34 @@
 
 namespace tanktread {
 
-std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size) {
+namespace {
+
+/// The conditions of the loads of all particles on a rigid motion.
+membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
+  membrane::RigidConditions all(0, 6);
+  for (const coupling::Particle& particle : particles)
+    for (const auto& load : particle.loads) {
+      const membrane::RigidConditions more = load->rigid_conditions();
+      all.conservativeResize(all.rows() + more.rows(), 6);
+      all.bottomRows(more.rows()) = more;
+    }
+  return all;
+}
+
+}  // namespace
+
+std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
+                                                std::span<const coupling::Particle> particles) {
+  const membrane::RigidConditions of_loads = conditions(particles);
   if (scene.tube.channel) return {};
-  if (scene.tube.present) return {coupling::unit_motion(0)};
+  if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
   Net places(4, 3);
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);
-  std::vector<Vec3> directions;  // of the forces that are not 0
-  const auto add = [&](const Vec3& force) {
-    if (force.norm() > 0) directions.push_back(force.normalized());
-  };
-  for (const Scene& one : scene.alone()) {
-    add(one.body_force());
-    for (const membrane::PatchForce& patch : one.membrane.forces.all) add(patch.force);
-  }
-  Eigen::MatrixXd change(12 + 3 * static_cast<Eigen::Index>(directions.size()), 6);
+  Eigen::MatrixXd change(12 + of_loads.rows(), 6);
+  change.bottomRows(of_loads.rows()) = scene.rate() * of_loads;
+  change.bottomRightCorner(of_loads.rows(), 3) /= size;
   for (int k = 0; k < 6; ++k) {
     const coupling::RigidMotion motion = coupling::unit_motion(k);
     const double unit = k < 3 ? 1 : 1 / size;
@@ -31,9 +43,6 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
     for (int i = 0; i < 4; ++i)
       change.block<3, 1>(3 * i, k) =
           unit * (gradients[static_cast<std::size_t>(i)] * moved.row(i).transpose() - motion.angular_velocity.cross(Vec3(v.row(i).transpose())));
-    for (std::size_t f = 0; f < directions.size(); ++f)
-      change.block<3, 1>(12 + 3 * static_cast<Eigen::Index>(f), k) =
-          scene.rate() * unit * motion.angular_velocity.cross(directions[f]);
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
   std::vector<coupling::RigidMotion> free;
@@ -57,8 +66,8 @@ double steady_step(const Scene& scene) {
 bool holds_centre(const Scene& scene) {
   if (scene.particle.drift) return *scene.particle.drift == "held";
   if (scene.tube.present || scene.wall.present || scene.particle.rigid()) return false;
-  if (scene.flow.type == "parabolic") return false;
   const stokes::AmbientFlow flow(scene.flow);
+  if (!flow.affine()) return false;
   const Vec3& center = scene.particle.shape.center;
   if (!flow.velocity(center).isZero(0)) return false;
   return largest_growth_rate(flow.gradient(center)) > 1e-9 * flow.rate();

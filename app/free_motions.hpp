@@ -1,9 +1,11 @@
 #pragma once
 // Rigid motions that a scene leaves free, what holds a particle against them, and the step of a steady search.
 
+#include <span>
 #include <vector>
 
 #include "app/scene.hpp"
+#include "coupling/particle.hpp"
 #include "coupling/rigid_motion.hpp"
 #include "motion/integrator.hpp"
 #include "stokes/ambient_flow.hpp"
@@ -11,9 +13,10 @@
 
 namespace tanktread {
 
-/// The rigid motions about the origin that change neither the flow nor the weights, patch forces and walls: the Lie derivative of the flow along
-/// them is 0, and no force of any particle turns. `size`: a length of the particles, R_C. Q of (4.17) projects onto them.
-std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size);
+/// Returns the rigid motions about the origin that change neither the flow nor loads and walls: the Lie derivative of the flow along them is 0, and
+/// the loads of all particles move with them. `size`: a length of the particles, R_C. Q of (4.17) projects onto them.
+std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
+                                                std::span<const coupling::Particle> particles);
 
 /// Returns Steady/step, or its default. The default is bounded by the relaxation times of the membranes because the iteration amplifies errors of the
 /// velocity in motions that no membrane opposes by the step over these times.

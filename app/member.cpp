@@ -122,15 +122,6 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
   return all;
 }
 
-/// Of the wall, where there is one.
-std::optional<coupling::Repulsion> repulsion(const surface::TubeOptions& tube, const Body& all) {
-  if (!tube.present || !tube.repulsion) return {};
-  const double mouth = tube.radius.value();
-  std::function<double(double)> radius = [mouth](double) { return mouth; };
-  if (const auto channel = all.wall->channel) radius = [mouth, channel](double s) { return mouth * channel->section(s).factor[0]; };
-  return coupling::Repulsion{std::move(radius), *tube.repulsion, *tube.repulsion_range};
-}
-
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube) {
   const Scene& scene = members.front().scene;
@@ -144,14 +135,8 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.space = &body.space;
     particle.viscosity_ratio = own.particle.viscosity_ratio;
     particle.material = material(own, body);
-    if (!own.particle.rigid()) {
-      particle.global_area_modulus = own.membrane.global_area_dilatation * body.modulus;
-      particle.leaf_modulus = own.membrane.leaf_modulus * own.membrane.bending(body.modulus, body.radius);
-      particle.leaf_difference = own.membrane.leaf_difference;
-    }
+    particle.loads = loads(own, body, all.wall.get());
     particle.radius = body.radius;
-    particle.body_force = own.body_force();
-    particle.patch_forces = patch_forces(own, body);
     if (own.particle.rigid()) particle.rigid = rigid(own, body);
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
@@ -169,7 +154,6 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   parameters.symmetry = all.symmetry;
   parameters.cell = scene.domain.cell();
   parameters.wall = scene.wall.plane();
-  parameters.repulsion = repulsion(scene.tube, all);
   return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
 }
 

@@ -12,7 +12,6 @@
 
 #include <sys/resource.h>
 
-#include "app/channel_picture.hpp"
 #include "app/duct_picture.hpp"
 #include "app/numbers.hpp"
 #include "app/provenance.hpp"

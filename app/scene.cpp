@@ -19,90 +19,15 @@ namespace tanktread {
 
 namespace {
 
-const deck::Choice motion_words{"deforming", "prescribed", "free"};
-
-/// As the deck has it.
-std::string text(Motion motion) { return "`" + motion_words[static_cast<std::size_t>(motion)] + "`"; }
-
-}  // namespace
-
-void ParticleOptions::declare(deck::Section& section) {
-  shape.declare(section);
-  section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
-              "lambda: viscosity inside over viscosity outside; at most 1e14 x Solvers/tolerance, and from 1e5 on the particle hardly deforms: "
-              "one that does not at all is rigid, Particle/motion `free`");
-  section.key("motion", motion, motion_words,
-              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, of one "
-              "particle a steady problem; `free`: rigid, with `force` and `torque`, by themselves zero");
-  section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
-  section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
-  section.key("force", force, deck::any(), "force", "on a `free` body, three numbers; zero if not given");
-  section.key("torque", torque, deck::any(), "force x length", "on a `free` body, about the centre of its volume; zero if not given");
-  section.key("density difference", density_difference, deck::any(), "force/(length^3 x Flow/gravity)",
-              "density inside less that of the fluid: with Flow/gravity, a force on each unit of volume; zero if not given");
-  section.key("drift", drift, deck::Choice{"free", "held"},
-              "`held`: the centroid is put back after every step, which in an affine flow changes no shape; the default at the point of rest of a "
-              "flow that draws away from it, where rounding grows into a drift; otherwise `free`");
-  section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "force and torque on a `prescribed` body: `integral` of the traction alone, as the paper has it, or with what that lacks by the "
-              "`reciprocal` theorem, the default under Quadrature/rule `adaptive`; the other rules are too coarse for it");
-}
-
-void ParticleKind::declare(deck::Section& section) {
-  section.mention("like");
-  copies.present = section.given("copies");
-  if (copies.present || section.documenting())
-    section.section("copies", copies, "many of it, at the rows of a file, on a lattice, or at random without overlap");
-  else
-    section.mention("copies");
-  if (section.documenting()) return;
-  particle.declare(section);
-  declare_lists(section);
-}
-
-namespace {
-
-/// The list Interface.
-struct InterfaceList {
-  coupling::InterfaceOptions& interface;
-  std::optional<membrane::SurfactantOptions>& surfactant;
+/// The list Output.
+struct OutputList {
+  Scene& scene;
 
   void declare(deck::Section& section) {
-    interface.declare(section);
-    membrane::SurfactantOptions given;
-    if (section.optional_section("surfactant", given, "an insoluble surfactant on a drop; a clean interface without this list")) surfactant = given;
+    scene.output.declare(section);
+    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record, none without this list");
   }
 };
-
-}  // namespace
-
-void ParticleKind::declare_lists(deck::Section& section) {
-  if (particle.rigid()) section.leave_out("Membrane");  // what particles share is for those that have one
-  membrane_given = section.given("Membrane");
-  if (!particle.rigid() || membrane_given) section.section("Membrane", membrane, "what its surface is made of");
-  if (particle.shape.shape != "file")
-    section.section("Surface", surface, "the spline space of its surface");
-  else if (section.given("Surface"))
-    throw UserError(section.path("Surface") + " and " + (name.empty() ? "Particle/shape" : section.path("shape")) +
-                    " `file` contradict each other: the spline space is the file's.");
-  InterfaceList list{interface, surfactant};
-  section.section("Interface", list, "the interface of a drop: how its mesh moves along it, and what is on it");
-  if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
-  if (!name.empty()) adaptation.film_resolution = 0.7;
-  section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
-}
-
-void ContactOptions::declare(deck::Section& section) {
-  section.key("limit", limit, deck::between(1e-6, 1), "R_C",
-              "smallest gap between two particles, over the R_C of the smallest one, at which the run goes on; below, it ends with a checkpoint");
-  section.key("limiter", limiter,
-              "whether the gaps between particles are held at the limit instead, by forces along the normals at their nearest points that never pull "
-              "(4.23), which are series and 0 as long as the fluid alone holds the gaps; gaps to a wall are not");
-  if (limiter && !section.given("limit"))
-    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, over R_C, that it is to hold.");
-}
-
-namespace {
 
 /// The list Channel.
 struct ChannelList {
@@ -117,6 +42,7 @@ struct ChannelList {
 /// The list Particles.
 struct Kinds {
   std::vector<ParticleKind>& all;
+  const Registry* registry;
 
   void declare(deck::Section& section) {
     section.each(
@@ -124,6 +50,7 @@ struct Kinds {
         "it does not say itself it takes from the list that its key `like` names, or from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
           all.emplace_back().name = name;
+          all.back().registry = registry;
           all.back().declare(inner);
         },
         true);
@@ -377,6 +304,16 @@ void check_several(const Scene& scene) {
   }
 }
 
+/// Throws UserError for parts that the program adds where they cannot act.
+void check_registered(const Scene& scene) {
+  const std::string motion = "Particle/motion " + text(scene.particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
+  refuse(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", "loads act by the work that they do, `weak`");
+  refuse(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "fields are on what deforms");
+  if (scene.in_system()) return;
+  refuse(!scene.series.empty(), "Output/series", motion, "the one body has a record of its own; give it in a list Particles");
+  refuse(scene.flow.user && !scene.flow.user->affine(), flow, motion, "the one body is solved for in flows of the second degree; give it in a list Particles");
+}
+
 /// Lengths that the mesh must be able to have.
 void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;
@@ -392,6 +329,8 @@ void Scene::declare(deck::Section& root) {
                                                      "what 1 of the deck's units is; with this list a value may have a unit of its own, "
                                                      "`5.3 uN/m`, and results say what they are in SI units"))
     root.take(units = std::make_shared<const deck::Units>(given));
+  OutputList results{*this};
+  flow.registered = &registry->flows;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   const bool several = root.given("Particles");
   if (several) {
@@ -403,7 +342,7 @@ void Scene::declare(deck::Section& root) {
     root.section("Particle", particle, "the particle at rest");
     declare_lists(root);
   }
-  if (Kinds kinds{particles}; several || root.documenting())
+  if (Kinds kinds{particles, registry}; several || root.documenting())
     root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
@@ -436,7 +375,7 @@ void Scene::declare(deck::Section& root) {
   periodic.driven = flow.history.has_value();
   root.section("Symmetry", symmetry, "what of the scene is solved for");
   root.section("Solvers", solvers, "solvers of linear systems");
-  root.section("Output", output, "results");
+  root.section("Output", results, "results");
   root.section("Expect", expect, "expected results");
 }
 
@@ -467,6 +406,7 @@ void Scene::check() const {
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");
   check_contradictions(*this);
+  check_registered(*this);
   modulus();
   motion::TimeOptions in_its_unit = time;
   in_its_unit.unit = 1 / rate();
@@ -521,9 +461,9 @@ bool may_change_on_resume(const std::string& path) {
   if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Wall/contact gap" || path == "Contact/limit") return true;
   if (path.starts_with("Particles/")) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
-    return of_particle.starts_with("Interface/") || of_particle.starts_with("Adaptation/");
+    return (of_particle.starts_with("Interface/") && !of_particle.starts_with("Interface/fields/")) || of_particle.starts_with("Adaptation/");
   }
-  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall"})
+  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Output/series"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

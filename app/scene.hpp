@@ -9,6 +9,7 @@
 
 #include "app/copies.hpp"
 #include "app/domain.hpp"
+#include "app/registry.hpp"
 #include "app/wall_options.hpp"
 #include "coupling/options.hpp"
 #include "coupling/symmetry.hpp"
@@ -35,6 +36,8 @@ class Units;
 /// `Particle/motion`.
 enum class Motion { deforming, prescribed, free };
 
+std::string text(Motion motion);  ///< as the deck has it, in `quotes`
+
 /// `Particle/*`: the resting shape and what fills it.
 struct ParticleOptions {
   surface::ParticleShape shape;
@@ -59,6 +62,9 @@ struct ParticleKind {
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
   std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; none: a clean interface
+  const Registry* registry = &no_parts;                   ///< parts that the program adds
+  std::vector<membrane::LoadParts::Chosen> loads;         ///< Membrane/loads
+  std::vector<membrane::FieldParts::Chosen> fields;       ///< Interface/fields
   motion::AdaptationOptions adaptation;
   CopiesOptions copies;
   bool membrane_given = false;  ///< whether the deck has this list at all
@@ -98,8 +104,12 @@ struct Scene : ParticleKind {
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;
+  std::vector<SeriesParts::Chosen> series;  ///< Output/series
   bool volume_given = false;  ///< whether the deck has this list at all
   std::vector<std::pair<std::string, std::string>> files;  ///< that the deck names: where they are, and what the run keeps them as
+
+  Scene() = default;
+  explicit Scene(const Registry& parts) { registry = &parts; }
 
   void declare(deck::Section& root);
 

@@ -52,7 +52,7 @@ struct System {
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told_to_stop);
     const Body& body = particle->body();
-    equations.emplace(*motion, free_motions(scene, body.flow, body.radius), steady_step(scene), x);
+    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
   }
 
   Scene scene;

@@ -1,5 +1,6 @@
 #include "app/surface_fields.hpp"
 
+#include <map>
 #include <utility>
 
 #include "spline/locate.hpp"
@@ -20,6 +21,7 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
     if (scene.maxwell_membrane())
       all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity(),
                                                                     *scene.membrane.relaxation_time)});
+    for (const auto& part : scene.fields) all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus})});
   }
   if (all_.empty()) return;
   std::vector<coupling::CoupledMotion::On> on;
@@ -108,7 +110,27 @@ double SurfaceFields::power(const Net& v) const {
   return sum;
 }
 
-void SurfaceFields::add_to(const output::Nodes& nodes, std::vector<output::Field>& fields) const {
+/// Adds what fields and loads show; 0 on particles that have no value of a name.
+void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
+  std::map<std::string, Eigen::MatrixXd> all;
+  const auto add = [&](std::size_t p, const std::vector<membrane::SurfaceValues>& several) {
+    for (const membrane::SurfaceValues& one : several) {
+      const auto known = all.try_emplace(one.name, Eigen::MatrixXd::Zero(capsule_.n_points(), one.values.cols())).first;
+      known->second.middleRows(members_[p].block.first_point, members_[p].block.n_points) = one.values;
+    }
+  };
+  for (const One& one : all_) add(one.particle, one.field->snapshot());
+  for (std::size_t p = 0; p < members_.size(); ++p)
+    for (const auto& load : capsule_.particles()[p].loads) add(p, load->snapshot(members_[p].own(x)));
+  for (const auto& [name, values] : all) {
+    Net net = Net::Zero(values.rows(), 3);
+    net.leftCols(values.cols()) = values;
+    fields.push_back({name, nodes.values(net).leftCols(values.cols())});
+  }
+}
+
+void SurfaceFields::add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
+  add_registered(nodes, x, fields);
   Net values = Net::Zero(capsule_.n_points(), 3);
   bool any = false;
   for (const One& one : all_)

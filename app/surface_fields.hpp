@@ -53,8 +53,8 @@ class SurfaceFields {
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of all fields' loads if the material moves by v.
   double power(const Net& v) const;
-  /// Adds snapshot fields, and corrects the tensions of interfaces with surfactant.
-  void add_to(const output::Nodes& nodes, std::vector<output::Field>& fields) const;
+  /// Adds snapshot fields of fields and loads at the shape x, and corrects the tensions of interfaces with surfactant.
+  void add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
  private:
   struct One {
@@ -64,6 +64,7 @@ class SurfaceFields {
   };
 
   Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
+  void add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
   const std::vector<Member>& members_;
   coupling::Capsule& capsule_;

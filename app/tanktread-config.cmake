@@ -1,4 +1,5 @@
-# find_package(tanktread): the rooms of the library, tanktread::base to tanktread::output. tanktread::output has all of them.
+# find_package(tanktread): the rooms of the library, tanktread::base to tanktread::output, and the program, tanktread::app, which has all
+# of them.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 NO_MODULE)
 find_dependency(MPI COMPONENTS CXX)

@@ -93,8 +93,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
     area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
     if (area_->empty()) area_.reset();
   }
-  if (WholeMembrane::needed(particles())) whole_.emplace(space, unstressed, particles());
-  if (parameters_.repulsion) repulsion_.emplace(space, unstressed, *parameters_.repulsion);
+  loads_ = Loads(particles(), own_elements_);
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
   if (tube_) {
@@ -228,12 +227,10 @@ const Net& Capsule::energy_gradient(const Net& x) {
   if (same(x, gradient_at_)) return gradient_;
   gradient_.resize(x.rows(), 3);
   membrane_.load(x, own_elements_, gradient_);
-  if (repulsion_) repulsion_->add_load(x, own_elements_, gradient_);
-  add_weight(x, gradient_);
+  load_sums_ = loads_.add_work(x, gradient_);
   replicate_sums(gradient_);
-  add_whole_membrane_load(x, gradient_);
-  for (const Particle& particle : particles())
-    if (pulled(particle)) particle.block.rows(gradient_) -= particle.patch_forces;
+  for (Net& sum : load_sums_) replicate_sums(sum);
+  loads_.add_global_work(x, load_sums_, gradient_);
   for (const Net& work : external_)
     if (work.size() > 0) gradient_ -= work;
   rigid_.clear(gradient_);  // push_bodies has theirs
@@ -241,16 +238,11 @@ const Net& Capsule::energy_gradient(const Net& x) {
   return gradient_;
 }
 
-/// They are kept until another shape is asked about.
-const std::vector<Net>& Capsule::whole_gradients(const Net& x) {
-  if (same(x, whole_at_)) return whole_gradients_;
-  whole_gradients_ = whole_->gradients(x, own_elements_);
-  for (Net& gradient : whole_gradients_) replicate_sums(gradient);
-  whole_at_ = x;
-  return whole_gradients_;
+/// Returns the complete sums of the loads at x.
+const std::vector<Net>& Capsule::load_sums(const Net& x) {
+  if (loads_.n_sums() > 0) energy_gradient(x);
+  return load_sums_;
 }
-
-double Capsule::whole_membrane_energy(const Net& x, std::size_t p) { return whole_ ? whole_->energy(x, whole_gradients(x), p) : 0; }
 
 void Capsule::press(Net work, External kind) {
   Net& known = external_[static_cast<std::size_t>(kind)];
@@ -259,25 +251,17 @@ void Capsule::press(Net work, External kind) {
   known = std::move(work), latest_ = {}, gradient_at_ = {};
 }
 
-/// Contacts and the wall push bodies, beside what is given.
+/// Contacts and loads push bodies, beside what is given.
 void Capsule::push_bodies(const Net& x) {
-  if (!repulsion_ || rigid_.empty()) return;  // contacts do since `press`
+  const auto pushed = [](const Particle& particle) { return particle.rigid && !particle.loads.empty(); };
+  if (std::ranges::none_of(particles(), pushed)) return;  // contacts do since `press`
   Net push = Net::Zero(x.rows(), 3);
-  repulsion_->add_load(x, own_elements_, push);
+  std::vector<Net> sums = loads_.add_work(x, push);
   replicate_sums(push);
+  for (Net& sum : sums) replicate_sums(sum);
+  loads_.add_global_work(x, sums, push);
   const Net& contacts = external_[static_cast<std::size_t>(External::contacts)];
   rigid_.push(contacts.size() > 0 ? Net(contacts - push) : Net(-push));
-}
-
-/// -int f.x dV is the energy of a body force f.
-void Capsule::add_weight(const Net& x, Net& gradient) const {
-  for (const Particle& particle : particles()) {
-    if (particle.body_force.isZero(0) || particle.rigid) continue;
-    const spline::Block& block = particle.block;
-    const auto first = std::ranges::lower_bound(own_elements_, block.first_element);
-    const auto last = std::ranges::lower_bound(own_elements_, block.first_element + block.n_elements);
-    geometry_.add_moment_gradient(x, -particle.body_force, block.rows(x).colwise().mean().transpose(), {first, last}, gradient);
-  }
 }
 
 Net Capsule::load(const Net& x) {
@@ -331,7 +315,7 @@ std::vector<Net> Capsule::relabellings(const Net& x) {
   std::vector<Net> all;
   if (interface_) all = interface_->rotations(x, axes);
   for (const Particle& one : particles()) {
-    if (one.rigid || one.slides() || pulled(one)) continue;
+    if (one.rigid || one.slides() || std::ranges::any_of(one.loads, &membrane::Load::depends_on_labels)) continue;
     for (const int k : axes)
       if (const auto field = label_rotation(space_, one.block, unstressed_, x, k, collocation_)) all.push_back(*field);
   }
@@ -705,7 +689,7 @@ Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
     Net work = own(energy_gradient(x));
     if (viscous_) work += own(viscous_work(x, interface_ ? fluid_velocity(x) : slope));
     moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
-    if (!particle.body_force.isZero(0) || pulled(particle) || pressed())  // about the centroid
+    if (!particle.loads.empty() || pressed())  // about the centroid
       moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {

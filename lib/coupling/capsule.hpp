@@ -16,6 +16,7 @@
 #include "coupling/frozen_operator.hpp"
 #include "coupling/interface_motion.hpp"
 #include "coupling/krylov.hpp"
+#include "coupling/loads.hpp"
 #include "coupling/nodal_operator.hpp"
 #include "coupling/one_body.hpp"
 #include "coupling/options.hpp"
@@ -25,8 +26,6 @@
 #include "coupling/rigid_tractions.hpp"
 #include "coupling/tube.hpp"
 #include "coupling/velocity_projection.hpp"
-#include "coupling/wall_repulsion.hpp"
-#include "coupling/whole_membrane.hpp"
 #include "membrane/area_constraint.hpp"
 #include "membrane/field.hpp"
 #include "membrane/mass_solver.hpp"
@@ -65,7 +64,6 @@ struct CapsuleParameters {
   SolverOptions solvers;
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< at time zero, of a lattice that the flow carries along; none: unbounded space, or a tube
-  std::optional<Repulsion> repulsion;        ///< of membranes by the wall of a round tube or channel
   std::optional<stokes::PlaneWall> wall;     ///< that everything is in front of; none: unbounded space, a lattice or a tube
   surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
 };
@@ -197,13 +195,9 @@ class Capsule : public Dynamics {
   /// `slope`, or is evaluated if control points slide along an interface. Collective.
   double membrane_dissipation(const Net& x, const Net& slope, std::size_t p = 0);
 
-  /// The energy of what the membrane of particle p resists as a whole, at x (3.26), (3.27). Collective.
-  double whole_membrane_energy(const Net& x, std::size_t p);
-
-  /// Adds its gradient, of all particles, to d. Collective.
-  void add_whole_membrane_load(const Net& x, Net& d) {
-    if (whole_) whole_->add_load(x, whole_gradients(x), d);
-  }
+  /// Returns the energy that the membrane of particle p stores by its loads, without elasticity and bending, at x. Collective.
+  double load_energy(const Net& x, std::size_t p) { return loads_.energy(x, load_sums(x), p); }
+  const Loads& loads() const { return loads_; }
 
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(const Net& x) const;  ///< of all volumes together
@@ -253,11 +247,9 @@ class Capsule : public Dynamics {
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   const Net& energy_gradient(const Net& x);
-  void add_weight(const Net& x, Net& gradient) const;
   void push_bodies(const Net& x);
   bool pressed() const { return external_[0].size() > 0 || external_[1].size() > 0; }
-  bool pulled(const Particle& particle) const { return particle.patch_forces.rows() > 0; }
-  const std::vector<Net>& whole_gradients(const Net& x);
+  const std::vector<Net>& load_sums(const Net& x);
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta, const Net& work = {});
@@ -299,8 +291,7 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // where a membrane has points of its own for its area
-  std::optional<WholeMembrane> whole_;  // where a membrane resists something as a whole
-  std::optional<WallRepulsion> repulsion_;
+  Loads loads_;  // in addition to elasticity and bending
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
   std::optional<VelocityProjection> projection_;  // where velocities are not collocated
   stokes::Layer layer_;                           // at the targets of velocities
@@ -335,8 +326,7 @@ class Capsule : public Dynamics {
   };
   Latest latest_;  // evaluation
   Net gradient_at_, gradient_;  // x and dE/dx there
-  Net whole_at_;  // x, and the gradients there
-  std::vector<Net> whole_gradients_;
+  std::vector<Net> load_sums_;  // of the loads there
   std::array<Net, 2> external_;  // work of contacts and of fields on what deforms; empty nets: none
   Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
   Net placed_;     // the tube's particle

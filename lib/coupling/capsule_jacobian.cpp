@@ -58,8 +58,7 @@ void Capsule::linearise(const Net& x) {
   ++work_.tangents;
   tangent_.update(x, own_elements_);
   if (frozen_at_.rows() == x.rows()) corotation_ = Corotation(particles(), frozen_at_, x);
-  if (whole_) whole_->update(x, whole_gradients(x), own_elements_);
-  if (repulsion_) repulsion_->update(x, own_elements_);
+  loads_.linearise(x, load_sums(x));
   if (viscous_) linearised_viscous_->update(x, own_elements_);
   if (area_) area_->place(x);
   if (interface_) {
@@ -115,10 +114,10 @@ Net Capsule::inflation(const Net& c) {
 Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
-  if (whole_) whole_->add_turning(delta, h);
-  if (repulsion_) repulsion_->add_tangent(delta, h), rigid_.clear(h);
+  loads_.add_tangent(delta, h);
+  rigid_.clear(h);
   replicate_sums(h);
-  if (whole_) whole_->add_stretching(delta, h);
+  loads_.add_global_tangent(delta, h);
   if (work.size() > 0) h += work;
   const Net f = solved(mass_.reference(), std::move(h));
   Net u = frozen_single_layer(f);

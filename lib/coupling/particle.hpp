@@ -1,6 +1,7 @@
 #pragma once
 // A capsule, drop or rigid body among others.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include "base/types.hpp"
 #include "coupling/rigid_motion.hpp"
 #include "membrane/laws.hpp"
+#include "membrane/load.hpp"
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
 
@@ -29,15 +31,11 @@ struct Particle {
   double radius = 1;                          ///< R_C
   membrane::Material material;
   stokes::Measure measure = stokes::Measure::reference;  ///< of its weak load: (3.7) or (3.6); any of a rigid body
-  double global_area_modulus = 0;             ///< K of its whole area (3.26), force/length
-  double leaf_modulus = 0;                    ///< kbar of the difference between its leaves' areas (3.27), force x length
-  std::optional<double> leaf_difference;      ///< without stress, over that of a sphere of its area; if not given, the unstressed surface's
   std::string interface_motion = "material";  ///< of the control points of a drop
   double interface_speed = 0;                 ///< of its relaxing motion, length/time
   std::optional<double> kept_volume;          ///< V0 to be kept, where it is not that of the initial net: on another mesh
 
-  Vec3 body_force = Vec3::Zero();             ///< on each unit of volume of what deforms: density difference x gravity
-  Net patch_forces;                           ///< virtual work F_A of forces on its membrane, in its own rows; of no rows: none
+  std::vector<std::shared_ptr<membrane::Load>> loads;  ///< in addition to elasticity and bending, on its own space; their work on a body that does not deform pushes it
   std::optional<Rigid> rigid;                 ///< of a body that does not deform; it has no fluid, no membrane and no interface
 
   bool slides() const { return interface_motion != "material"; }

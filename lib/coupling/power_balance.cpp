@@ -61,7 +61,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   std::vector<int> all(space_.elements.size());
   std::iota(all.begin(), all.end(), 0);
   capsule_.membrane().load(x, all, stored);
-  capsule_.add_whole_membrane_load(x, stored);
+  capsule_.loads().add_stored_work(x, stored);
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
     const Particle& particle = capsule_.particles()[p];
     if (particle.rigid) continue;

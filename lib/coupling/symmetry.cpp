@@ -28,21 +28,16 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
   return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
 }
 
-/// Whether the forces of images are the images of forces.
-static bool keeps(const Net& forces, const surface::Image& image) {
-  double defect = 0;
-  for (Eigen::Index a = 0; a < forces.rows(); ++a)
-    defect = std::max(defect, (forces.row(image.point[static_cast<size_t>(a)]) - forces.row(a).cwiseProduct(image.signs.transpose())).norm());
-  return defect <= 1e-10 * forces.norm();
+static bool admit(const LoadList& loads, const surface::Image& image) {
+  return std::ranges::all_of(loads, [&](const auto& load) { return load->admits(image); });
 }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const Vec3& body_force, const Net& patch_forces, const Vec3& wall_normal) {
+                           const stokes::AmbientFlow& flow, const LoadList& loads, const Vec3& wall_normal) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return image.signs.cwiseProduct(body_force) == body_force && image.signs.cwiseProduct(wall_normal) == wall_normal &&
-           keeps(patch_forces, image) &&
+    return image.signs.cwiseProduct(wall_normal) == wall_normal && admit(loads, image) &&
            std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }
@@ -50,7 +45,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 static Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const surface::TubeWall& wall, const Vec3& body_force, const Net& patch_forces) {
+                           const surface::TubeWall& wall, const LoadList& loads) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const Net* around[] = {&wall.net};
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
@@ -58,7 +53,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
       const Vec3 apart = middle(*net) - middle(wall.net);
       return (image.signs.cwiseProduct(apart) - apart).norm() <= 1e-9 * wall.radius();
     };
-    return image.signs[0] > 0 && image.signs.cwiseProduct(body_force) == body_force && keeps(patch_forces, image) &&
+    return image.signs[0] > 0 && admit(loads, image) &&
            std::ranges::all_of(nets, keeps_middle) && surface::image(wall.space, around, image.signs).has_value();
   });
 }

@@ -2,10 +2,13 @@
 // Interface of fields: unknowns on a surface that evolve with it and contribute to its load.
 
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "base/types.hpp"
+#include "membrane/load.hpp"
 #include "spline/space.hpp"
 #include "surface/symmetry.hpp"
 
@@ -62,8 +65,14 @@ class Field {
   /// Returns whether q has one coefficient per control point, a scalar, so that symmetries of the surface apply to it.
   virtual bool of_points() const { return false; }
 
+  /// Returns the values of the columns with which the field is registered, and what snapshots show of it, at the state set last.
+  virtual std::vector<double> values() const { return {}; }
+  virtual std::vector<SurfaceValues> snapshot() const { return {}; }
+
   /// Makes q invariant under the symmetry, to which the state conforms but for round-off.
   virtual void symmetrise(const surface::Symmetry&, Eigen::VectorXd& /*q*/) const {}
 };
+
+using FieldParts = deck::Parts<std::unique_ptr<Field>(const ParticleSurface&)>;
 
 }  // namespace tanktread::membrane

@@ -96,4 +96,22 @@ Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed)
   return work;
 }
 
+/// Whether the forces of images are the images of forces.
+bool PatchLoad::admits(const surface::Image& image) const {
+  double defect = 0;
+  for (Eigen::Index a = 0; a < work_.rows(); ++a)
+    defect = std::max(defect, (work_.row(image.point[static_cast<size_t>(a)]) - work_.row(a).cwiseProduct(image.signs.transpose())).norm());
+  return defect <= 1e-10 * work_.norm();
+}
+
+RigidConditions PatchLoad::rigid_conditions() const {
+  RigidConditions all(0, 6);
+  for (const PatchForce& one : forces_) {
+    const RigidConditions more = fixed_direction(one.force);
+    all.conservativeResize(all.rows() + more.rows(), 6);
+    all.bottomRows(more.rows()) = more;
+  }
+  return all;
+}
+
 }  // namespace tanktread::membrane

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "membrane/load.hpp"
 #include "spline/space.hpp"
 
 namespace tanktread::deck {
@@ -40,6 +41,21 @@ struct PatchForces {
   /// Their virtual work for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3), where
   /// int w dGamma_0 = 1 by the rule that is used: the rows add up to the forces to rounding. Throws UserError for a patch without membrane.
   Net virtual_work(const spline::Space& space, const Net& unstressed) const;
+};
+
+/// Patch forces as a load: their virtual work does not depend on the shape.
+class PatchLoad : public Load {
+ public:
+  PatchLoad(const PatchForces& forces, const spline::Space& space, const Net& unstressed)
+      : forces_(forces.all), work_(forces.virtual_work(space, unstressed)) {}
+
+  void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& work) const override { work -= work_; }
+  bool admits(const surface::Image& image) const override;
+  RigidConditions rigid_conditions() const override;
+
+ private:
+  std::vector<PatchForce> forces_;
+  Net work_;
 };
 
 }  // namespace tanktread::membrane

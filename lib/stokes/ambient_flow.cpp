@@ -39,7 +39,7 @@ AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
 }
 
 AmbientFlow::AmbientFlow(const FlowOptions& options, std::shared_ptr<const DuctFlow> duct)
-    : duct_(std::move(duct)), history_(options.history), steady_(field(options)), field_(steady_), rate_(options.rate()) {
+    : duct_(std::move(duct)), user_(options.user), history_(options.history), steady_(field(options)), field_(steady_), rate_(options.rate()) {
   if ((options.type == "duct") != static_cast<bool>(duct_))
     throw std::invalid_argument("the flow of type `duct`, and no other, needs a duct");
 }
@@ -67,23 +67,31 @@ std::vector<AmbientFlow> AmbientFlow::directions() const {
 /// Turned by Q about the origin, with an amplitude a.
 AmbientFlow AmbientFlow::turned(const Mat3& q, double a) const {
   AmbientFlow flow = *this;
+  flow.moment_ = {a, q};
   flow.field_ = {a * q * field_.velocity, a * q * field_.gradient * q.transpose(), a * q * field_.direction, q * field_.curvature * q.transpose()};
   return flow;
 }
 
 Vec3 AmbientFlow::velocity(const Vec3& x) const {
   if (duct_) return moment_.amplitude * duct_->velocity(x);
+  if (user_) return moment_.amplitude * moment_.turn * user_->velocity(moment_.turn.transpose() * x);
   const Vec3 v = field_.velocity + field_.gradient * x;
   return affine() ? v : Vec3(v + x.dot(field_.curvature * x) * field_.direction);
 }
 
 Mat3 AmbientFlow::gradient(const Vec3& x) const {
   if (duct_) return moment_.amplitude * duct_->gradient(x);
+  if (user_) return moment_.amplitude * moment_.turn * user_->gradient(moment_.turn.transpose() * x) * moment_.turn.transpose();
   return affine() ? field_.gradient : Mat3(field_.gradient + 2 * field_.direction * (field_.curvature * x).transpose());
 }
 
 Net AmbientFlow::velocities(const Net& x) const {
   if (duct_) return moment_.amplitude * duct_->velocities(x);
+  if (user_) {
+    Net v(x.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = velocity(x.row(i).transpose()).transpose();
+    return v;
+  }
   Net v = (x * field_.gradient.transpose()).rowwise() + field_.velocity.transpose();
   if (!affine()) v += (x * field_.curvature).cwiseProduct(x).rowwise().sum() * field_.direction.transpose();
   return v;

@@ -21,7 +21,7 @@ namespace tanktread::stokes {
 ///   linear               L as given;   uniform   v_0 as given;   quiescent   0
 ///   parabolic            maximum velocity (1 - (x2^2 + x3^2)/half width^2, 0, 0), or without x2
 ///
-/// or any of them with an amplitude, and but for the duct a direction, that change in time (FlowHistory).
+/// or a registered one (UserFlow), or any of them with an amplitude, and but for the duct a direction, that change in time (FlowHistory).
 class AmbientFlow {
  public:
   AmbientFlow() = default;  ///< quiescent
@@ -46,9 +46,9 @@ class AmbientFlow {
   std::vector<Mat3> gradients(const Net& x) const;
 
   /// Whether the gradient is the same everywhere.
-  bool affine() const { return !duct_ && steady_.direction.isZero(0); }
+  bool affine() const { return user_ ? user_->affine() : !duct_ && steady_.direction.isZero(0); }
 
-  /// The quadratic part of (2.20): d and H, both 0 of an affine flow.
+  /// The quadratic part of (2.20): d and H, both 0 of an affine flow, and of a registered one, which need not be quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
@@ -71,6 +71,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
+  std::shared_ptr<const UserFlow> user_;  // in place of the field
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // at amplitude 1, and now
   FlowHistory::Moment moment_;

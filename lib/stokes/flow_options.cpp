@@ -1,6 +1,8 @@
 #include "stokes/flow_options.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/errors.hpp"
 #include "base/small_matrices.hpp"
@@ -9,9 +11,10 @@
 namespace tanktread::stokes {
 
 void FlowOptions::declare(deck::Section& section) {
+  deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
+  if (registered) std::ranges::copy(registered->names(), std::back_inserter(types));
   section.key(
-      "type", type,
-      deck::Choice{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"},
+      "type", type, types,
       "ambient flow: `simple shear` is rate (x3, 0, 0), in a straight Tube too, whose wall goes along with it then, `planar hyperbolic` "
       "rate (x1, 0, -x3), `uniaxial extension` rate (-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, "
       "`uniform` by `velocity`, `parabolic` along x1 with `profile`, `maximum velocity` and `half width`, without a wall, `duct` along x1 "
@@ -35,10 +38,23 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("maximum velocity", maximum_velocity, deck::positive(), "length/time", "of the `parabolic` flow, on its axis; 1 if not given");
   section.key("half width", half_width, deck::positive(), "length",
               "of the `parabolic` flow: distance from the axis or mid-plane at which its velocity vanishes");
+  if (registered) declare_registered(section);
   if (section.given("history") || section.documenting()) {
     history.emplace();
     section.section("history", *history, "how the flow changes in time; without this list it does not");
     if (section.documenting()) history.reset();
+  }
+}
+
+/// Reads the section of a registered type, and refuses sections of other ones.
+void FlowOptions::declare_registered(deck::Section& section) {
+  user.reset();
+  for (const std::string& name : registered->names()) {
+    if (name != type && section.given(name))
+      throw UserError(section.path(name) + " belongs to Flow/type `" + name + "`, but Flow/type is `" + type + "`.");
+    if (name != type && !section.documenting()) continue;
+    const auto make = registered->read(section, name);
+    if (name == type) user = make();
   }
 }
 
@@ -57,6 +73,8 @@ void FlowOptions::check() const {
   belongs("half width", half_width.has_value(), "parabolic");
   if (held != "flow rate" && type != "duct")
     throw UserError("Flow/held `" + held + "` and Flow/type `" + type + "` contradict each other: it belongs to `duct`.");
+  if (user && shear_rate != 1.0)
+    throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: that flow has keys of its own, in Flow/" + type + ".");
   const bool own_speed = type == "duct" || type == "parabolic";
   if (own_speed && shear_rate != 1.0)
     throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: give Flow/" + (type == "duct" ? "mean" : "maximum") +
@@ -76,6 +94,7 @@ void FlowOptions::check() const {
 
 double FlowOptions::rate() const {
   if (type == "quiescent" || type == "uniform" || type == "duct") return 0.0;
+  if (user) return user->rate();
   if (type == "linear") return largest_stretch(gradient.value());
   if (type == "parabolic") return *maximum_velocity / half_width.value();
   return shear_rate;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "base/types.hpp"
 #include "stokes/flow_history.hpp"
+#include "stokes/user_flow.hpp"
 
 namespace tanktread::deck {
 class Section;
@@ -15,7 +17,7 @@ namespace tanktread::stokes {
 /// The ambient flow and the outer fluid: `Flow/*` of the deck. The plane of the flow is x1 x3.
 struct FlowOptions {
   std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear,
-                                      ///< parabolic, duct
+                                      ///< parabolic, duct, or a registered one
   double shear_rate = 1.0;            ///< rate of every flow with a gradient but `linear` and `parabolic`, units 1/time
   double viscosity = 1.0;             ///< mu of the outer fluid
   std::optional<double> roll_parameter;  ///< a of (P-48); set for `four-roll`
@@ -28,6 +30,8 @@ struct FlowOptions {
   std::optional<double> maximum_velocity;  ///< of `parabolic`, at x2 = x3 = 0, units length/time
   std::optional<double> half_width;        ///< of `parabolic`: where the velocity vanishes, units length
   std::optional<FlowHistory> history;      ///< how the flow changes in time; none: not at all
+  const UserFlows* registered = nullptr;   ///< further types, with keys in `Flow/<type>`; null: none
+  std::shared_ptr<const UserFlow> user;    ///< set for a registered type
 
   void declare(deck::Section& section);
 
@@ -40,6 +44,9 @@ struct FlowOptions {
 
   /// The velocity of Ca = mu speed/G_s: rate times the particle's radius R_C, in a duct the mean velocity. Units length/time.
   double speed(double radius) const;
+
+ private:
+  void declare_registered(deck::Section& section);
 };
 
 }  // namespace tanktread::stokes

@@ -4,7 +4,10 @@ import os
 import pathlib
 import subprocess
 
-from harness import PROGRAM, SOURCE, check, main
+import h5py
+import numpy as np
+
+from harness import PROGRAM, SOURCE, check, close, main
 
 
 def _done(*words, **more):
@@ -47,11 +50,79 @@ def options_keys_and_words_are_completed():
     check("red-cell" in completed("tanktread --new r"), completed("tanktread --new r"))
 
 
-def another_project_links_the_library():
-    place, _ = _installed()
+def _package(place):
     _done("cmake", "-S", SOURCE / "tests/package", "-B", "build", f"-DCMAKE_PREFIX_PATH={place}")
-    _done("cmake", "--build", "build")
+    _done("cmake", "--build", "build", "--parallel", "2")
+
+
+def another_project_links_the_library_and_adds_parts():
+    place, _ = _installed()
+    _package(place)
     check(abs(float(_done("build/sphere")) - 1) < 1e-4, "volume of a sphere")
+    for name, *part in PARTS:
+        _adds_a_part(pathlib.Path("build", name).resolve(), name, *part)
+
+
+def _deck(flow, membrane, time, more=""):
+    return f"""Tanktread:
+  Flow: {{ {flow} }}
+  Particle: {{ center: [0.3, 0, 0] }}
+  Membrane: {{ shear modulus: 1{membrane} }}
+  Surface: {{ elements per side: 3 }}
+  Time: {{ {time}, final time: 0.4 }}
+  Output: {{ interval: 0.1{more} }}
+"""
+
+
+def _draws_to_its_center(of):
+    close(of["trap_force"][0], 0.2 * 4 * np.pi * 0.3, 1e-3, "force of the trap")  # k x area x distance
+    check((np.diff(of["trap_potential"]) < 0).all() and of["centroid_x1"][-1] < 0.3, of["trap_potential"], of["centroid_x1"])
+
+
+def _follows_the_area(of):
+    time, q = of["time"], of["reflex"]
+    rate = (of["area"] / of["area"][0] - 1 - q) / 0.5
+    close(q[-1], np.sum(np.diff(time) * (rate[1:] + rate[:-1]) / 2), 0.02 * q[-1], "integral of the rate")
+    check(q[0] == 0 and q[-1] > 1e-3, q)
+
+
+def _goes_round(of):
+    close(of["velocity_x1"][0], 3 / np.hypot(3, 0.3) ** 3, 1e-3, "velocity in the flow of the rotlet")
+    check(of["velocity_x3"][0] < -0.01, of["velocity_x3"])
+
+
+PARTS = [
+    ("load", _deck("type: quiescent", ", loads: { trap: { stiffness: 0.2 } }", "scheme: tr-bdf2"), "Membrane/loads/trap/stiffness=3", _draws_to_its_center),
+    ("field", _deck("type: uniaxial extension", "", "scheme: bdf3") + "  Interface: { fields: { reflex: { response time: 0.5, tension: 2 } } }\n",
+     "Interface/fields/reflex/tension=3", _follows_the_area),
+    ("flow", _deck("type: rotlet, rotlet: { strength: [0, 1, 0] }", "", "tolerance: 1e-4"), "Flow/rotlet/strength=[0, 2, 0]", _goes_round),
+]
+
+
+def _series(results):
+    with h5py.File(pathlib.Path(results, "run.h5")) as file:
+        return {name: data[:] for name, data in file["series"].items()}
+
+
+def _adds_a_part(program, name, deck, setting, judge):
+    """Runs a deck with a key of the part, from start to end and with a stop in the middle; the two agree to the last bit."""
+    path = pathlib.Path(f"{name}.yaml")
+    path.write_text(deck)
+    key = setting.split("=")[0].rsplit("/", 1)[-1]
+    for manual in ("--schema", "--reference"):
+        check(f"`{key}`" in _done(program, manual) or f'"{key}":' in _done(program, manual), name, manual, key)
+    refused = subprocess.run([PROGRAM, path, "--check"], capture_output=True, text=True)
+    check(refused.returncode == 2, name, "is known to the program without the part", refused.stderr)
+    _done(program, path, "--output", f"{name}_whole", "--quiet")
+    _done(program, path, "--output", f"{name}_parts", "--quiet", "--set", "Time/final time=0.2")
+    other = subprocess.run([program, "--resume", f"{name}_parts", "--quiet", "--set", setting], capture_output=True, text=True)
+    check(other.returncode == 2 and "cannot change" in other.stderr, name, setting, other.stderr)
+    _done(program, "--resume", f"{name}_parts", "--quiet", "--set", "Time/final time=0.4")
+    whole, parts = _series(f"{name}_whole"), _series(f"{name}_parts")
+    check(whole.keys() == parts.keys(), whole.keys(), parts.keys())
+    for column, values in whole.items():
+        check(column == "wall_seconds" or values.tobytes() == parts[column].tobytes(), name, column, values, parts[column])
+    judge(whole)
 
 
 main()

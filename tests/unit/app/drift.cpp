@@ -1,3 +1,4 @@
+#include "app/body.hpp"
 #include "app/free_motions.hpp"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/body.hpp"
 #include "app/free_motions.hpp"
 #include "deck/document.hpp"
 
@@ -15,7 +16,13 @@ std::size_t free_number(const std::string& lists) {
   deck::Document document = deck::read({}, {"Time/final time=1"}, "Tanktread:\n" + lists);
   document.declare(scene);
   scene.check();
-  return free_motions(scene, stokes::AmbientFlow(scene.flow), 1).size();
+  std::vector<std::unique_ptr<Body>> bodies;
+  std::vector<coupling::Particle> particles;
+  for (const Scene& one : scene.alone()) {
+    bodies.push_back(std::make_unique<Body>(body(one)));
+    particles.emplace_back().loads = loads(one, *bodies.back(), nullptr);
+  }
+  return free_motions(scene, stokes::AmbientFlow(scene.flow), 1, particles).size();
 }
 
 const std::string still_fluid = "  Flow: {type: quiescent}\n", with_gravity = "  Flow: {type: quiescent, gravity: [0, 0, -1]}\n",

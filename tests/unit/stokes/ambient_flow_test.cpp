@@ -1,6 +1,8 @@
 #include "stokes/ambient_flow.hpp"
 
+#include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -91,11 +93,38 @@ TEST(FlowHistory, OfATableIsStraightBetweenItsTimesAndJumpsWhereTwoAreEqual) {
   EXPECT_EQ(history.next_kink(2), std::numeric_limits<double>::infinity());
 }
 
+/// A source of vorticity at (0, 0, 2).
+struct Rotlet : UserFlow {
+  static Vec3 from(const Vec3& at) { return at - Vec3(0, 0, 2); }
+  Vec3 velocity(const Vec3& at) const override { return Vec3(from(at)[2], 0, -from(at)[0]) / std::pow(from(at).norm(), 3); }
+  Mat3 gradient(const Vec3& at) const override {
+    Mat3 turn = Mat3::Zero();
+    turn(0, 2) = 1, turn(2, 0) = -1;
+    return turn / std::pow(from(at).norm(), 3) - 3 * turn * from(at) * from(at).transpose() / std::pow(from(at).norm(), 5);
+  }
+  double rate() const override { return 0.125; }
+};
+
+FlowOptions rotlet() {
+  FlowOptions options = flow("rotlet", 1);
+  options.user = std::make_shared<Rotlet>();
+  return options;
+}
+
+TEST(AmbientFlow, OfAnotherProgramIsTakenAsItIs) {
+  const AmbientFlow f(rotlet());
+  EXPECT_EQ(f.velocity(x), Rotlet().velocity(x));
+  EXPECT_EQ(f.velocities(Net(x.transpose())).row(0), Rotlet().velocity(x).transpose());
+  EXPECT_EQ(f.gradients(Net(x.transpose())).front(), Rotlet().gradient(x));
+  EXPECT_EQ(f.rate(), 0.125);
+  EXPECT_FALSE(f.affine());
+}
+
 TEST(FlowHistory, MakesAnyFlowTheSameOneTurnedAndMoreOrLess) {
   FlowOptions uniform = flow("uniform"), roll = flow("four-roll");
   uniform.velocity = Vec3(1, 2, 3);
   roll.roll_parameter = 0.6;
-  for (FlowOptions options : {uniform, roll, flow("simple shear"), parabolic("plane")}) {
+  for (FlowOptions options : {uniform, roll, flow("simple shear"), parabolic("plane"), rotlet()}) {
     const AmbientFlow steady(options);
     options.history = stopped();
     AmbientFlow f(options);

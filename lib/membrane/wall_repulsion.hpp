@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "membrane/load.hpp"
 #include "spline/space.hpp"
 
-namespace tanktread::coupling {
+namespace tanktread::membrane {
 
 /// The wall around the axis x1, and what it does: per unstressed area the energy stress x range x exp(-g/range), where
 /// g = radius(x1) - sqrt(x2^2 + x3^2). (3.22)
@@ -17,22 +18,19 @@ struct Repulsion {
   double stress = 0, range = 1;
 };
 
-/// Its load on the membranes of a space, and the part of its tangent that is stiff, along the normals. Serial; `elements` as of Membrane::load.
-class WallRepulsion {
+/// The load on a membrane. Its tangent has the stiff part only, along the normals of the wall.
+class WallRepulsion : public Load {
  public:
   /// `space` must outlive this.
   WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion);
 
-  double energy(const Net& x, std::span<const int> elements) const;
-
-  /// Adds dE/dx_A to d.
-  void add_load(const Net& x, std::span<const int> elements, Net& d) const;
-
-  /// Linearises at x on these elements.
-  void update(const Net& x, std::span<const int> elements);
-
-  /// Adds H u.
-  void add_tangent(const Net& u, Net& hu) const;
+  double potential(const Net& x, std::span<const int> elements) const;  ///< energy (3.22), force x length; the membrane does not store it
+  void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> sums) const override;
+  void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
+  void add_tangent(const Net& dx, Net& change) const override;
+  bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }  // along the axis only; the caller compares the wall
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }      // motions in a tube are those along it
+  bool depends_on_labels() const override { return false; }
 
  private:
   struct Place {
@@ -47,7 +45,7 @@ class WallRepulsion {
   Repulsion repulsion_;
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // of the functions of an element, a row a Gauss point
   std::vector<Eigen::VectorXd> area_;                                                          // unstressed, of each Gauss point
-  std::vector<Place> latest_;                                                                  // of update
+  std::vector<Place> latest_;                                                                  // of linearise
 };
 
-}  // namespace tanktread::coupling
+}  // namespace tanktread::membrane

@@ -1,4 +1,4 @@
-#include "coupling/wall_repulsion.hpp"
+#include "membrane/wall_repulsion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
 
-namespace tanktread::coupling {
+namespace tanktread::membrane {
 
 WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion)
     : space_(space), repulsion_(std::move(repulsion)) {
@@ -44,13 +44,13 @@ std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<
   return found;
 }
 
-double WallRepulsion::energy(const Net& x, std::span<const int> elements) const {
+double WallRepulsion::potential(const Net& x, std::span<const int> elements) const {
   double sum = 0;
   for (const Place& at : places(x, elements)) sum += at.energy;
   return sum;
 }
 
-void WallRepulsion::add_load(const Net& x, std::span<const int> elements, Net& d) const {
+void WallRepulsion::add_work(const Net& x, std::span<const int> elements, Net& d, std::span<Net> /*sums*/) const {
   for (const Place& at : places(x, elements)) {
     const std::vector<int>& points = space_.elements[static_cast<std::size_t>(at.element)].points;
     for (std::size_t a = 0; a < points.size(); ++a)
@@ -58,7 +58,7 @@ void WallRepulsion::add_load(const Net& x, std::span<const int> elements, Net& d
   }
 }
 
-void WallRepulsion::update(const Net& x, std::span<const int> elements) { latest_ = places(x, elements); }
+void WallRepulsion::linearise(const Net& x, std::span<const int> elements, std::span<const Net> /*sums*/) { latest_ = places(x, elements); }
 
 void WallRepulsion::add_tangent(const Net& u, Net& hu) const {
   for (const Place& at : latest_) {
@@ -70,4 +70,4 @@ void WallRepulsion::add_tangent(const Net& u, Net& hu) const {
   }
 }
 
-}  // namespace tanktread::coupling
+}  // namespace tanktread::membrane

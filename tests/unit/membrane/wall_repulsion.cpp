@@ -1,4 +1,4 @@
-#include "coupling/wall_repulsion.hpp"
+#include "membrane/wall_repulsion.hpp"
 
 #include <numeric>
 
@@ -8,7 +8,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
 
-namespace tanktread::coupling {
+namespace tanktread::membrane {
 namespace {
 
 /// A unit sphere in a channel that narrows and widens, its wall nowhere far.
@@ -25,11 +25,11 @@ struct Sphere {
 TEST(WallRepulsion, LoadIsTheGradientOfTheEnergy) {
   const Sphere of;
   Net d = Net::Zero(of.x.rows(), 3);
-  of.repulsion.add_load(of.x, of.elements, d);
+  of.repulsion.add_work(of.x, of.elements, d, {});
   std::srand(1);
   for (int k = 0; k < 3; ++k) {
     const Net u = Net::Random(of.x.rows(), 3);
-    const double h = 1e-5, slope = (of.repulsion.energy(of.x + h * u, of.elements) - of.repulsion.energy(of.x - h * u, of.elements)) / (2 * h);
+    const double h = 1e-5, slope = (of.repulsion.potential(of.x + h * u, of.elements) - of.repulsion.potential(of.x - h * u, of.elements)) / (2 * h);
     EXPECT_NEAR((d.array() * u.array()).sum(), slope, 1e-7 * d.norm() * u.norm());  // differences, of the wall's slope too
   }
   EXPECT_GT(d.norm(), 0.1);
@@ -38,7 +38,7 @@ TEST(WallRepulsion, LoadIsTheGradientOfTheEnergy) {
 // What the tangent leaves out, the turn of the normals, is of the order of the range over the radius.
 TEST(WallRepulsion, TangentIsSymmetricAndAllButTheDerivativeOfTheLoad) {
   Sphere of;
-  of.repulsion.update(of.x, of.elements);
+  of.repulsion.linearise(of.x, of.elements, {});
   std::srand(2);
   const Net u = Net::Random(of.x.rows(), 3), v = Net::Random(of.x.rows(), 3);
   Net hu = Net::Zero(of.x.rows(), 3), hv = hu, ahead = hu, behind = hu;
@@ -47,8 +47,8 @@ TEST(WallRepulsion, TangentIsSymmetricAndAllButTheDerivativeOfTheLoad) {
   EXPECT_NEAR((hu.array() * v.array()).sum(), (hv.array() * u.array()).sum(), 1e-12 * hu.norm() * v.norm());
   EXPECT_GT((hu.array() * u.array()).sum(), 0);
   const double h = 1e-5;
-  of.repulsion.add_load(of.x + h * u, of.elements, ahead);
-  of.repulsion.add_load(of.x - h * u, of.elements, behind);
+  of.repulsion.add_work(of.x + h * u, of.elements, ahead, {});
+  of.repulsion.add_work(of.x - h * u, of.elements, behind, {});
   EXPECT_LT((hu - (ahead - behind) / (2 * h)).norm(), 0.15 * hu.norm());
 }
 
@@ -56,11 +56,11 @@ TEST(WallRepulsion, PartsAddUpToTheWhole) {
   const Sphere of;
   const std::span<const int> all(of.elements);
   Net whole = Net::Zero(of.x.rows(), 3), parts = whole;
-  of.repulsion.add_load(of.x, all, whole);
-  of.repulsion.add_load(of.x, all.first(40), parts);
-  of.repulsion.add_load(of.x, all.subspan(40), parts);
+  of.repulsion.add_work(of.x, all, whole, {});
+  of.repulsion.add_work(of.x, all.first(40), parts, {});
+  of.repulsion.add_work(of.x, all.subspan(40), parts, {});
   EXPECT_EQ(whole, parts);
 }
 
 }  // namespace
-}  // namespace tanktread::coupling
+}  // namespace tanktread::membrane

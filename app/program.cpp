@@ -1,0 +1,260 @@
+#include "app/program.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "app/new_deck.hpp"
+#include "app/plan.hpp"
+#include "app/provenance.hpp"
+#include "app/results.hpp"
+#include "app/scene.hpp"
+#include "app/series.hpp"
+#include "app/signals.hpp"
+#include "app/simulation.hpp"
+#include "base/errors.hpp"
+#include "coupling/agreement.hpp"
+#include "coupling/ranks.hpp"
+#include "coupling/solver_trial.hpp"
+#include "deck/document.hpp"
+#include "deck/words.hpp"
+#include "motion/guarded.hpp"
+#include "output/checksum.hpp"
+
+namespace tanktread {
+
+namespace {
+
+enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 4
+
+struct Arguments {
+  std::vector<std::string> decks, settings;
+  std::string output, resume, new_deck;
+  bool overwrite = false, check = false, reference = false, reference_series = false, schema = false, quiet = false, no_expect = false;
+};
+
+void state(CLI::App& app, Arguments& arguments) {
+  app.footer(
+      "An Expect binds the deck that states it: where an overlay or --set on top changes a key that results depend on, and does not state that\n"
+      "Expect again, a miss is reported and does not fail the run.\n"
+      "Exit codes: 0 done, and every Expect that binds met; 1 one was missed; 2 a mistake in the deck or here; 3 the run failed; "
+      "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it. Open MPI's mpirun answers any code but 0 with a "
+      "page of its own and a wait of seconds: `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
+  app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
+  app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
+  const auto directory = [](const std::string& name) {
+    return name.starts_with('-') ? "must be followed by a directory, but " + name + " is an option (a directory of that name is ./" + name + ")" : "";
+  };
+  app.add_option("--output", arguments.output,
+                 "where results go (default: results/<deck name>, followed by what is laid over it: _<overlay name>, _<key>=<value>)")
+      ->check(directory, "");
+  app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
+  app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
+  app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory")->check(directory, "");
+  app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
+  app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
+  app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
+  app.add_flag("--schema", arguments.schema, "print a JSON schema of decks, by which editors complete keys and show their meaning");
+  app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
+      ->check(CLI::IsMember(kinds_of_decks()), "");
+  app.add_flag("--quiet", arguments.quiet, "no progress bar");
+  app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
+}
+
+bool portable(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '='; }
+
+std::string stem(const std::string& path) { return std::filesystem::path(path).stem(); }
+
+/// Of the directory of a run's results: `<deck>_<overlay>_<key>=<value>`, of files the name without its ending, of a key its last part, with `_` for
+/// all but letters, digits and `.-=`. A name above 100 characters is cut, and ends with a checksum of what it stands for.
+std::string default_name(const std::vector<std::string>& decks, const std::vector<std::string>& settings) {
+  constexpr std::size_t longest = 100;
+  std::string laid_over;
+  output::Checksum sum;
+  for (const std::string& deck : decks) {
+    sum.add(deck);
+    if (&deck != &decks.front()) laid_over += "_" + stem(deck);
+  }
+  for (const std::string& setting : settings) {
+    sum.add(setting);
+    const std::size_t key = setting.substr(0, setting.find('=')).rfind('/') + 1;
+    laid_over += "_" + setting.substr(key);
+  }
+  std::ranges::replace_if(laid_over, [](char c) { return !portable(c); }, '_');
+  const std::string name = stem(decks.front()) + laid_over;
+  if (laid_over.empty() || name.size() <= longest) return name;
+  const std::string end = "_" + sum.digits();
+  return name.substr(0, longest - end.size()) + end;
+}
+
+/// What may not differ from the deck of the checkpoint, which is read into `scene`.
+void check_changes(const std::string& stored, const deck::Document& now, Scene& scene) {
+  deck::Document before = deck::read_text(stored, "The stored deck");
+  before.declare(scene);
+  auto old_values = before.values();
+  auto new_values = now.values();
+  new_values.insert(old_values.begin(), old_values.end());  // keys that are set no longer
+  for (const auto& [path, value] : new_values)
+    if (old_values[path] != value && !may_change_on_resume(path))
+      throw UserError(path + " cannot change when a run goes on: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
+                      ", and now is " + value + ".");
+}
+
+/// A file or directory that a deck names: what the run that goes on has kept of it, from where the program was started, or beside a deck; as it is
+/// named where there is none.
+std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
+  const std::filesystem::path path(name);
+  std::vector<std::filesystem::path> places;
+  if (!arguments.resume.empty()) places.push_back(std::filesystem::path(arguments.resume) / kept);
+  places.push_back(path);
+  for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
+  for (const auto& place : places)
+    if (std::error_code error; std::filesystem::exists(place, error)) return place.string();
+  return name;
+}
+
+/// A file that the run keeps by the name `kept`.
+void find(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
+  file = found(file, kept, arguments);
+  scene.files.emplace_back(file, kept);
+}
+
+/// The files that a particle's shapes and copies come from.
+void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
+  surface::ParticleShape& shape = kind.particle.shape;
+  if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
+  if (shape.file) find(*shape.file, kept_surface(kind), arguments, scene);
+  if (auto& file = kind.membrane.stress_free_file) find(*file, kept_stress_free(kind), arguments, scene);
+  shape.read();
+  auto& initial = shape.initial;
+  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has what became of it
+  if (initial)
+    for (auto* name : {&initial->file, &initial->run})
+      if (*name) *name = found(**name, {}, arguments);
+}
+
+int run(const Arguments& arguments, const Registry& registry, bool speaks) {
+  if (arguments.reference) {
+    if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene(registry));
+    return done;
+  }
+  if (arguments.reference_series) {
+    if (speaks) std::cout << series_manual();
+    return done;
+  }
+  if (arguments.schema || !arguments.new_deck.empty()) {
+    if (speaks) std::cout << (arguments.schema ? deck::schema(Scene(registry)) : new_deck(arguments.new_deck));
+    return done;
+  }
+  const bool resume = !arguments.resume.empty();
+  if (arguments.decks.empty() && !resume)
+    throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
+  if (resume && !arguments.output.empty())
+    throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
+  if (resume && arguments.overwrite) throw UserError("--overwrite and --resume contradict each other: one deletes what the other goes on from.");
+
+  const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
+  Scene scene(registry), before(registry);
+  deck::Document deck = deck::read(arguments.decks, arguments.settings, stored, arguments.no_expect ? "--no-expect" : "");
+  deck.declare(scene);
+  if (resume) check_changes(stored, deck, before);
+  if (auto& outline = scene.tube.outline) find(*outline, kept_name(*outline), arguments, scene);
+  if (auto& channel = scene.tube.channel; channel && channel->points) find(*channel->points, kept_name(*channel->points), arguments, scene);
+  if (auto& history = scene.flow.history; history && history->file) {
+    find(*history->file, kept_flow_history, arguments, scene);
+    history->read();
+  }
+  find_shapes(scene, arguments, scene);
+  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
+  if (scene.domain.present) scene.domain.check(scene.flow);
+  scene.particles = with_copies(scene.particles, scene.domain);
+  scene.check();
+  coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
+  for (const std::string& sentence : check_expectations(scene))
+    if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
+
+  if (arguments.check) {
+    const std::string chosen = plan_text(plan(scene, coupling::Ranks().size()));
+    if (speaks) std::cout << deck.effective() << "\n" << chosen;
+    return done;
+  }
+  RunRequest request;
+  request.output = resume                     ? arguments.resume
+                   : arguments.output.empty() ? "results/" + default_name(arguments.decks, arguments.settings)
+                                              : arguments.output;
+  request.resume = resume;
+  request.overwrite = arguments.overwrite;
+  request.another_scheme = resume && before.time.scheme != scene.time.scheme;
+  request.quiet = arguments.quiet;
+  request.deck_text = deck.effective();
+  return simulate(scene, request);
+}
+
+/// Throws RunFailure when something did not get onto standard output.
+void check_output() {
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw RunFailure(std::string("cannot write to standard output: ") + std::strerror(errno));
+}
+
+/// One line of bearable length, whatever the message holds.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return deck::shortened(text, 1000);
+}
+
+/// The whole program on one rank; only the first one speaks. `message`: what an error is, for others.
+int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::string& message) {
+  const auto report = [speaks, &message](const char* text, int code) {
+    message = one_line(text);
+    if (speaks) std::cerr << "tanktread: " << message << std::endl;
+    return code;
+  };
+  try {
+    Arguments arguments;
+    CLI::App app("Deformable capsules and drops in viscous flow, by isogeometric boundary elements.", "tanktread");
+    state(app, arguments);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() != 0) return report(error.what(), mistake);
+      if (!speaks) return done;
+      app.exit(error);  // --help, --version
+      check_output();
+      return done;
+    }
+    const int code = run(arguments, registry, speaks);
+    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema ||
+                        !arguments.new_deck.empty();  // and nothing else: a run has its files
+    if (speaks && prints) check_output();
+    return code;
+  } catch (const motion::Stopped&) {
+    return report("stopped by a signal before there was anything to keep", stopped);
+  } catch (const UserErrors& errors) {
+    for (const std::string& sentence : errors.all) report(sentence.c_str(), mistake);
+    message = one_line(errors.what());
+    return mistake;
+  } catch (const UserError& error) {
+    return report(error.what(), mistake);
+  } catch (const std::exception& error) {
+    return report(error.what(), failed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv, const Registry& registry) {
+  catch_signals();
+  const coupling::Session session(&argc, &argv);
+  std::string message;
+  const int code = guarded(argc, argv, registry, session.rank() == 0, message);
+  coupling::leave_together(code, message);
+  return code;
+}
+
+}  // namespace tanktread
