@@ -108,7 +108,8 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
 
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {
   coupling::LoadList all;
-  if (wall && scene.tube.repulsion) all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(scene.tube, *wall)));
+  if (wall && scene.tube.repulsion)
+    all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(scene.tube, *wall)));
   if (scene.particle.rigid()) return all;
   const membrane::Options& given = scene.membrane;
   const membrane::WholeStiffness whole{given.global_area_dilatation * body.modulus, given.leaf_modulus * given.bending(body.modulus, body.radius),

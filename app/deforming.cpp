@@ -89,10 +89,7 @@ class Deforming : public ParticleSystem {
 
   coupling::Contacts contacts() const override { return contacts_; }
 
-  void hold_by(const coupling::Contacts& contacts) override {
-    contacts_ = contacts;
-    press();
-  }
+  void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, press(); }
 
   /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
   bool adapt(motion::State& state, RunTotals& totals) override {
@@ -143,9 +140,7 @@ class Deforming : public ParticleSystem {
     return all;
   }
 
-  stokes::Evaluations kernel_evaluations() const override {
-    return kernel_evaluations_ + capsule_->kernel_evaluations();
-  }
+  stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
   Columns row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State& state = fields_->of_shape(whole_state);
@@ -156,12 +151,15 @@ class Deforming : public ParticleSystem {
     std::vector<std::unique_ptr<ParticleRow>> rows;
     for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, state, whole_state.x, columns[p]));
     add_treading(state.x, v, rows);
+    std::vector<RecordedParticle> recorded;
+    for (const Member& member : members_) recorded.push_back({member.body->space, member.own(state.x), member.own(v)});
     Together whole;
     Columns row, of_particles;
     for (std::size_t p = 0; p < members_.size(); ++p) {
       ParticleRow& now = *rows[p];
       if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, progress.step.step, now);
       now.add_columns(members_[p].scene, columns[p]);
+      add_series(members_[p].scene, state.time, recorded[p], columns[p]);
       finish(columns[p]);
       of_particles.append(columns[p], members_[p].column({}));
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
@@ -184,6 +182,7 @@ class Deforming : public ParticleSystem {
     if (scene_.wall.present) wall_row(*scene_.wall.plane(), members_, state.x).add_columns(scene_, row);
     if (scene_.output.power_balance) powers(state).add_columns(row);
     if (scene_.has_gaps() && scene_.contact.limiter) contacts_.add_columns(row);
+    add_series(scene_, state.time, recorded, row);
     finish(row);
     row.append(of_particles);
     return row;

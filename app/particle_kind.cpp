@@ -66,7 +66,8 @@ struct InterfaceList {
   void declare(deck::Section& section) {
     kind.interface.declare(section);
     membrane::SurfactantOptions given;
-    if (section.optional_section("surfactant", given, "an insoluble surfactant on a drop; a clean interface without this list")) kind.surfactant = given;
+    if (section.optional_section("surfactant", given, "an insoluble surfactant on a drop; a clean interface without this list"))
+      kind.surfactant = given;
     kind.fields = kind.registry->fields.read(section, "fields", "fields on the interface or membrane that this program adds, none without this list");
   }
 };

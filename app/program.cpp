@@ -189,7 +189,7 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
     return done;
   }
   if (arguments.reference_series) {
-    if (speaks) std::cout << series_manual();
+    if (speaks) std::cout << series_manual(registry);
     return done;
   }
   if (arguments.schema || !arguments.new_deck.empty()) {

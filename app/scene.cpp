@@ -311,7 +311,8 @@ void check_registered(const Scene& scene) {
   refuse(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "fields are on what deforms");
   if (scene.in_system()) return;
   refuse(!scene.series.empty(), "Output/series", motion, "the one body has a record of its own; give it in a list Particles");
-  refuse(scene.flow.user && !scene.flow.user->affine(), flow, motion, "the one body is solved for in flows of the second degree; give it in a list Particles");
+  refuse(scene.flow.user && !scene.flow.user->affine(), flow, motion,
+         "the one body is solved for in flows of the second degree; give it in a list Particles");
 }
 
 /// Lengths that the mesh must be able to have.
@@ -463,7 +464,8 @@ bool may_change_on_resume(const std::string& path) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
     return (of_particle.starts_with("Interface/") && !of_particle.starts_with("Interface/fields/")) || of_particle.starts_with("Adaptation/");
   }
-  for (const char* fixed : {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Output/series"})
+  for (const char* fixed :
+       {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Output/series"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

@@ -42,7 +42,27 @@ std::size_t rank(const std::string& name) {
   return at == ranks.end() ? ranks.size() : at->second;
 }
 
+/// Adds the columns of registered series of one kind, with their values, or without arguments for their names.
+template <class Series, class... Of>
+void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
+  for (const SeriesParts::Chosen& part : scene.series) {
+    const auto made = part.make();
+    const Series* const series = std::get_if<Series>(&made);
+    if (!series) continue;
+    if constexpr (sizeof...(of) > 0) part.add_columns((*series)(of...), to);
+    else part.add_columns(to);
+  }
+}
+
 }  // namespace
+
+void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to) {
+  add_series_of<ParticleSeries>(scene, to, time, particle);
+}
+
+void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to) {
+  add_series_of<RunSeries>(scene, to, time, particles);
+}
 
 void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
   const bool prescribed = !scene.in_system() && scene.particle.motion == Motion::prescribed;
@@ -78,6 +98,7 @@ Columns run_columns(const Scene& scene, bool every) {
     DomainRow().add_columns(scene, all);
     if (all.when(scene.contact.limiter)) coupling::Contacts().add_columns(all);
   }
+  add_series_of<RunSeries>(scene, all);
   put_in_order(all);
   return all;
 }
@@ -89,7 +110,10 @@ Columns particle_columns(const Scene& one, bool every) {
   } else {
     DeformingRow().add_columns(one, all);
     if (all.when(one.surfactant.has_value())) SurfactantRow().add_columns(all);
+    for (const auto& part : one.loads) part.add_columns(all);
+    for (const auto& part : one.fields) part.add_columns(all);
   }
+  add_series_of<ParticleSeries>(one, all);
   put_in_order(all);
   return all;
 }

@@ -2,6 +2,7 @@
 // The series of a run: columns of its progress, and which columns its rows have in which order.
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/scene.hpp"
@@ -30,6 +31,10 @@ Columns run_columns(const Scene& scene, bool every = false);
 /// Returns the part of one particle of a system, without its name.
 Columns particle_columns(const Scene& one, bool every = false);
 
+/// Adds the columns of registered series: of a particle, or of the run.
+void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to);
+void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to);
+
 /// Puts columns of the program into the order of the manual; columns of parts from outside follow as they were added.
 void put_in_order(Columns& columns);
 
@@ -37,6 +42,6 @@ void put_in_order(Columns& columns);
 void finish(Columns& row);
 
 /// Markdown: series and fields of the results, entries of the summary and numbers of a scene, each with its unit.
-std::string series_manual();
+std::string series_manual(const Registry& registry);
 
 }  // namespace tanktread

@@ -123,7 +123,7 @@ std::string table(const char* heading, const List& list) {
 
 }  // namespace
 
-std::string series_manual() {
+std::string series_manual(const Registry& registry) {
   surface::TubeOptions circle;
   circle.radius = 1;
   std::string text =
@@ -140,6 +140,12 @@ std::string series_manual() {
   const auto [all, owners] = all_columns();
   for (const Column& one : all.all())
     text += line(one.name, one.unit, (one.where.empty() || one.where[0] == ';' ? owners.at(one.name) : "") + one.where, one.description);
+  const auto add = [&text](const std::vector<Column>& columns, const char* of) {
+    for (const Column& one : columns) text += line(one.name, one.unit, of, one.description);
+  };
+  add(registry.loads.columns(), "Membrane/loads");
+  add(registry.fields.columns(), "Interface/fields");
+  add(registry.series.columns(), "Output/series");
   text += "\n## Fields\n\n`/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the picture.\n" + table("field", fields);
   text += "\n## The empty tube\n\n`duct.h5`, of a run in a tube.\n\n| array | unit | what it is |\n|---|---|---|\n";
   for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))

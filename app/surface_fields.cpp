@@ -21,7 +21,8 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
     if (scene.maxwell_membrane())
       all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity(),
                                                                     *scene.membrane.relaxation_time)});
-    for (const auto& part : scene.fields) all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus})});
+    for (const auto& part : scene.fields)
+      all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});
   }
   if (all_.empty()) return;
   std::vector<coupling::CoupledMotion::On> on;
@@ -92,11 +93,16 @@ void SurfactantRow::add_columns(Columns& to) const {
 }
 
 void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
+  const auto& loads = capsule_.particles()[p].loads;
+  const auto& parts = members_[p].scene.loads;  // of the last loads
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {
     const One& one = all_[k];
     if (one.particle != p) continue;
     now.energy += one.field->energy();
     now.dissipation += one.field->dissipation();
+    if (one.part) one.part->add_columns(one.field->values(), to);
     if (!one.surfactant) continue;
     now.tension.smallest = members_[p].scene.surfactant->tension(one.surfactant->largest());
     const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;

@@ -49,7 +49,7 @@ class SurfaceFields {
   /// Passes the state to capsule and fields; to the fields only if the capsule was evaluated within `distance` of it.
   void set_state(const Net& y, double distance = 0);
 
-  /// Adds what the fields of particle p contribute to its row, and their own columns, at the state set last; `y` is that state.
+  /// Adds what the fields of particle p contribute to its row, and the columns of its fields and loads, at the state set last; `y` is that state.
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of all fields' loads if the material moves by v.
   double power(const Net& v) const;
@@ -61,6 +61,7 @@ class SurfaceFields {
     std::size_t particle;
     std::unique_ptr<membrane::Field> field;
     membrane::Surfactant* surfactant = nullptr;  // the field, if it is one
+    const membrane::FieldParts::Chosen* part = nullptr;  // what it is made by, if it is registered
   };
 
   Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);

@@ -35,7 +35,8 @@ struct Particle {
   double interface_speed = 0;                 ///< of its relaxing motion, length/time
   std::optional<double> kept_volume;          ///< V0 to be kept, where it is not that of the initial net: on another mesh
 
-  std::vector<std::shared_ptr<membrane::Load>> loads;  ///< in addition to elasticity and bending, on its own space; their work on a body that does not deform pushes it
+  /// In addition to elasticity and bending, on its own space. The work of loads on a rigid body is force and torque on it.
+  std::vector<std::shared_ptr<membrane::Load>> loads;
   std::optional<Rigid> rigid;                 ///< of a body that does not deform; it has no fluid, no membrane and no interface
 
   bool slides() const { return interface_motion != "material"; }

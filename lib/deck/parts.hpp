@@ -24,7 +24,15 @@ class Parts<Made(On...)> {
   struct Chosen {
     std::string name;
     Maker make;
-    std::vector<Column> columns;  ///< of the record, with the names that they are registered with
+    std::vector<Column> columns;  ///< with which it is registered
+
+    /// Adds its columns to a row. Throws std::logic_error if there are more or fewer values.
+    void add_columns(const std::vector<double>& values, Columns& to) const {
+      if (values.size() != columns.size()) throw std::logic_error(name + " gives another number of values than it has columns");
+      for (std::size_t k = 0; k < values.size(); ++k) to.add(values[k], columns[k]);
+    }
+    /// Adds them without values, for their names.
+    void add_columns(Columns& to) const { add_columns(std::vector<double>(columns.size(), 0.), to); }
   };
 
   /// Adds a part. `Options`: a struct with default values and `declare(Section&)`, which states its keys; `make(options, on...)` makes the part;

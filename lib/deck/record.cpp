@@ -88,8 +88,11 @@ std::string yaml_text(const List& list, int depth) {
   std::string out;
   for (const Entry& entry : list.entries)
     if (!entry.value.empty()) out += indent + name_text(entry.key) + ": " + entry.value + "\n";
-  for (const auto& inner : list.lists)
+  for (const auto& inner : list.lists) {
+    const bool without_keys = inner->given && !inner->foreign && inner->entries.empty() && inner->lists.empty();
     if (const std::string text = yaml_text(*inner, depth + 1); !text.empty()) out += indent + name_text(inner->name) + ":\n" + text;
+    else if (without_keys) out += indent + name_text(inner->name) + ": {}\n";
+  }
   return out;
 }
 

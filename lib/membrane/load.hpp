@@ -64,8 +64,8 @@ class Load {
   /// Returns whether the load of an image is the image of the load. If not, a scene is not reduced by this image.
   virtual bool admits(const surface::Image&) const { return false; }
 
-  /// Returns the conditions, without unit, under which the load moves with a particle that moves rigidly by U + W x r: none for a load that depends on
-  /// the shape only, W x f = 0 for a force of fixed direction f. Searches for steady shapes need them.
+  /// Returns the conditions, without unit, under which the load moves with a particle that moves rigidly by U + W x r: none for a load that depends
+  /// on the shape only, W x f = 0 for a force of fixed direction f. Searches for steady shapes need them.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load depends on which material points are where on the surface.

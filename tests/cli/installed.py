@@ -91,11 +91,19 @@ def _goes_round(of):
     check(of["velocity_x3"][0] < -0.01, of["velocity_x3"])
 
 
+def _measures_the_extent(of):
+    close(of["stretch"][0] / of["length_x1"][0], 1, 0.3, "extent of the control net")
+    check((np.diff(of["stretch"]) > 0).all() and np.allclose(of["fastest_way"], of["fastest"] * of["time"]), of["stretch"], of["fastest_way"])
+
+
+SHEAR = "type: simple shear"
 PARTS = [
     ("load", _deck("type: quiescent", ", loads: { trap: { stiffness: 0.2 } }", "scheme: tr-bdf2"), "Membrane/loads/trap/stiffness=3", _draws_to_its_center),
     ("field", _deck("type: uniaxial extension", "", "scheme: bdf3") + "  Interface: { fields: { reflex: { response time: 0.5, tension: 2 } } }\n",
      "Interface/fields/reflex/tension=3", _follows_the_area),
     ("flow", _deck("type: rotlet, rotlet: { strength: [0, 1, 0] }", "", "tolerance: 1e-4"), "Flow/rotlet/strength=[0, 2, 0]", _goes_round),
+    ("series", _deck(SHEAR, "", "tolerance: 1e-4", ", series: { stretch: { direction: [1, 0, 1] }, fastest: {} }"), "Output/series/stretch/direction=[1, 0, 0]",
+     _measures_the_extent),
 ]
 
 

@@ -76,8 +76,9 @@ class Trap : public membrane::Load {
 
 int main(int argc, char** argv) {
   Registry registry;
-  registry.loads.add<TrapOptions>("trap", "a trap that draws the membrane to a point",
-                                  [](const TrapOptions& options, const membrane::ParticleSurface& surface) { return std::make_unique<Trap>(options, surface); },
-                                  {{"trap_potential", "force length", "potential of the trap"}, {"trap_force", "force", "size of the trap's total force"}});
+  registry.loads.add<TrapOptions>(
+      "trap", "a trap that draws the membrane to a point",
+      [](const TrapOptions& options, const membrane::ParticleSurface& surface) { return std::make_unique<Trap>(options, surface); },
+      {{"trap_potential", "force length", "potential of the trap"}, {"trap_force", "force", "size of the trap's total force"}});
   return tanktread::main(argc, argv, registry);
 }

@@ -1,5 +1,8 @@
 #include "deck/parts.hpp"
 
+#include <cmath>
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "deck/document.hpp"
@@ -12,12 +15,18 @@ struct PowerOptions {
   void declare(Section& section) { section.key("exponent", exponent, positive(), "1", "of the power"); }
 };
 
+struct NoOptions {
+  void declare(Section&) {}
+};
+
 using Functions = Parts<double(double)>;
 
 Functions functions() {
   Functions all;
   all.add<PowerOptions>("power", "x to a power", [](const PowerOptions& options, double x) { return std::pow(x, options.exponent); });
-  all.add<PowerOptions>("root", "a root of x", [](const PowerOptions& options, double x) { return std::pow(x, 1 / options.exponent); }, {{"root", "1", ""}});
+  all.add<PowerOptions>(
+      "root", "a root of x", [](const PowerOptions& options, double x) { return std::pow(x, 1 / options.exponent); }, {{"root", "1", ""}});
+  all.add<NoOptions>("negative", "-x", [](const NoOptions&, double x) { return -x; });
   return all;
 }
 
@@ -42,6 +51,16 @@ TEST(Parts, AreThoseThatTheDeckHasWithKeysOfTheirOwn) {
   EXPECT_EQ(both[0].make(5), 25);
   EXPECT_NEAR(both[1].make(8), 2, 1e-15);
   EXPECT_EQ(both[1].columns.size(), 1u);
+}
+
+TEST(Parts, WithoutKeysStayInTheEffectiveDeck) {
+  Options options, again;
+  Document document = read_text("Tanktread: {functions: {negative: {}}}");
+  document.declare(options);
+  Document effective = read_text(document.effective());
+  effective.declare(again);
+  ASSERT_EQ(again.chosen.size(), 1u);
+  EXPECT_EQ(again.chosen[0].make(5), -5);
 }
 
 TEST(Parts, HaveNoOtherKeysAndNoNameTwice) {
