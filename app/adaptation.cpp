@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "app/gaps.hpp"
-#include "app/tube.hpp"
 #include "coupling/agreement.hpp"
 #include "motion/adaptation.hpp"
 #include "spline/refinement.hpp"
 #include "spline/locate.hpp"
 #include "spline/transfer.hpp"
+#include "surface/geometry.hpp"
 #include "surface/metrics.hpp"
 #include "surface/shapes.hpp"
 
@@ -236,20 +236,19 @@ Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block
   return coarser;
 }
 
-void refine_alone(const Scene& scene, Body& body, Phases& phases, const std::function<Net(const Body& on)>& force_density) {
+void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
   if (!scene.adaptation.enabled) return;
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
-    const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
-    if (around) x = around->in_wall_frame(x);
+    if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];  // where the wall of a straight tube is
     std::vector<Member> only(1);
     only[0].scene = scene;
     only[0].body = std::make_unique<Body>(std::move(body));
     only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
     std::vector<double> widths;
-    if (around || scene.wall.present) widths = films(only, 0, x, {}, around ? &around->wall() : nullptr);
+    if (only[0].body->wall || scene.wall.present) widths = films(only, 0, x, {}, only[0].body->wall.get());
     motion::State state;
     state.x = only[0].body->rest;
     Adapted change = adapted(scene, *only[0].body, only[0].block, state, load, false, widths);

@@ -28,9 +28,9 @@ struct Adapted {
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films);
 
-/// Gives a rigid body that is alone the mesh that Adaptation asks for at its first place, film to a wall included, with its shape fitted again; that
-/// of a body which does not deform is looked at once. `force_density`: control values on a body's mesh there; asked for where
-/// Adaptation limits the error or the variation of the load.
-void refine_alone(const Scene& scene, Body& body, Phases& phases, const std::function<Net(const Body& on)>& force_density);
+/// Refines the mesh of a rigid body that is alone, at its first place, as Adaptation says of its shape, the film to a wall and the traction, and fits
+/// the shape again. The mesh stays from then on, because the body does not deform. `force_density`: control values, shape (N, 3), force/area, on the
+/// mesh that it is given; called only if Adaptation limits the error or the variation of the load. Collective.
+void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

@@ -151,15 +151,14 @@ class Deforming : public ParticleSystem {
     std::vector<std::unique_ptr<ParticleRow>> rows;
     for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, state, whole_state.x, columns[p]));
     add_treading(state.x, v, rows);
-    std::vector<RecordedParticle> recorded;
-    for (const Member& member : members_) recorded.push_back({member.body->space, member.own(state.x), member.own(v)});
+    const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
     Together whole;
     Columns row, of_particles;
     for (std::size_t p = 0; p < members_.size(); ++p) {
       ParticleRow& now = *rows[p];
       if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, progress.step.step, now);
       now.add_columns(members_[p].scene, columns[p]);
-      add_series(members_[p].scene, state.time, recorded[p], columns[p]);
+      if (!recorded.empty()) add_series(members_[p].scene, state.time, recorded[p], columns[p]);
       finish(columns[p]);
       of_particles.append(columns[p], members_[p].column({}));
       whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;

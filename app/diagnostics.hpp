@@ -1,5 +1,5 @@
 #pragma once
-// What is measured on a particle, and the columns of a particle.
+// Measurements on a particle, and its columns in the record.
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ std::vector<std::array<double, n>> gathered(const coupling::Ranks& ranks, const 
   return values;
 }
 
-/// What the row of a moving particle is made of. Vectors are in the axes of space.
+/// Data of a moving particle for one row. Vectors are in the axes of space; units as the columns state.
 struct ParticleRow {
   int n_points = 0;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};

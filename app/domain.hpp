@@ -39,7 +39,7 @@ struct DomainOptions {
 
 struct Scene;
 
-/// What a row holds of the lattice.
+/// Data of the lattice for one row.
 struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< columns: the vectors of the cell
   double volume_fraction = 0, relative_viscosity = 1;

@@ -89,7 +89,7 @@ class Free : public ParticleSystem {
  private:
   static Body refined(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
     Body body = tanktread::body(scene);
-    refine_alone(scene, body, phases, [&](const Body& on) {
+    refine_alone(scene, body, [&](const Body& on) {
       const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
       coupling::Resistance resistance = resistance_of(scene, on, ranks, phases, wall.get());
       const auto free = driven(scene, on, resistance);

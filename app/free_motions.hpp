@@ -22,9 +22,9 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
 /// velocity in motions that no membrane opposes by the step over these times.
 double steady_step(const Scene& scene);
 
-/// Whether the centroid is put back after every step: `Particle/drift`. By itself `held` at the point of rest of an affine flow that draws away
-/// from it (planar hyperbolic, four-roll, extension): whatever rounding displaces grows there like e^(rate t), and carries off a particle whose
-/// shape is steady.
+/// Returns whether the centroid is put back after every step: `Particle/drift`. The default is `held` at the point of rest of an affine flow that
+/// draws away from it (planar hyperbolic, four-roll, extension): whatever rounding displaces grows there like e^(rate t), and carries off a particle
+/// whose shape is steady.
 bool holds_centre(const Scene& scene);
 
 /// Moves the state so that its centroid is at `place`, and the slopes and earlier places of the scheme along: v(x + c) = v(x) + L c in an affine

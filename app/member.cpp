@@ -157,6 +157,13 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
 }
 
+std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v) {
+  std::vector<RecordedParticle> all;
+  for (const Member& member : members)
+    if (!member.scene.series.empty()) all.push_back({member.body->space, member.own(x), member.own(v)});
+  return all;
+}
+
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
   for (const Member& member : members) {
     const Body& body = *member.body;

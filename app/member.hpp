@@ -54,6 +54,9 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube);
 
+/// Returns the particles as registered series see them at x, where the fluids move by v; none if the deck asks for no such series.
+std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v);
+
 /// What a checkpoint holds of them beside the state, and the bodies on the meshes that it holds. Throws std::out_of_range where it lacks a part.
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
 bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< whether any has another mesh now

@@ -13,7 +13,7 @@ namespace tanktread {
 /// Throws UserError, with the numbers, where the body does not start in front of the scene's wall, `Wall/contact gap` at least away from it.
 void check_in_front(const Scene& scene, const Body& body);
 
-/// What a row holds of the wall: the particle that is nearest to it, by its number from 1 in the order of the deck, and its nearest place.
+/// Data of the plane wall for one row: the nearest particle, by its number from 1 in the order of the deck, and the point of it that is nearest.
 struct WallRow {
   double gap = std::numeric_limits<double>::infinity();
   int particle = 0;

@@ -116,7 +116,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   Phases phases = started();
   std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
   Body body = tanktread::body(scene);
-  refine_alone(scene, body, phases, [&](const Body& on) {
+  refine_alone(scene, body, [&](const Body& on) {
     const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
     coupling::Resistance there = resistance_of(scene, on, ranks, phases, wall.get());
     return rigid_solution(scene, on, there, phases, wall.get()).density;

@@ -25,7 +25,7 @@ struct RigidSolution {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What the row of a prescribed body is made of, but for walls.
+/// Data of a prescribed body for its row, without those of walls.
 struct PrescribedRow {
   RigidSolution solution;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};

@@ -72,7 +72,7 @@ class Results {
   /// A sentence about what the run has come near to, on standard error and in the summary.
   void warn(const std::string& sentence);
 
-  /// What a picture shows at the nodes of the present mesh, on the first rank: it can be written after the mesh has changed.
+  /// Fields of a picture at the nodes of the present mesh, on the first rank. They can be written after the mesh has changed.
   struct Sampled {
     double time = 0;
     output::LagrangeMesh mesh;

@@ -121,10 +121,10 @@ struct Scene : ParticleKind {
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is one rigid body and its resistance problem, which
-  /// knows neither the balance of power, nor searches, nor forces of a wall, nor what is told of a body in a flow that changes.
+  /// knows neither the balance of power, nor searches, nor forces of a wall, nor registered series, nor prescribed motion in a flow that changes.
   bool in_system() const {
     return !particles.empty() || !name.empty() || !particle.rigid() || domain.present || output.power_balance || !runs_in_time() ||
-           tube.repulsion || (flow.history && particle.motion == Motion::prescribed);
+           tube.repulsion || !series.empty() || (flow.history && particle.motion == Motion::prescribed);
   }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
   bool has_gaps() const { return !particles.empty() || domain.present; }

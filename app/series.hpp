@@ -12,7 +12,7 @@
 
 namespace tanktread {
 
-/// What a row holds of the progress of a run.
+/// Data of the progress of a run for one row.
 struct ProgressRow {
   motion::StepReport step = {};  ///< that ended here
   double wall_seconds = 0;

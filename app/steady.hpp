@@ -11,7 +11,7 @@
 
 namespace tanktread {
 
-/// What a row holds of a point of a branch, of a periodic motion and of a spectrum.
+/// Data of a branch point, a periodic motion and a spectrum for one row.
 struct SteadyRow {
   motion::BranchPoint point;
   double period = 0;

@@ -17,7 +17,7 @@
 
 namespace tanktread {
 
-/// What a row holds of a particle's surfactant.
+/// Data of a particle's surfactant for one row.
 struct SurfactantRow {
   double mass = 0;                   ///< over the initial one
   double smallest = 0, largest = 0;  ///< concentration over the initial one

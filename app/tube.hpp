@@ -22,7 +22,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
 /// The tube as the body meets it, which is all particles of the scene; nothing without one.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// What a row holds of the tube. Pressure drops of one period of a train.
+/// Data of the tube for one row. Pressure drops are those of one period of a train.
 struct TubeRow {
   double pressure_drop = 0, gap = 0, flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;
   coupling::Tube::Checks checks;

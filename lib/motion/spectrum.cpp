@@ -125,17 +125,9 @@ Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Ne
 class Recognition {
  public:
   Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x)
-      : shapes_(shapes),
-        translations_(rigid_motions(shapes, x, 0)),
+      : translations_(rigid_motions(shapes, x, 0)),
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
-
-  /// What a mode gains of what the motion keeps and this is the gradient of, over its size. All but those of rate 0 gain none: rate x b.d = 0.
-  double gain(const Net& kept, const Eigen::VectorXcd& mode) const {
-    const Net real = shapes_.displacement(mode.real()), imaginary = shapes_.displacement(mode.imag());
-    const double gained = std::hypot(kept.cwiseProduct(real.topRows(kept.rows())).sum(), kept.cwiseProduct(imaginary.topRows(kept.rows())).sum());
-    return gained / (kept.norm() * std::hypot(real.norm(), imaginary.norm()));
-  }
 
   /// What it is where it is not that of the volume.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
@@ -147,9 +139,14 @@ class Recognition {
   }
 
  private:
-  const coupling::ShapeCoordinates& shapes_;
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
+
+/// What a mode gains of what the motion keeps and this is the gradient of, over its size. All but those of rate 0 gain none: rate x b.d = 0.
+double gain(const Net& kept, const Mode& mode) {
+  const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
+  return std::hypot(gained(mode.real), gained(mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
+}
 
 /// As a field on the surface, turned in the complex plane so that it is as real as can be, at its largest 1.
 Mode mode(const coupling::ShapeCoordinates& shapes, const Recognition& recognition, std::complex<double> rate, Eigen::VectorXcd y) {
@@ -230,7 +227,7 @@ std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::Shape
   std::vector<bool> told(modes.size(), false);
   for (std::size_t k = 0; k < kept.size(); ++k) {
     std::vector<double> gains;
-    for (std::size_t i = 0; i < modes.size(); ++i) gains.push_back(told[i] ? 0 : recognition.gain(kept[k], pairs[i].vector));
+    for (std::size_t i = 0; i < modes.size(); ++i) gains.push_back(told[i] ? 0 : gain(kept[k], modes[i]));
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
