@@ -4,6 +4,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "scene/series/diagnostics.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread {

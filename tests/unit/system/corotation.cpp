@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "tests/unit/coupling/sphere_in_flow.hpp"
+#include "tests/unit/system/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "system/collocation.hpp"
-#include "tests/unit/coupling/sphere_in_flow.hpp"
+#include "tests/unit/system/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace {

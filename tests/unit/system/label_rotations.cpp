@@ -8,7 +8,7 @@
 
 #include "system/collocation.hpp"
 #include "system/label_rotations.hpp"
-#include "tests/unit/coupling/sphere_in_flow.hpp"
+#include "tests/unit/system/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace {

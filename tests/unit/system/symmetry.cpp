@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "system/symmetry.hpp"
-#include "tests/unit/coupling/sphere_in_flow.hpp"
+#include "tests/unit/system/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
 namespace symmetry_test {
