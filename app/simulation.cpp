@@ -451,8 +451,4 @@ int simulate(const Scene& scene, const RunRequest& request) {
   return Run(scene, request).go();
 }
 
-std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
-}
-
 }  // namespace tanktread

@@ -140,4 +140,8 @@ std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& r
   return std::make_unique<Free>(scene, ranks, phases);
 }
 
+std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
+}
+
 }  // namespace tanktread
