@@ -15,7 +15,6 @@
 #include "scene/series/series.hpp"
 #include "scene/tube.hpp"
 #include "surface/geometry.hpp"
-#include "system/kernel_count.hpp"
 
 namespace tanktread {
 
@@ -39,8 +38,7 @@ SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution
 }  // namespace
 
 int resist(const Scene& scene, const RunRequest& request) {
-  if (request.resume)
-    throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with.");
+  refuse(request.resume, "--resume", "Particle/motion `prescribed`", "a steady problem has nothing to go on with");
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases = started();
@@ -59,8 +57,8 @@ int resist(const Scene& scene, const RunRequest& request) {
   stop_where_told();
   const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
   stop_where_told();
-  const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
+  const double seconds = ranks.seconds_since(start);
+  const stokes::Evaluations kernel = ranks.of_all(resistance.kernel_evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.work.solver_iterations = solution.iterations;

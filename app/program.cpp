@@ -199,9 +199,8 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   const bool resume = !arguments.resume.empty();
   if (arguments.decks.empty() && !resume)
     throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
-  if (resume && !arguments.output.empty())
-    throw UserError("--output and --resume contradict each other: a run goes on in its own directory.");
-  if (resume && arguments.overwrite) throw UserError("--overwrite and --resume contradict each other: one deletes what the other goes on from.");
+  refuse(resume && !arguments.output.empty(), "--output", "--resume", "a run goes on in its own directory");
+  refuse(resume && arguments.overwrite, "--overwrite", "--resume", "one deletes what the other goes on from");
 
   const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
   Scene scene(registry), before(registry);

@@ -34,7 +34,7 @@ void catch_signals() {
 bool told_to_stop() { return signalled != 0; }
 
 void stop_where_told() {
-  if (coupling::largest(told_to_stop()) > 0) throw motion::Stopped();
+  if (coupling::any_told_to_stop(told_to_stop())) throw motion::Stopped();
 }
 
 }  // namespace tanktread

@@ -5,9 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
-#include <numeric>
-#include <new>
 #include <optional>
 
 #include "app/prescribed_run.hpp"
@@ -29,7 +26,6 @@
 #include "scene/plane_wall.hpp"
 #include "scene/tube.hpp"
 #include "system/agreement.hpp"
-#include "system/kernel_count.hpp"
 
 namespace tanktread {
 
@@ -37,13 +33,6 @@ namespace {
 
 /// Why a run ends before its time, as its status says it.
 const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady", past = "past";
-
-/// Next multiple of the snapshot interval after `time`, or the final time.
-double next_snapshot(const Scene& scene, double time) {
-  const double interval = scene.snapshot_interval();
-  const double next = (std::floor(time / interval * (1 + 1e-12)) + 1) * interval;
-  return next < scene.time.final_time * (1 - 1e-12) ? next : scene.time.final_time;
-}
 
 /// Steps that do not land on snapshots are no longer than the time between two of them, so that each has its own step.
 motion::TimeOptions time_options(const Scene& scene) {
@@ -86,7 +75,7 @@ class Run {
     while (reason.empty() && state_.time < scene_.time.final_time) {
       reason = step();
       if (interrupted_) break;
-      progress.show({state_.time, totals_.step, report_.iterations, first_.particle.rigid() ? 0 : largest("taylor_inertia")});
+      progress.show({state_.time, totals_.step, report_.iterations, first_.particle.rigid() ? 0 : row_.largest("taylor_inertia")});
       if (!reason.empty() || snapshot_due_) save_or_fail();
     }
     progress.close();
@@ -129,7 +118,7 @@ class Run {
     earlier_wall_seconds_ = totals_.wall_seconds;
     warnings_.remember(totals_.warnings);
     earlier_seconds_ = totals_.seconds;
-    const stokes::Evaluations again = coupling::of_all(particle_->kernel_evaluations(), ranks_), before = totals_.kernel;
+    const stokes::Evaluations again = ranks_.of_all(particle_->kernel_evaluations()), before = totals_.kernel;
     earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
   }
 
@@ -161,23 +150,17 @@ class Run {
 
   /// What ends `act`, on any rank; empty where it comes to its end, or is told to stop.
   std::string error_of(const std::function<void()>& act) {
-    std::string error;
-    try {
-      act();
-    } catch (const motion::Stopped&) {
-      interrupted_ = true;
-    } catch (const UserError&) {
-      throw;
-    } catch (const std::bad_alloc&) {
-      error = "there is not enough memory";
-    } catch (const std::exception& exception) {
-      error = exception.what();
-    }
-    return coupling::error_of_any(error);
+    return coupling::failure_of_any([&] {
+      try {
+        act();
+      } catch (const motion::Stopped&) {
+        interrupted_ = true;
+      }
+    });
   }
 
   void advance() {
-    const double snapshot = next_snapshot(scene_, state_.time);
+    const double snapshot = scene_.next_snapshot(state_.time);
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
     pictured_.reset();
@@ -238,20 +221,11 @@ class Run {
     totals_.work = particle_->work();
     totals_.phase_angle = particle_->phase_angle();
     totals_.contacts = particle_->contacts();
-    totals_.kernel = earlier_kernel_ + coupling::of_all(particle_->kernel_evaluations(), ranks_);
+    totals_.kernel = earlier_kernel_ + ranks_.of_all(particle_->kernel_evaluations());
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
     if (!output::equal_on_all_ranks(state_)) fail("the ranks hold states that are not the same to the bit");
 #endif
-  }
-
-  /// Across a gap that is narrower than 0.6 of the wall's elements its traction is off by more than 1e-4.
-  void warn_of_coarse_wall(double gap) {
-    const double widest = particle_->body().wall->widest;
-    if (gap > 0.6 * widest) return;
-    warn({"coarse wall", formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more "
-                                   "%s/azimuthal elements and %s/axial elements",
-                                   state_.time, gap, widest, scene_.tube.list().c_str(), scene_.tube.list().c_str())});
   }
 
   void warn(const Warning& warning) {
@@ -270,8 +244,8 @@ class Run {
 
   /// The last snapshot's time within the step just made, and the state there.
   void picture_within(const motion::State& before) {
-    double time = next_snapshot(scene_, before.time);
-    for (double next = next_snapshot(scene_, time); next <= state_.time && next > time; next = next_snapshot(scene_, time)) time = next;
+    double time = scene_.next_snapshot(before.time);
+    for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
     const motion::DenseOutput dense(before, state_);
     motion::State& state = pictured_.emplace().state;
     state.time = time, state.x = dense.place(time), state.history = {dense.slope(time)};
@@ -281,10 +255,11 @@ class Run {
     const auto clock = phases_.time("diagnostics");
     particle_->dynamics().at(state_.time, began_);
     row_ = particle_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
-    coupling::take_first(row_.values());  // what is decided by it is decided alike
+    {
+      const auto output = phases_.time("output");
+      results_.record(row_);
+    }
     warn_of_limits();
-    const auto output = phases_.time("output");
-    results_.record(row_);
   }
 
   /// The mesh's quality. Throws RunFailure when an element is folded.
@@ -297,19 +272,8 @@ class Run {
   /// What the step has come near to.
   void warn_of_limits() {
     if (first_.particle.rigid()) return;
-    StepFindings signs;
-    signs.time = state_.time;
-    signs.step = report_.step;
-    signs.smallest_tension = smallest("smallest_tension");
-    signs.compressed_area = largest("compressed_area");
-    signs.volume_error = std::max(largest("volume_error"), -smallest("volume_error"));
-    signs.jacobian_ratio = quality_.jacobian_ratio;
-    signs.aspect_ratio = quality_.aspect_ratio;
-    if (scene_.tube.present || (scene_.wall.present && !first_.adaptation.enabled)) signs.gap = row_.value("gap");
-    const std::vector<double> areas = row_.of_particles("area");
-    const auto n_elements = static_cast<double>(particle_->body().space.elements.size());
-    signs.element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
-    for (const std::string& sentence : warnings_.sentences(signs)) results_.warn(sentence);
+    const auto n_elements = static_cast<int>(particle_->body().space.elements.size());
+    for (const std::string& sentence : warnings_.sentences({scene_, first_, row_, quality_, n_elements})) results_.warn(sentence);
   }
 
   void save() {
@@ -355,31 +319,17 @@ class Run {
   std::string reason_to_stop() {
     if (scene_.tube.present) {
       end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
-      warn_of_coarse_wall(row_.value("gap"));
+      if (const std::string coarse = coarse_wall(scene_, particle_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     }
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
-    if (coupling::largest(told_to_stop()) > 0) return by_signal;
+    if (coupling::any_told_to_stop(told_to_stop())) return by_signal;
     const auto limit = scene_.output.wall_clock_limit;
-    if (limit && ranks_.first(seconds_here()) > *limit) return by_clock;
+    if (limit && ranks_.seconds_since(start_) > *limit) return by_clock;
     const auto tolerance = scene_.time.steady_tolerance;
-    if (tolerance && largest("shape_velocity") < *tolerance) return steady;
-    if (scene_.time.end_when_past && least_way() > *scene_.time.end_when_past) return past;
+    if (tolerance && row_.largest("shape_velocity") < *tolerance) return steady;
+    if (scene_.time.end_when_past && least_way(scene_, particle_->body(), row_) > *scene_.time.end_when_past) return past;
     return {};
-  }
-
-  /// Along x1, or the centre line of a channel, of the centroid that has come least far.
-  double least_way() const {
-    const std::string name = scene_.in_system() ? "centroid_x" : "center_x";
-    std::vector<double> x[3];
-    for (int c = 0; c < 3; ++c) x[c] = entries(name + std::to_string(c + 1));
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t p = 0; p < x[0].size(); ++p) {
-      const auto& wall = particle_->body().wall;
-      const bool bent = wall && wall->channel;
-      least = std::min(least, bent ? wall->channel->coordinates({x[0][p], x[1][p], x[2][p]})[0] : x[0][p]);
-    }
-    return least;
   }
 
   Account account(const std::string& status) const {
@@ -401,15 +351,6 @@ class Run {
   static std::string spoken(std::string status) {
     std::erase(status, ':');
     return status;
-  }
-
-  /// Of all particles that have it; 0 where none has.
-  double smallest(std::string_view name) const { return std::ranges::min(entries(name)); }
-  double largest(std::string_view name) const { return std::ranges::max(entries(name)); }
-  std::vector<double> entries(std::string_view name) const {
-    std::vector<double> all = row_.of_particles(name);
-    if (all.empty()) all.push_back(0);
-    return all;
   }
 
   const Scene& scene_;

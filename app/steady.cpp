@@ -26,8 +26,6 @@
 #include "scene/particles/particle_system.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
-#include "system/agreement.hpp"
-#include "system/kernel_count.hpp"
 
 namespace tanktread {
 
@@ -294,7 +292,7 @@ class SteadyRun {
     };
     if (systems_.empty()) add(*system_->particle);
     for (const auto& [parameters, system] : systems_) add(*system->particle);
-    totals_.kernel = coupling::of_all(totals_.kernel, ranks_);
+    totals_.kernel = ranks_.of_all(totals_.kernel);
     totals_.phase_angle = system_->particle->phase_angle();
   }
 
@@ -305,7 +303,6 @@ class SteadyRun {
     Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds, .evaluations = totals_.work.evaluations});
     found_.add_columns(scene_, row);
     row.check();
-    coupling::take_first(row.values());
     results_.record(row);
   }
 

@@ -66,4 +66,14 @@ std::vector<double> Columns::of_particles(std::string_view name) const {
   return found;
 }
 
+double Columns::smallest(std::string_view name) const {
+  const std::vector<double> all = of_particles(name);
+  return all.empty() ? 0 : std::ranges::min(all);
+}
+
+double Columns::largest(std::string_view name) const {
+  const std::vector<double> all = of_particles(name);
+  return all.empty() ? 0 : std::ranges::max(all);
+}
+
 }  // namespace tanktread

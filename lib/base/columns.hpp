@@ -58,6 +58,10 @@ class Columns {
   /// Returns the values of `<particle>/<name>` in the order of the particles. If no particle has a name, the value of `name`.
   std::vector<double> of_particles(std::string_view name) const;
 
+  /// Returns the smallest and the largest of them; 0 if there are none.
+  double smallest(std::string_view name) const;
+  double largest(std::string_view name) const;
+
  private:
   bool every_;
   std::vector<Column> columns_;

@@ -9,8 +9,8 @@ namespace tanktread::membrane {
 namespace {
 
 void check_stress_free(const Options& options) {
-  if (options.law == "surface tension" && options.stress_free != "resting")
-    throw UserError("Membrane/stress-free shape and Membrane/law `surface tension` contradict each other: a fluid interface has no such shape.");
+  refuse(options.law == "surface tension" && options.stress_free != "resting", "Membrane/stress-free shape", "Membrane/law `surface tension`",
+         "a fluid interface has no such shape");
   const std::string shape = "Membrane/stress-free shape `", chosen = "`, not to `" + options.stress_free + "`.";
   if (options.reduced_volume.has_value() != (options.stress_free == "spheroid"))
     throw UserError(options.reduced_volume ? "Membrane/stress-free reduced volume belongs to " + shape + "spheroid" + chosen
@@ -41,6 +41,26 @@ void declare_energy(Options& options, deck::Section& section) {
               "differentiated exactly; `(I1 - 1 + 1/(I2 + 1))/2` is the law `neo-Hookean`");
   Constants named{options.constants};
   section.optional_section("constants", named, "numbers with names in `energy`, none without this list");
+}
+
+void declare_bending(Options& options, deck::Section& section) {
+  if (!section.given("bending number")) options.bending_modulus = 0;
+  section.key("bending modulus", options.bending_modulus, deck::not_negative(), "force x length",
+              "E_b of Helfrich's energy; 0: no resistance to bending");
+  section.key("bending number", options.bending_number, deck::not_negative(), "1",
+              "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
+  if (section.given("spontaneous curvature")) options.bending_reference = "flat";
+  section.key("bending reference", options.bending_reference, deck::Choice{"unstressed", "flat"},
+              "curvature at which no bending moment acts: that of the unstressed surface, or, `flat`, the spontaneous curvature everywhere");
+  section.key("spontaneous curvature", options.spontaneous_curvature, deck::any(), "1/length",
+              "c0 of Helfrich's energy (3.8), where the bending reference is `flat`: a sum of principal curvatures, positive where the surface is "
+              "bulged outwards; 0 if not given");
+  section.key("area difference modulus", options.leaf_modulus, deck::not_negative(), "1",
+              "kbar/E_b of area-difference elasticity (3.27): the two leaves of a bilayer slide on each other, but keep the number of their "
+              "molecules; 0: none");
+  section.key("area difference", options.leaf_difference, deck::positive(), "1",
+              "N0/(8 pi R): the difference of the areas of leaves without stress over that of a sphere of the area A0 = 4 pi R^2; if not given, the "
+              "unstressed surface's own");
 }
 
 void check_energy(const Options& options) {
@@ -93,25 +113,10 @@ void Options::declare(deck::Section& section) {
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
               "the weak load per area of the unstressed surface (3.7), or of the current one (3.6), the paper's and a drop's");
-  if (!section.given("bending number")) bending_modulus = 0;
-  section.key("bending modulus", bending_modulus, deck::not_negative(), "force x length", "E_b of Helfrich's energy; 0: no resistance to bending");
-  section.key("bending number", bending_number, deck::not_negative(), "1",
-              "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
-  if (section.given("spontaneous curvature")) bending_reference = "flat";
-  section.key("bending reference", bending_reference, deck::Choice{"unstressed", "flat"},
-              "curvature at which no bending moment acts: that of the unstressed surface, or, `flat`, the spontaneous curvature everywhere");
-  section.key("spontaneous curvature", spontaneous_curvature, deck::any(), "1/length",
-              "c0 of Helfrich's energy (3.8), where the bending reference is `flat`: a sum of principal curvatures, positive where the surface is "
-              "bulged outwards; 0 if not given");
-  section.key("area difference modulus", leaf_modulus, deck::not_negative(), "1",
-              "kbar/E_b of area-difference elasticity (3.27): the two leaves of a bilayer slide on each other, but keep the number of their "
-              "molecules; 0: none");
-  section.key("area difference", leaf_difference, deck::positive(), "1",
-              "N0/(8 pi R): the difference of the areas of leaves without stress over that of a sphere of the area A0 = 4 pi R^2; if not given, the "
-              "unstressed surface's own");
-  section.key("shear viscosity", shear_viscosity, deck::not_negative(), "viscosity x length",
+  declare_bending(*this, section);
+  section.key("shear viscosity", viscosity.shear, deck::not_negative(), "viscosity x length",
               "eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10); the velocity then solves a system");
-  section.key("dilatational viscosity", dilatational_viscosity, deck::not_negative(), "viscosity x length",
+  section.key("dilatational viscosity", viscosity.dilatational, deck::not_negative(), "viscosity x length",
               "kappa_s: resistance of the membrane or interface to the rate at which its area changes");
   section.key("relaxation time", relaxation_time, deck::positive(), "time",
               "T: the membrane forgets within it what its viscosity resists: springs eta_s/T and kappa_s/T in series with the dashpots, a Maxwell "
@@ -120,56 +125,43 @@ void Options::declare(deck::Section& section) {
 }
 
 void Options::check() const {
-  if (bending_modulus && bending_number)
-    throw UserError("Membrane/bending modulus and Membrane/bending number contradict each other: give one of them.");
-  if (bending(1, 1) > 0 && load == "strong")
-    throw UserError(std::string("Membrane/bending ") + (bending_number ? "number" : "modulus") +
-                    " and Membrane/load `strong` contradict each other: bending exists in the weak form only.");
-  if (capillary_number && shear_modulus)
-    throw UserError("Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
-  if (capillary_number && surface_tension)
-    throw UserError("Membrane/capillary number and Membrane/surface tension contradict each other: give one of them.");
-  if (shear_modulus && law == "surface tension")
-    throw UserError("Membrane/shear modulus and Membrane/law `surface tension` contradict each other: give Membrane/surface tension.");
-  if (surface_tension && law != "surface tension")
-    throw UserError("Membrane/surface tension and Membrane/law `" + law + "` contradict each other: give Membrane/shear modulus.");
+  refuse(bending_modulus && bending_number, "Membrane/bending modulus", "Membrane/bending number", "give one of them");
+  refuse(bending(1, 1) > 0 && load == "strong", std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"),
+         "Membrane/load `strong`", "bending exists in the weak form only");
+  refuse(capillary_number && shear_modulus, "Membrane/capillary number", "Membrane/shear modulus", "give one of them");
+  refuse(capillary_number && surface_tension, "Membrane/capillary number", "Membrane/surface tension", "give one of them");
+  refuse(shear_modulus && law == "surface tension", "Membrane/shear modulus", "Membrane/law `surface tension`", "give Membrane/surface tension");
+  refuse(surface_tension && law != "surface tension", "Membrane/surface tension", "Membrane/law `" + law + "`", "give Membrane/shear modulus");
   if (area_dilatation && !dilates())
     throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
   if (area_order > 0 && !dilates())
     throw UserError("Membrane/area points belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
-  if (area_order > 0 && load == "strong")
-    throw UserError("Membrane/area points and Membrane/load `strong` contradict each other: nothing is integrated there.");
-  if (global_area_dilatation > 0 && load == "strong")
-    throw UserError("Membrane/global area dilatation and Membrane/load `strong` contradict each other: it acts by virtual work.");
+  refuse(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`", "nothing is integrated there");
+  refuse(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`", "it acts by virtual work");
   if (neo_hookean_share && law != "Mooney-Rivlin")
     throw UserError("Membrane/neo-Hookean share belongs to Membrane/law `Mooney-Rivlin`, but Membrane/law is `" + law + "`.");
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
   check_energy(*this);
-  if (law == "surface tension" && pre_inflation != 0.0)
-    throw UserError(
-        "Membrane/pre-inflation and Membrane/law `surface tension` contradict each other: a fluid interface has no unstressed shape.");
+  refuse(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
+         "a fluid interface has no unstressed shape");
   check_stress_free(*this);
-  if (spontaneous_curvature && bending_reference == "unstressed")
-    throw UserError("Membrane/spontaneous curvature and Membrane/bending reference `unstressed` contradict each other: one says the curvature.");
+  refuse(spontaneous_curvature && bending_reference == "unstressed", "Membrane/spontaneous curvature", "Membrane/bending reference `unstressed`",
+         "one says the curvature");
   if (spontaneous_curvature && bending(1, 1) == 0)
     throw UserError("Membrane/spontaneous curvature needs Membrane/bending modulus or Membrane/bending number.");
   if (leaf_modulus > 0 && bending(1, 1) == 0)
     throw UserError("Membrane/area difference modulus needs Membrane/bending modulus or Membrane/bending number.");
   if (leaf_difference && leaf_modulus == 0) throw UserError("Membrane/area difference needs Membrane/area difference modulus.");
   forces.check();
-  if (relaxation_time && law == "surface tension")
-    throw UserError("Membrane/relaxation time and Membrane/law `surface tension` contradict each other: the viscosity of a fluid interface has no "
-                    "memory, because the interface has no stress-free shape.");
-  if (relaxation_time && !viscous())
+  refuse(relaxation_time && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
+         "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
+  if (relaxation_time && !viscosity.any())
     throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");
-  if (viscous()) {
-    const std::string key = std::string("Membrane/") + (shear_viscosity > 0 ? "shear" : "dilatational") + " viscosity";
-    if (load == "strong") throw UserError(key + " and Membrane/load `strong` contradict each other: viscosity is part of the weak load.");
-  }
-  if (!forces.all.empty() && law == "surface tension")
-    throw UserError("Membrane/forces and Membrane/law `surface tension` contradict each other: nothing holds on to a fluid interface.");
-  if (!forces.all.empty() && load == "strong")
-    throw UserError("Membrane/forces and Membrane/load `strong` contradict each other: the forces are part of the weak load.");
+  refuse(viscosity.any() && load == "strong", std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
+         "Membrane/load `strong`", "viscosity is part of the weak load");
+  refuse(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
+         "nothing holds on to a fluid interface");
+  refuse(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`", "the forces are part of the weak load");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }

@@ -43,7 +43,7 @@ struct Options {
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or over sigma R_C^2
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
   std::optional<double> spontaneous_curvature;   ///< c0 of a membrane whose bending reference is flat, 1/length
-  double shear_viscosity = 0, dilatational_viscosity = 0;  ///< eta_s, kappa_s (3.10), viscosity x length
+  SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
   std::optional<double> relaxation_time;                 ///< T of a Maxwell element (3.23), whose viscosities these are then
   PatchForces forces;                            ///< by which it is held or pulled
 
@@ -52,11 +52,7 @@ struct Options {
   /// One sentence (UserError) for keys that contradict each other.
   void check() const;
 
-
   std::shared_ptr<const StrainEnergy> strain_energy() const;  ///< of the law `expression`, nothing of others; UserError where it is none
-
-  bool viscous() const { return shear_viscosity + dilatational_viscosity > 0; }
-  SurfaceViscosity viscosity() const { return {shear_viscosity, dilatational_viscosity}; }
 
   bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }  ///< whether the law has a C
 

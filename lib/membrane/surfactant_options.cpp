@@ -26,8 +26,7 @@ void SurfactantOptions::check() const {
   if (coverage.has_value() != langmuir)
     throw UserError(langmuir ? list + "equation of state `Langmuir` needs " + list + "coverage, the initial concentration over the largest one."
                              : list + "coverage belongs to " + list + "equation of state `Langmuir`, not to `" + equation_of_state + "`.");
-  if (diffusivity && peclet_number)
-    throw UserError(list + "diffusivity and " + list + "Peclet number contradict each other: give one of them.");
+  refuse(diffusivity && peclet_number, list + "diffusivity", list + "Peclet number", "give one of them");
   if (!(tension(1) > 0))
     throw UserError(list + formatted("elasticity number %g leaves no surface tension at the initial concentration: %g of the clean interface's.",
                                      elasticity, tension(1)));

@@ -55,8 +55,8 @@ void TimeOptions::declare(deck::Section& section) {
 }
 
 void TimeOptions::check() const {
-  if (fixed_step && initial_step) throw UserError("Time/fixed step and Time/initial step contradict each other: give one of them.");
-  if (fixed_step && maximum_step) throw UserError("Time/fixed step and Time/maximum step contradict each other: give one of them.");
+  refuse(fixed_step && initial_step, "Time/fixed step", "Time/initial step", "give one of them");
+  refuse(fixed_step && maximum_step, "Time/fixed step", "Time/maximum step", "give one of them");
   const auto not_below_the_least = [this](const char* name, const std::optional<double>& step) {
     if (step && *step < least_step())
       throw UserError(std::string("Time/") + name + " must not be shorter than Time/minimum step, " + deck::number_text(least_step()) +

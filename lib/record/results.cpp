@@ -24,6 +24,7 @@
 #include "record/numbers.hpp"
 #include "scene/series/series.hpp"
 #include "spline/iga.hpp"
+#include "system/agreement.hpp"
 
 namespace tanktread {
 
@@ -223,7 +224,8 @@ void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::
          ": the run goes on from " + chosen);
 }
 
-void Results::record(const Columns& row) {
+void Results::record(Columns& row) {
+  coupling::take_first(row.values());
   if (!std::ranges::equal(row.all(), columns_.all(), {}, &Column::name, &Column::name))
     throw std::logic_error("the columns of a row are not those that were declared");
   write([&] {

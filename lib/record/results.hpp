@@ -81,8 +81,8 @@ class Results {
   void remesh(const Body& body, const surface::BezierMap& map);
 
   /// One finished step: a row of the record, which is written at every snapshot and otherwise once a second, or, where that takes long, after fifty
-  /// times as much.
-  void record(const Columns& row);
+  /// times as much. Sets the row to the first rank's numbers on every rank: what is decided by it is decided alike.
+  void record(Columns& row);
 
   /// A sentence about what the run has come near to, on standard error and in the summary.
   void warn(const std::string& sentence);

@@ -39,10 +39,9 @@ void DomainOptions::check(const stokes::FlowOptions& flow) const {
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
-  if (flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()))
-    throw UserError("Domain and Flow/type `" + flow.type + "` contradict each other: a lattice can follow no flow but one whose gradient is the same "
-                    "everywhere.");
-  if (flow.history) throw UserError("Domain and Flow/history contradict each other: a lattice can follow no flow but one that stays as it is.");
+  refuse(flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()), "Domain", flow.choice(),
+         "a lattice can follow no flow but one whose gradient is the same everywhere");
+  refuse(flow.history.has_value(), "Domain", "Flow/history", "a lattice can follow no flow but one that stays as it is");
   const Mat3 all = vectors();
   const auto columns = all.leftCols(directions());
   double product = 1;
@@ -53,6 +52,16 @@ void DomainOptions::check(const stokes::FlowOptions& flow) const {
   const double volume = std::sqrt(std::max(0., (columns.transpose() * columns).determinant()));
   if (!(volume > 1e-6 * std::sqrt(product)))
     throw UserError(formatted("Domain/lattice vectors must span a cell, but those given have no volume: it is %.3g.", volume));
+}
+
+void DomainOptions::reject(const Scene& scene, Rejections& to) const {
+  const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
+  to.pair(!scene.runs_in_time(), scene.sought(), "Domain", "the lattice moves along with the flow");
+  to.pair(scene.tube.present, "Domain", scene.tube.list(), "a tube does not repeat");
+  to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
+  to.pair(directions() < 3 && (told || weight || scene.particle.force), "Domain/periodic `" + periodic + "`",
+          told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
+          "the velocity of a net force in every cell is known in a lattice of three directions only");
 }
 
 std::optional<stokes::PeriodicCell> DomainOptions::cell() const {

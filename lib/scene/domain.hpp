@@ -15,6 +15,9 @@ class Section;
 
 namespace tanktread {
 
+class Rejections;
+struct Scene;
+
 struct DomainOptions {
   bool present = false;  ///< whether the scene repeats at all; nothing else counts without
 
@@ -27,6 +30,8 @@ struct DomainOptions {
   /// One sentence (UserError) for keys that contradict each other or are missing, and for a flow that the lattice cannot follow.
   void check(const stokes::FlowOptions& flow) const;
 
+  void reject(const Scene& scene, Rejections& to) const;  ///< what a lattice excludes in the scene
+
   /// Number of directions in which the scene repeats.
   int directions() const;
 
@@ -36,8 +41,6 @@ struct DomainOptions {
  private:
   Mat3 vectors() const;
 };
-
-struct Scene;
 
 /// Data of the lattice for one row.
 struct DomainRow {

@@ -4,6 +4,7 @@
 
 #include <Eigen/SVD>
 
+#include "base/errors.hpp"
 #include "base/small_matrices.hpp"
 
 namespace tanktread {
@@ -22,7 +23,31 @@ membrane::RigidConditions conditions(std::span<const coupling::Particle> particl
   return all;
 }
 
+/// Whether a flow with the same gradient everywhere has a vorticity.
+bool turns(const Scene& scene) {
+  if (scene.flow.type == "duct") return false;
+  const stokes::AmbientFlow ambient(scene.flow);
+  const Mat3 gradient = ambient.gradient(Vec3::Zero());
+  return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
+}
+
 }  // namespace
+
+void reject_searches(const Scene& scene, Rejections& to) {
+  const bool search = !scene.runs_in_time(), steady = scene.steady.present, drop = scene.membrane.law == "surface tension";
+  const std::string& unstressed = scene.membrane.stress_free == "resting" ? scene.particle.shape.shape : scene.membrane.stress_free;
+  to.pair(steady && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
+  to.add(scene.continuation.present && !steady, "Continuation needs a list Steady: it continues steady shapes.");
+  to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history", "nothing is steady in a flow that changes");
+  to.pair(search && scene.volume.constraint != "exact", scene.sought(), "Volume/constraint `" + scene.volume.constraint + "`",
+          "the volume tells which shape");
+  to.pair(search && drop && scene.interface_motion() == "material", scene.sought(), "Interface/motion `material`",
+          "points that go with the fluid along an interface do not rest");
+  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow.choice(),
+          "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
+  to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", scene.flow.choice(),
+          "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
+}
 
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles) {

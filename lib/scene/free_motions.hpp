@@ -18,6 +18,9 @@ namespace tanktread {
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles);
 
+/// Adds what searches for steady shapes, periodic motions and spectra exclude.
+void reject_searches(const Scene& scene, Rejections& to);
+
 /// Returns Steady/step, or its default. The default is bounded by the relaxation times of the membranes because the iteration amplifies errors of the
 /// velocity in motions that no membrane opposes by the step over these times.
 double steady_step(const Scene& scene);

@@ -16,7 +16,7 @@ namespace {
 membrane::Material material(const Scene& scene, const Body& body) {
   if (scene.particle.rigid()) return {body.law, {}, {}};
   return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed", scene.membrane.spontaneous_curvature.value_or(0)},
-          scene.kelvin_voigt_membrane() ? scene.membrane.viscosity() : membrane::SurfaceViscosity{}, scene.membrane.area_order};
+          scene.kelvin_voigt_membrane() ? scene.membrane.viscosity : membrane::SurfaceViscosity{}, scene.membrane.area_order};
 }
 
 Eigen::MatrixXd numbers_of(const auto& values) {

@@ -13,6 +13,26 @@ const deck::Choice motion_words{"deforming", "prescribed", "free"};
 
 std::string text(Motion motion) { return "`" + motion_words[static_cast<std::size_t>(motion)] + "`"; }
 
+std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }
+
+void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
+  const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
+  const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "in flows whose gradient is the same everywhere";
+  to.pair(!scene.runs_in_time() && told, scene.sought(), choice(), "a body that moves as told has no place or attitude to be found");
+  to.pair(scene.tube.repulsion && told, scene.tube.list() + "/repulsion", choice(), forced);
+  to.pair(density_difference && told, "Particle/density difference", choice(), forced);
+  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", choice(), "a body that moves as told does not come to rest");
+  to.pair(rigid() && scene.membrane_given, "Membrane", choice(), "a rigid particle has no membrane");
+  to.pair(rigid() && scene.volume_given, "Volume", choice(), "a rigid particle keeps its volume");
+  to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", choice(), "there is no fluid in a rigid particle");
+  to.pair(rigid() && shape.initial, "Particle/initial shape", choice(), "a rigid particle has the shape that it has");
+  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow.choice(), "it is for particles " + gradient);
+  to.pair(held && (tube || rigid()), "Particle/drift `held`", tube ? scene.tube.list() : choice(), "it is for particles that deform " + gradient);
+  to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
+          "Solvers/projection `" + scene.solvers.projection + "`", tube ? "Tube" : scene.wall.present ? "Wall" : choice(),
+          "it is for what deforms away from walls");
+}
+
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
   section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
@@ -78,16 +98,38 @@ void ParticleKind::declare_lists(deck::Section& section) {
   if (particle.rigid()) section.leave_out("Membrane");  // what particles share is for those that have one
   membrane_given = section.given("Membrane");
   if (MembraneList list{*this}; !particle.rigid() || membrane_given) section.section("Membrane", list, "what its surface is made of");
-  if (particle.shape.shape != "file")
-    section.section("Surface", surface, "the spline space of its surface");
-  else if (section.given("Surface"))
-    throw UserError(section.path("Surface") + " and " + (name.empty() ? "Particle/shape" : section.path("shape")) +
-                    " `file` contradict each other: the spline space is the file's.");
+  if (particle.shape.shape != "file") section.section("Surface", surface, "the spline space of its surface");
+  else refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
+              "the spline space is the file's");
   InterfaceList list{*this};
   section.section("Interface", list, "the interface of a drop: how its mesh moves along it, and what is on it");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   if (!name.empty()) adaptation.film_resolution = 0.7;
   section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
+}
+
+void ParticleKind::reject(const Scene& scene, Rejections& to) const {
+  const bool drop = membrane.law == "surface tension", strong = scene.load_is_strong(), rigid = particle.rigid();
+  const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = surface.polar() && surface.poles == "plain";
+  const std::string law = "Membrane/law `" + membrane.law + "`", plain = "Surface/poles `plain`";
+  to.pair(adaptation.enabled && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`",
+          "a spline space from a file has no mesh to refine");
+  to.pair(scene.volume.constraint == "none" && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
+          "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
+  to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "a degenerate element has no load at a pole");
+  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, "a degenerate element has no normal at its pole");
+  to.pair(!drop && scene.interface_motion() != "material", "Interface/motion `" + scene.interface_motion() + "`", law,
+          "an elastic membrane moves with the fluid, `material`");
+  to.pair(surfactant && (rigid || !drop), "Interface/surfactant", rigid ? particle.choice() : law, "it is on the interface of a drop");
+  const std::pair<bool, std::string> works[] = {{scene.contact.limiter, "Contact/limiter"},
+                                                {particle.density_difference.has_value(), "Particle/density difference"},
+                                                {scene.tube.repulsion.has_value(), scene.tube.list() + "/repulsion"}};
+  for (const auto& [with, what] : works)
+    to.pair(with && strong, what, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
+}
+
+void ContactOptions::reject(const Scene& scene, Rejections& to) const {
+  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it holds gaps after steps in time");
 }
 
 void ContactOptions::declare(deck::Section& section) {

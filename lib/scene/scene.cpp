@@ -11,6 +11,8 @@
 #include "deck/units.hpp"
 #include "deck/words.hpp"
 #include "stokes/flow/ambient_flow.hpp"
+#include "scene/free_motions.hpp"
+#include "scene/tube.hpp"
 #include "surface/channel.hpp"
 #include "system/ranks.hpp"
 #include "system/solvers/frozen_operator.hpp"
@@ -161,113 +163,11 @@ void check_motion(const Scene& scene) {
   }
 }
 
-/// Whether a flow with the same gradient everywhere has a vorticity.
-bool turns(const Scene& scene) {
-  if (scene.flow.type == "duct") return false;
-  const stokes::AmbientFlow ambient(scene.flow);
-  const Mat3 gradient = ambient.gradient(Vec3::Zero());
-  return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
-}
-
-std::string contradiction(const std::string& one, const std::string& other, const std::string& why) {
-  return one + " and " + other + " contradict each other: " + why + ".";
-}
-
-/// Throws UserError for two choices that cannot be made together.
-void refuse(bool both, const std::string& one, const std::string& other, const std::string& why) {
-  if (both) throw UserError(contradiction(one, other, why));
-}
-
-/// Every pair of choices, of whatever lists, that cannot be made together.
-void check_contradictions(const Scene& scene) {
-  std::vector<std::string> found;
-  const auto refuse = [&found](bool both, const std::string& one, const std::string& other, const std::string& why) {
-    if (both) found.push_back(contradiction(one, other, why));
-  };
-  const ParticleOptions& particle = scene.particle;
-  const bool rigid = particle.rigid(), told = particle.motion == Motion::prescribed, held = particle.drift == "held";
-  const bool adapts = scene.adaptation.enabled, tube = scene.tube.present, weight = particle.density_difference.has_value();
-  const bool drop = scene.membrane.law == "surface tension", strong = scene.load_is_strong();
-  const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = scene.surface.polar() && scene.surface.poles == "plain";
-  const bool steady = !scene.runs_in_time(), wall = scene.wall.present;
-  const std::string sought = scene.sought();
-  const std::string motion = "Particle/motion " + text(particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
-  const std::string sliding = "Interface/motion `" + scene.interface_motion() + "`", law = "Membrane/law `" + scene.membrane.law + "`";
-  refuse(scene.steady.present && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
-  refuse(steady && scene.tube.channel && scene.flow.held == "flow rate", sought, "Flow/held `flow rate`",
-         "what is carried along in a channel rests only where a pressure drop does not push it through");
-  refuse(steady && told, sought, motion, "a body that moves as told has no place or attitude to be found");
-  if (scene.continuation.present && !scene.steady.present) found.emplace_back("Continuation needs a list Steady: it continues steady shapes.");
-  refuse(steady && scene.flow.history && !scene.periodic.present, sought, "Flow/history", "nothing is steady in a flow that changes");
-  refuse(steady && scene.domain.present, sought, "Domain", "the lattice moves along with the flow");
-  refuse(steady && scene.volume.constraint != "exact", sought, "Volume/constraint `" + scene.volume.constraint + "`", "the volume tells which shape");
-  refuse(steady && drop && scene.interface_motion() == "material", sought, "Interface/motion `material`",
-         "points that go with the fluid along an interface do not rest");
-  const std::string& unstressed = scene.membrane.stress_free == "resting" ? particle.shape.shape : scene.membrane.stress_free;
-  refuse(scene.steady.present && !drop && !rigid && unstressed != "sphere" && turns(scene), sought, flow,
-         "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
-  const std::string confined = scene.tube.list();
-  const bool couette = tube && !scene.tube.channel && scene.flow.type == "simple shear" && !scene.flow.history;
-  refuse(tube && !couette && scene.flow.type != "duct" && scene.flow.type != "quiescent", confined, flow,
-         "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
-         "with which the wall goes along");
-  refuse(tube && desingularised, "Quadrature/rule `desingularised`", confined, "the wall is not closed");
-  const std::string repulsion = confined + "/repulsion";
-  refuse(scene.tube.repulsion && told, repulsion, motion, "a body that moves as told takes whatever force that needs");
-  refuse(scene.domain.present && tube, "Domain", confined, "a tube does not repeat");
-  refuse(scene.contact.limiter && steady, "Contact/limiter", sought, "it holds gaps after steps in time");
-  const std::pair<bool, std::string> works[] = {{scene.contact.limiter, "Contact/limiter"}, {weight, "Particle/density difference"},
-                                                {scene.tube.repulsion.has_value(), repulsion}};
-  for (const auto& [with, what] : works)
-    refuse(with && strong, what, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
-  refuse(scene.domain.present && desingularised, "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
-  refuse(scene.domain.present && scene.domain.directions() < 3 && (told || weight || particle.force),
-         "Domain/periodic `" + scene.domain.periodic + "`",
-         told ? motion : weight ? "Particle/density difference" : "Particle/force",
-         "the velocity of a net force in every cell is known in a lattice of three directions only");
-  refuse(wall && tube, "Wall", "Tube", "images are of one plane in a fluid that is unbounded otherwise");
-  refuse(wall && scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
-  refuse(wall && scene.quadrature.rule != "adaptive", "Wall", "Quadrature/rule `" + scene.quadrature.rule + "`",
-         "a film at a wall takes rules by tolerance, `adaptive`");
-  refuse(wall && steady, sought, "Wall", "beside a wall nothing that deforms keeps its distance from it");
-  refuse(wall && held, "Wall", "Particle/drift `held`", "its distance from the wall matters");
-  refuse(weight && told, "Particle/density difference", motion, "a body that moves as told takes whatever force that needs");
-  refuse(scene.viscous_membrane() && tube && scene.solvers.tube != "schur", "Membrane viscosity", "Solvers/tube `" + scene.solvers.tube + "`",
-         "the system of all blocks leaves the membrane's own load out; `schur` has it");
-  refuse(scene.solvers.wall != "auto" && tube && !scene.tube.channel, "Solvers/wall", confined, "the wall of a straight tube is factored");
-  refuse(scene.solvers.wall == "iterative" && scene.solvers.tube != "schur", "Solvers/wall `iterative`", "Solvers/tube `" + scene.solvers.tube + "`",
-         "that takes the factored wall");
-  refuse(scene.flow.held != "flow rate" && scene.solvers.tube != "schur", "Flow/held `" + scene.flow.held + "`",
-         "Solvers/tube `" + scene.solvers.tube + "`", "the system of all blocks holds the flow rate; `schur` may hold either");
-  refuse(scene.solvers.projection != "collocation" && (tube || wall || rigid), "Solvers/projection `" + scene.solvers.projection + "`",
-         tube ? "Tube" : wall ? "Wall" : motion, "it is for what deforms away from walls");
-  refuse(rigid && scene.membrane_given, "Membrane", motion, "a rigid particle has no membrane");
-  refuse(rigid && scene.volume_given, "Volume", motion, "a rigid particle keeps its volume");
-  refuse(rigid && particle.viscosity_ratio != 1, "Particle/viscosity ratio", motion, "there is no fluid in a rigid particle");
-  refuse(rigid && particle.shape.initial, "Particle/initial shape", motion, "a rigid particle has the shape that it has");
-  refuse(told && scene.time.steady_tolerance, "Time/steady tolerance", motion, "a body that moves as told does not come to rest");
-  refuse(adapts && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`", "a spline space from a file has no mesh to refine");
-  refuse(scene.volume.constraint == "none" && !strong && scene.membrane.load_measure == "reference", "Volume/constraint `none`",
-         "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
-  refuse(!drop && strong && degenerate, "Membrane/load `strong`", "Surface/poles `plain`", "a degenerate element has no load at a pole");
-  refuse(desingularised && degenerate, "Quadrature/rule `desingularised`", "Surface/poles `plain`",
-         "a degenerate element has no normal at its pole");
-  refuse(!drop && scene.interface_motion() != "material", sliding, law, "an elastic membrane moves with the fluid, `material`");
-  const std::string surfactant = "Interface/surfactant", memory = "Membrane/relaxation time";
-  refuse(scene.surfactant && (rigid || !drop), surfactant, rigid ? motion : law, "it is on the interface of a drop");
-  refuse(scene.maxwell_membrane() && scene.steady.present && turns(scene), "Steady with " + memory, flow,
-         "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
-  refuse(held && scene.flow.type == "parabolic", "Particle/drift `held`", flow, "it is for flows whose gradient is the same everywhere");
-  refuse(held && (tube || rigid), "Particle/drift `held`", tube ? confined : motion,
-         "it is for particles that deform in a flow whose gradient is the same everywhere");
-  require_none(std::move(found));
-}
-
 /// The balance of power is that of all particles (6.11).
 void check_power(const Scene& scene) {
   if (!scene.output.power_balance || !scene.name.empty()) return;
   const std::string word = "Output/power balance";
-  refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, "Flow/type `" + scene.flow.type + "`",
+  refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, scene.flow.choice(),
          "it is for flows of one gradient, and for tubes");
   refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
   refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
@@ -306,7 +206,7 @@ void check_several(const Scene& scene) {
 
 /// Throws UserError for parts that the program adds where they cannot act.
 void check_registered(const Scene& scene) {
-  const std::string motion = "Particle/motion " + text(scene.particle.motion), flow = "Flow/type `" + scene.flow.type + "`";
+  const std::string motion = scene.particle.choice(), flow = scene.flow.choice();
   refuse(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", "loads act by the work that they do, `weak`");
   refuse(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "fields are on what deforms");
   if (scene.in_system()) return;
@@ -336,9 +236,8 @@ void Scene::declare(deck::Section& root) {
   const bool several = root.given("Particles");
   if (several) {
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
-      if (root.given(list))
-        throw UserError(std::string(list) + " and Particles contradict each other: each particle has its own, in Particles/<name>, and what "
-                                            "they share is said once in Particles/defaults.");
+      refuse(root.given(list), std::string(list), "Particles",
+             "each particle has its own, in Particles/<name>, and what they share is said once in Particles/defaults");
   } else {
     root.section("Particle", particle, "the particle at rest");
     declare_lists(root);
@@ -354,7 +253,7 @@ void Scene::declare(deck::Section& root) {
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
   surface::TubeOptions documented;
   ChannelList channel{root.given("Channel") ? tube : documented};
-  if (tube.present && root.given("Channel")) throw UserError("Channel and Tube contradict each other: a scene has one wall.");
+  refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one wall");
   if (root.optional_section("Channel", channel, "a tube whose section changes along a centre line, which may bend; none without this list"))
     tube.present = true;
   domain.present =
@@ -406,7 +305,15 @@ void Scene::check() const {
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");
-  check_contradictions(*this);
+  Rejections found;
+  reject_searches(*this, found);
+  particle.reject(*this, found);
+  ParticleKind::reject(*this, found);
+  contact.reject(*this, found);
+  reject_with_tube(*this, found);
+  if (domain.present) domain.reject(*this, found);
+  if (wall.present) wall.reject(*this, found);
+  found.throw_if_any();
   check_registered(*this);
   modulus();
   motion::TimeOptions in_its_unit = time;
@@ -455,6 +362,11 @@ bool Scene::lands_on_snapshots() const {
 }
 
 double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
+
+double Scene::next_snapshot(double now) const {
+  const double interval = snapshot_interval(), next = (std::floor(now / interval * (1 + 1e-12)) + 1) * interval;
+  return next < time.final_time * (1 - 1e-12) ? next : time.final_time;
+}
 
 double most_wall_points() { return std::floor(std::sqrt(most_bytes / (doubles * coupling::Ranks().size()))); }
 

@@ -33,6 +33,9 @@ namespace deck {
 class Units;
 }
 
+class Rejections;
+struct Scene;
+
 /// `Particle/motion`.
 enum class Motion { deforming, prescribed, free };
 
@@ -51,7 +54,9 @@ struct ParticleOptions {
   std::optional<std::string> forces;     ///< on a `prescribed` body: `reciprocal`, `integral`
 
   bool rigid() const { return motion != Motion::deforming; }
+  std::string choice() const;  ///< "Particle/motion `free`", for sentences
   void declare(deck::Section& section);
+  void reject(const Scene& scene, Rejections& to) const;  ///< what this motion of the scene's particle excludes
 };
 
 /// What may differ from particle to particle.
@@ -71,6 +76,7 @@ struct ParticleKind {
 
   void declare(deck::Section& section);        ///< of Particles/<name>: the keys of Particle, and the other lists
   void declare_lists(deck::Section& section);  ///< Membrane, Surface, Interface and Adaptation
+  void reject(const Scene& scene, Rejections& to) const;  ///< what mesh, membrane and interface of the scene's particle exclude
 };
 
 /// `Contact/*`: of several particles.
@@ -82,6 +88,7 @@ struct ContactOptions {
   double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< the gap, over the same R_C, below which the run ends
 
   void declare(deck::Section& section);
+  void reject(const Scene& scene, Rejections& to) const;
 };
 
 /// The options of every room; one list of the deck each.
@@ -139,7 +146,7 @@ struct Scene : ParticleKind {
   double speed() const;              ///< of Ca: rate x R_C, or the mean velocity in a tube; 0 of a flow without a gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 of a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< a membrane, not an interface of a drop
-  bool viscous_membrane() const { return !particle.rigid() && membrane.viscous(); }
+  bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }
   bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }
   bool kelvin_voigt_membrane() const { return viscous_membrane() && !membrane.relaxation_time; }
   bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || kelvin_voigt_membrane(); }
@@ -148,6 +155,7 @@ struct Scene : ParticleKind {
   std::string interface_motion() const;  ///< of the control points: the deck's, or its default for the law
   bool lands_on_snapshots() const;   ///< whether steps are shortened to end there
   double snapshot_interval() const;  ///< simulated time between snapshots
+  double next_snapshot(double now) const;  ///< the next multiple of it after `now`, or the final time
 };
 
 /// The largest number of control points that the wall of a tube may have. Each rank keeps the factors of the wall; those of all ranks together must

@@ -1,6 +1,7 @@
 #include "scene/tube.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -70,6 +71,26 @@ TubeRow with_channel(const coupling::Tube& tube, TubeRow now) {
 }
 
 }  // namespace
+
+void reject_with_tube(const Scene& scene, Rejections& to) {
+  const stokes::FlowOptions& flow = scene.flow;
+  const coupling::SolverOptions& solvers = scene.solvers;
+  const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
+  const std::string confined = scene.tube.list(), system = "Solvers/tube `" + solvers.tube + "`";
+  to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
+          "what is carried along in a channel rests only where a pressure drop does not push it through");
+  const bool couette = straight && flow.type == "simple shear" && !flow.history;
+  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, flow.choice(),
+          "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
+          "with which the wall goes along");
+  to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined, "the wall is not closed");
+  to.pair(scene.viscous_membrane() && tube && all_blocks, "Membrane viscosity", system,
+          "the system of all blocks leaves the membrane's own load out; `schur` has it");
+  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined, "the wall of a straight tube is factored");
+  to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system, "that takes the factored wall");
+  to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `" + flow.held + "`", system,
+          "the system of all blocks holds the flow rate; `schur` may hold either");
+}
 
 void check_fit(const Scene& scene, const Body& body) {
   if (!scene.tube.present) return;
@@ -180,6 +201,24 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
     throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
                                "an end, Tube/length = %.4g is too short",
                                x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
+}
+
+double least_way(const Scene& scene, const Body& body, const Columns& row) {
+  const std::string name = scene.in_system() ? "centroid_x" : "center_x";
+  const std::vector<double> x1 = row.of_particles(name + "1"), x2 = row.of_particles(name + "2"), x3 = row.of_particles(name + "3");
+  if (!body.wall || !body.wall->channel) return std::ranges::min(x1);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < x1.size(); ++p) least = std::min(least, body.wall->channel->coordinates({x1[p], x2[p], x3[p]})[0]);
+  return least;
+}
+
+std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row) {
+  const double gap = row.value("gap"), widest = body.wall->widest;
+  if (gap > 0.6 * widest) return {};
+  const std::string list = scene.tube.list();
+  return formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more %s/azimuthal elements and "
+                   "%s/axial elements",
+                   row.value("time"), gap, widest, list.c_str(), list.c_str());
 }
 
 }  // namespace tanktread

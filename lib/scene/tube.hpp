@@ -2,6 +2,7 @@
 // The tube of a scene: what it is made of, whether the particle fits, and what is recorded in it.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "scene/body.hpp"
@@ -12,6 +13,9 @@ namespace tanktread {
 
 /// The duct's own flow; in another one, or in quiescent fluid, that of the mean velocity 1, which the pressure drop (2.7) is told by.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
+
+/// Adds what a tube or channel excludes, and what needs one.
+void reject_with_tube(const Scene& scene, Rejections& to);
 
 /// Throws UserError, with the numbers, where the scene's particle does not fit into its tube, if there is one.
 void check_fit(const Scene& scene, const Body& body);
@@ -34,6 +38,12 @@ TubeRow tube_row(coupling::Capsule& capsule, const Net& x);
 
 /// Returns it for a rigid body where the tube has it placed, with this force density on the fluid and this pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop);
+
+/// Returns x1, or the coordinate along the centre line of a channel, of the centroid in a row that has come least far.
+double least_way(const Scene& scene, const Body& body, const Columns& row);
+
+/// Returns a warning if the gap in a row is narrower than 0.6 of the wall's elements, across which its traction is off by more than 1e-4.
+std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
 /// Throws RunFailure where particles at x have drawn apart by more than the wall is long, or are longer than the period of their train.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);

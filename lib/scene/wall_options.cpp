@@ -5,6 +5,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/section.hpp"
+#include "scene/scene.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 
 namespace tanktread {
@@ -19,7 +20,7 @@ void WallOptions::declare(deck::Section& section) {
 
 void WallOptions::check(const stokes::FlowOptions& flow) const {
   if (!(normal.norm() > 0)) throw UserError("Wall/normal must have a direction, but is [0, 0, 0].");
-  if (flow.type == "duct") throw UserError("Wall and Flow/type `duct` contradict each other: a duct has walls of its own, in a list Tube.");
+  refuse(flow.type == "duct", "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
   const stokes::PlaneWall wall = *plane();
   const Vec3 along = wall.axes().row(0).transpose(), across = wall.axes().row(1).transpose();
   for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).directions()) {
@@ -34,6 +35,15 @@ void WallOptions::check(const stokes::FlowOptions& flow) const {
                                 there[0], there[1], there[2], here[0], here[1], here[2]));
     }
   }
+}
+
+void WallOptions::reject(const Scene& scene, Rejections& to) const {
+  to.pair(scene.tube.present, "Wall", "Tube", "images are of one plane in a fluid that is unbounded otherwise");
+  to.pair(scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
+  to.pair(scene.quadrature.rule != "adaptive", "Wall", "Quadrature/rule `" + scene.quadrature.rule + "`",
+          "a film at a wall takes rules by tolerance, `adaptive`");
+  to.pair(!scene.runs_in_time(), scene.sought(), "Wall", "beside a wall nothing that deforms keeps its distance from it");
+  to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "its distance from the wall matters");
 }
 
 std::optional<stokes::PlaneWall> WallOptions::plane() const {

@@ -14,6 +14,9 @@ class Section;
 
 namespace tanktread {
 
+class Rejections;
+struct Scene;
+
 struct WallOptions {
   bool present = false;  ///< whether there is one; nothing else counts without
 
@@ -26,6 +29,8 @@ struct WallOptions {
   /// One sentence (UserError) for a normal that is none, and for a flow that does not fit the wall: it must be along it and
   /// the same everywhere on it.
   void check(const stokes::FlowOptions& flow) const;
+
+  void reject(const Scene& scene, Rejections& to) const;  ///< what a wall in the scene excludes
 
   std::optional<stokes::PlaneWall> plane() const;  ///< nothing without one
 };

@@ -51,9 +51,8 @@ void MeshOptions::check() const {
   if (!polar() && pole_axis) refuse("pole axis");
   if (!polar() && poles) refuse("poles");
   if (!polar() && pole_subdivisions) refuse("pole subdivisions");
-  if (pole_subdivisions && poles != "bezier transform")
-    throw UserError("Surface/pole subdivisions and Surface/poles `" + *poles +
-                    "` contradict each other: it belongs to `bezier transform`.");
+  refuse(pole_subdivisions && poles != "bezier transform", "Surface/pole subdivisions", "Surface/poles `" + poles.value_or("c1") + "`",
+         "it belongs to `bezier transform`");
 }
 
 spline::PolarMesh MeshOptions::polar_mesh() const {
@@ -130,19 +129,14 @@ void ParticleShape::read() {
 void ParticleShape::check() const {
   if (initial) initial->check();
   const bool round = shape == "sphere" || shape == "red cell";
-  if (shape != "file" && file)
-    throw UserError("Particle/file and Particle/shape `" + shape + "` contradict each other: it belongs to `file`.");
+  refuse(shape != "file" && file, "Particle/file", "Particle/shape `" + shape + "`", "it belongs to `file`");
   if (shape == "file") {
     if (!file) throw UserError("Particle/shape `file` needs Particle/file, the name of a Bezier-extraction text.");
-    if (radius || semi_axes)
-      throw UserError(std::string("Particle/") + (radius ? "radius" : "semi-axes") +
-                      " and Particle/shape `file` contradict each other: the size is the file's.");
+    refuse(radius || semi_axes, std::string("Particle/") + (radius ? "radius" : "semi-axes"), "Particle/shape `file`", "the size is the file's");
     return;
   }
-  if (round && semi_axes)
-    throw UserError("Particle/semi-axes and Particle/shape `" + shape + "` contradict each other: give Particle/radius.");
-  if (!round && radius)
-    throw UserError("Particle/radius and Particle/shape `" + shape + "` contradict each other: give Particle/semi-axes.");
+  refuse(round && semi_axes, "Particle/semi-axes", "Particle/shape `" + shape + "`", "give Particle/radius");
+  refuse(!round && radius, "Particle/radius", "Particle/shape `" + shape + "`", "give Particle/semi-axes");
   if (!round && !semi_axes) throw UserError("Particle/shape `" + shape + "` needs Particle/semi-axes, three lengths.");
   if (shape == "spheroid") {
     const Vec3& a = *semi_axes;
@@ -253,8 +247,7 @@ void ChannelOptions::declare(deck::Section& list) {
 void ChannelOptions::check() const {
   const auto belongs = [this](const char* key, bool given, std::initializer_list<const char*> owners) {
     const bool owned = std::ranges::find(owners, profile) != owners.end();
-    if (given && !owned)
-      throw UserError(std::string("Channel/") + key + " and Channel/profile `" + profile + "` contradict each other: it has none.");
+    refuse(given && !owned, std::string("Channel/") + key, "Channel/profile `" + profile + "`", "it has none");
     if (!given && owned) throw UserError("Channel/profile `" + profile + "` needs Channel/" + key + ".");
   };
   belongs("depth", depth.has_value(), {"constriction", "expansion", "step"});

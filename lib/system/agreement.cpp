@@ -2,9 +2,12 @@
 
 #include <chrono>
 #include <cstdio>
+#include <new>
 #include <thread>
 
 #include <mpi.h>
+
+#include "base/errors.hpp"
 
 namespace tanktread::coupling {
 
@@ -72,6 +75,30 @@ std::string error_of_any(const std::string& mine) {
   error.resize(size);
   MPI_Bcast(error.data(), static_cast<int>(size), MPI_CHAR, who, everyone());
   return error;
+}
+
+std::string failure_of_any(const std::function<void()>& act) {
+  std::string error;
+  try {
+    act();
+  } catch (const UserError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    error = "there is not enough memory";
+  } catch (const std::exception& exception) {
+    error = exception.what();
+  }
+  return error_of_any(error);
+}
+
+bool any_told_to_stop(bool told) { return largest(told) > 0; }
+
+std::vector<double> decided(const std::function<std::vector<double>()>& choose) {
+  std::vector<double> numbers;
+  if (everyone() == MPI_COMM_NULL || rank() == 0) numbers = choose();
+  numbers.resize(static_cast<std::size_t>(of_first(static_cast<double>(numbers.size()))));
+  take_first(numbers);
+  return numbers;
 }
 
 void take_first(std::span<double> numbers) {

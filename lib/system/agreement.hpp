@@ -1,8 +1,10 @@
 #pragma once
 // What all ranks agree on, whatever the data of each one says: an outcome, a decision, and that all of them are still there.
 
+#include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace tanktread::coupling {
 
@@ -15,6 +17,17 @@ int largest(int mine, const std::string& error = {});
 
 /// The error of one of the ranks, on all of them; empty where none has one. Collective; see `largest`.
 std::string error_of_any(const std::string& mine);
+
+/// Calls `act` on every rank and returns why it failed on any of them: what the exception says, or an empty text. UserErrors are not caught.
+/// Collective.
+std::string failure_of_any(const std::function<void()>& act);
+
+/// Returns whether any rank has been told to stop, so that all of them stop together. Collective.
+bool any_told_to_stop(bool told);
+
+/// Returns the numbers that `choose` returns on the first rank. It is not called on other ranks. A decision based on data that differ by round-off
+/// between ranks is one decision this way. Collective.
+std::vector<double> decided(const std::function<std::vector<double>()>& choose);
 
 /// The first rank's numbers, on every rank: of data that should be equal to the bit, so that a decision is one even where it is not. Collective.
 void take_first(std::span<double> numbers);

@@ -12,7 +12,7 @@
 #include "surface/symmetry.hpp"
 #include "system/collocation.hpp"
 #include "system/label_rotations.hpp"
-#include "system/solvers/block_system.hpp"
+#include "system/solvers/tube_system.hpp"
 
 namespace tanktread::coupling {
 

@@ -129,16 +129,14 @@ Mat3 rotation_between(const Net& from, const Net& to) {
 }  // namespace
 
 Net InterfaceMotion::normals_at(const Net& x) const {
-  Net normals = Net::Zero(x.rows(), 3);
-  for (const Drop& drop : drops_)
-    for (const int i : drop.points) normals.row(i) = site_normal(space_, x, space_.collocation[static_cast<size_t>(i)]).transpose();
-  ranks_.replicate(normals);
-  return normals;
+  return ranks_.filled(x.rows(), [&](Net& normals) {
+    for (const Drop& drop : drops_)
+      for (const int i : drop.points) normals.row(i) = site_normal(space_, x, space_.collocation[static_cast<size_t>(i)]).transpose();
+  });
 }
 
-/// w at own collocation sites, from the density f.
-Net InterfaceMotion::sliding(const Net& x, const Net& f) const {
-  Net w = Net::Zero(x.rows(), 3);
+/// Sets w at own collocation sites, from the density f.
+void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
   for (const Drop& drop : drops_) {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
@@ -148,12 +146,11 @@ Net InterfaceMotion::sliding(const Net& x, const Net& f) const {
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();
   }
-  return w;
 }
 
 /// Control values of W + n n.(v - W) + (1 - n n).w, W at x with b = dV/dx there, w from the density f (empty: none); rest: v - W - w at the places.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
-  Net u = sites_ * v, w = sliding(x, f);
+  Net u = sites_ * v;
   const Net places = sites_ * x;
   std::vector<RigidMotion> shared;
   for (const Drop& drop : drops_) {
@@ -173,7 +170,7 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
   };
   if (projection_) {
     const Eigen::SparseMatrix<double>& values = projection_->values();
-    ranks_.replicate(w);
+    const Net w = ranks_.filled(x.rows(), [&](Net& own) { slide(x, f, own); });
     u = values * v;
     const Net n = projection_->normals(x);
     const Net free = values * collocation_.solve(w), along = along_interface(n, free);
@@ -184,9 +181,12 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
     return projection_->control_values(u - leak.asDiagonal() * n) + slid;
   }
   rest = Net::Zero(u.rows(), 3);
-  cross(places, normals, w, &Drop::points, u);
-  ranks_.replicate(u);
-  return collocation_.solve(u);
+  Net w = Net::Zero(x.rows(), 3);
+  slide(x, f, w);
+  return collocation_.solve(ranks_.filled(x.rows(), [&](Net& own) {
+    cross(places, normals, w, &Drop::points, u);
+    own = u;
+  }));
 }
 
 std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> axes) const {
@@ -197,13 +197,15 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
   for (const Drop& drop : drops_) {
     const Vec3 middle = drop.block.rows(x).colwise().mean().transpose();
     for (const int k : axes) {
-      Net field = Net::Zero(places.rows(), 3);
-      for (const int i : projection_ ? drop.places : drop.points) {
-        const Vec3 turn = Vec3::Unit(k).cross(Vec3(places.row(i).transpose()) - middle), n = normals.row(i).transpose();
-        field.row(i) = (turn - n.dot(turn) * n).transpose();
-      }
-      if (!projection_) ranks_.replicate(field);
-      all.push_back(projection_ ? projection_->control_values(field) : collocation_.solve(field));
+      const auto rotate = [&](Net& field) {
+        for (const int i : projection_ ? drop.places : drop.points) {
+          const Vec3 turn = Vec3::Unit(k).cross(Vec3(places.row(i).transpose()) - middle), n = normals.row(i).transpose();
+          field.row(i) = (turn - n.dot(turn) * n).transpose();
+        }
+      };
+      Net everywhere = Net::Zero(places.rows(), 3);
+      if (projection_) rotate(everywhere);
+      all.push_back(projection_ ? projection_->control_values(everywhere) : collocation_.solve(ranks_.filled(places.rows(), rotate)));
     }
   }
   return all;
@@ -213,10 +215,7 @@ Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {
   latest_.x = x;
   const Net normals = normals_at(x);
   if (!relaxed_) return combined(x, b, normals, v, {}, latest_.rest);
-  Net d(x.rows(), 3);
-  mesh_.load(x, own_elements_, d);
-  ranks_.replicate(d);
-  latest_.density = sites_ * mass_.solve(d);
+  latest_.density = sites_ * mass_.solve(ranks_.filled(x.rows(), [&](Net& d) { mesh_.load(x, own_elements_, d); }));
   return combined(x, b, normals, v, collocation_.solve(along_interface(normals, latest_.density)), latest_.rest);
 }
 
@@ -234,10 +233,7 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
   Net there, change, density, rest;
   if (turns) there = x_ + aside * delta, change = (normals_at(there) - normals_) / aside;
   if (relaxed_) {
-    Net h(delta.rows(), 3);
-    tangent_.apply(delta, h);
-    ranks_.replicate(h);
-    density = along_interface(normals_, sites_ * mass_.solve(h));
+    density = along_interface(normals_, sites_ * mass_.solve(ranks_.filled(delta.rows(), [&](Net& h) { tangent_.apply(delta, h); })));
     if (turns) density -= turned(normals_, change, known_.density);
     density = collocation_.solve(density);
   }
@@ -247,9 +243,7 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
     const Net n = projection_->normals(x_);
     return kept + projection_->control_values(turned(n, (projection_->normals(there) - n) / aside, known_.rest));
   }
-  Net u = turned(normals_, change, known_.rest);
-  ranks_.replicate(u);
-  return kept + collocation_.solve(u);
+  return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) { u = turned(normals_, change, known_.rest); }));
 }
 
 }  // namespace tanktread::coupling

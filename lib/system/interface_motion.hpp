@@ -64,7 +64,7 @@ class InterfaceMotion {
     std::vector<int> places;      // of the projection
     stokes::Rows<double> layer;   // their rows of A0, in full: what the mesh does must not depend on units or axes
   };
-  Net sliding(const Net& x, const Net& f) const;
+  void slide(const Net& x, const Net& f, Net& w) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
   Net normals_at(const Net& x) const;  ///< at the sites of all drops; zeros elsewhere. Collective
 

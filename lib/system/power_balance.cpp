@@ -135,24 +135,16 @@ Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
       if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
     }
   }
-  const std::vector<int> own = ranks_.share(static_cast<int>(places_.size()));
-  Net u = Net::Zero(static_cast<Eigen::Index>(places_.size()), 3), twice = u;
-  single_.place(x, capsule_.measure());
-  single_.apply(load, own, u);
-  u /= -viscosity_;
-  if (double_) {
-    double_->place(x);
-    double_->apply(density, own, twice);
-    u += twice;
-  }
   const Net at = values_ * x;
-  if (Tube* tube = capsule_.tube()) {
-    Net answer(u.rows(), 3);
-    tube->velocity_at(at, capsule_.response(x), own, answer);
-    for (const int i : own) u.row(i) += answer.row(i);
-  }
-  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
-  return values_ * v - flow.velocities(at) - u;
+  single_.place(x, capsule_.measure());
+  if (double_) double_->place(x);
+  return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
+    Net part = u;
+    single_.apply(load, own, u);
+    u /= -viscosity_;
+    if (double_) double_->apply(density, own, part), u += part;
+    if (Tube* tube = capsule_.tube()) tube->velocity_at(at, capsule_.response(x), own, part), u(own, Eigen::all) += part(own, Eigen::all);
+  });
 }
 
 }  // namespace tanktread::coupling

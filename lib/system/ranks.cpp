@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <iterator>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
 
+#include "surface/partition.hpp"
 #include "system/agreement.hpp"
 
 namespace tanktread::coupling {
@@ -111,6 +113,19 @@ void Ranks::own(const std::vector<int>& rows, surface::Symmetry symmetry) {
   impl_->all = Teuchos::rcp(new MultiVector(target, 3));
 }
 
+std::vector<int> Ranks::divide_points(const spline::Space& space, const surface::Symmetry& symmetry) {
+  std::vector<int> rows = surface::share(space, surface::partition_of_points(space, size(), symmetry.fundamental()), rank()).points;
+  own(rows, symmetry);
+  return rows;
+}
+
+std::vector<int> Ranks::divide_in_order(const surface::Symmetry& symmetry) {
+  std::vector<int> rows;
+  for (const int k : share(static_cast<int>(symmetry.fundamental().size()))) rows.push_back(symmetry.fundamental()[static_cast<std::size_t>(k)]);
+  own(rows, symmetry);
+  return rows;
+}
+
 void Ranks::replicate(Net& net) const {
   const auto clock = impl_->time();
   if (size() > 1) {
@@ -156,12 +171,18 @@ void Ranks::add(std::span<double> numbers) const {
   }
 }
 
-void Ranks::add_all(std::initializer_list<std::span<double>> several) const {
+void Ranks::add_all(std::span<const std::span<double>> several) const {
   std::vector<double> numbers;
   for (const auto& some : several) numbers.insert(numbers.end(), some.begin(), some.end());
   add(numbers);
   const double* next = numbers.data();
   for (const auto& some : several) next = std::ranges::copy_n(next, static_cast<std::ptrdiff_t>(some.size()), some.begin()).in;
+}
+
+stokes::Evaluations Ranks::of_all(const stokes::Evaluations& own) const {
+  std::array sum = {static_cast<double>(own.far), static_cast<double>(own.near), static_cast<double>(own.self)};
+  add(sum);
+  return {std::llround(sum[0]), std::llround(sum[1]), std::llround(sum[2])};
 }
 
 std::vector<int> Ranks::share(int n) const {

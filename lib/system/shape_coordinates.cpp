@@ -84,8 +84,11 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
     drawn -= turn * (turn.transpose() * drawn);
   }
-  following_ = -slides.partialPivLu().solve(drawn);
-  take_first({following_.data(), static_cast<std::size_t>(following_.size())});
+  const std::vector<double> first = decided([&] {
+    const Eigen::MatrixXd following = -slides.partialPivLu().solve(drawn);
+    return std::vector<double>(following.reshaped().begin(), following.reshaped().end());
+  });
+  following_ = Eigen::Map<const Eigen::MatrixXd>(first.data(), n, shape_size());
 }
 
 /// Translations of one drop become what they are, tangential parts included.

@@ -6,15 +6,16 @@
 #include <limits>
 #include <optional>
 
-#include "scene/particles/gaps.hpp"
-#include "system/agreement.hpp"
+#include "base/formatted.hpp"
 #include "motion/adaptation.hpp"
-#include "spline/refinement.hpp"
+#include "scene/particles/gaps.hpp"
 #include "spline/locate.hpp"
+#include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/metrics.hpp"
 #include "surface/shapes.hpp"
+#include "system/agreement.hpp"
 
 namespace tanktread {
 
@@ -90,14 +91,16 @@ struct Findings {
   std::vector<spline::Merge> merges;
 };
 
-/// The first rank's marks or merges, on all ranks.
-template <class Item>
-std::vector<Item> agreed(const std::vector<Item>& mine) {
-  std::vector<double> numbers;
-  for (const Item& item : mine)
-    for (const int number : {item.element, static_cast<int>(item.s), static_cast<int>(item.t)}) numbers.push_back(number);
-  numbers.resize(static_cast<size_t>(coupling::of_first(static_cast<double>(numbers.size()))));
-  coupling::take_first(numbers);
+/// Returns the marks or merges that `choose` returns on the first rank, on all ranks.
+template <class Choose>
+auto decided(const Choose& choose) {
+  using Item = typename decltype(choose())::value_type;
+  const std::vector<double> numbers = coupling::decided([&] {
+    std::vector<double> all;
+    for (const Item& item : choose())
+      for (const int number : {item.element, static_cast<int>(item.s), static_cast<int>(item.t)}) all.push_back(number);
+    return all;
+  });
   std::vector<Item> items;
   for (size_t k = 0; k < numbers.size(); k += 3)
     items.push_back({static_cast<int>(numbers[k]), static_cast<decltype(Item::s)>(numbers[k + 1]), static_cast<decltype(Item::t)>(numbers[k + 2])});
@@ -131,14 +134,19 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction) {
   const std::vector<double> widths = widths_of_mesh(body, films);
   const auto of = [&](auto indicator) {
     const std::vector<std::array<double, 2>> lengths = lengths_of(indicator);
-    std::vector<spline::Merge> merges = motion::merges(indicator, options);
-    if (!widths.empty()) motion::keep_films(lengths, widths, options, merges);
+    std::vector<spline::Merge> merges = decided([&] {
+      std::vector<spline::Merge> all = motion::merges(indicator, options);
+      if (!widths.empty()) motion::keep_films(lengths, widths, options, all);
+      return all;
+    });
     return Findings{[found = std::move(indicator), lengths, widths](const motion::AdaptationOptions& limits) {
-                      std::vector<spline::Mark> marks = motion::marks(found, limits);
-                      if (!widths.empty()) motion::add_films(lengths, widths, limits, marks);
-                      return agreed(marks);
+                      return decided([&] {
+                        std::vector<spline::Mark> marks = motion::marks(found, limits);
+                        if (!widths.empty()) motion::add_films(lengths, widths, limits, marks);
+                        return marks;
+                      });
                     },
-                    agreed(merges)};
+                    std::move(merges)};
   };
   if (options.indicator == "error")
     return of(surface::resolution(body.mesh, body.nested(), body.unstressed, x, options.load_tolerance ? traction : surface::FieldAt()));
@@ -201,12 +209,11 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
     auto target = on_mesh(of, std::move(coarsening.mesh));
     if (target->space.n_points >= body.space.n_points) return {};
     const spline::Projection projection(body.nested(), target->nested());
-    std::vector<double> defect(body.nested().elements.size(), 0.0);
-    for (const Net* net : {&body.unstressed, &x}) {
-      const std::vector<double> found = projection(*net).defect;
-      for (size_t e = 0; e < defect.size(); ++e) defect[e] = std::max(defect[e], found[e]);
-    }
-    coupling::take_first(defect);
+    const std::vector<double> defect = coupling::decided([&] {
+      std::vector<double> worse = projection(body.unstressed).defect;
+      std::ranges::transform(worse, projection(x).defect, worse.begin(), [](double a, double b) { return std::max(a, b); });
+      return worse;
+    });
     const double change = *std::max_element(defect.begin(), defect.end());
     if (change <= scene.adaptation.coarsening_tolerance) {
       Adapted result = carried(of, std::move(target), [&](const Net& field) { return projection(field).net; });
@@ -259,6 +266,23 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
     body.initial = body.unstressed = body.rest;
     body.symmetry = surface::Symmetry(body.space.n_points);
   }
+}
+
+std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time) {
+  const motion::AdaptationOptions& options = member.scene.adaptation;
+  const std::string whole = "elements above the limits of Adaptation stay whole: ";
+  std::vector<Warning> all;
+  const auto add = [&](bool lacks, const std::string& kind, const std::string& sentence) {
+    if (lacks) all.push_back({member.label(kind), member.label(formatted("at time %.4g ", time) + sentence)});
+  };
+  add(change.refused > 0, "levels",
+      whole + formatted("they have been halved as often as Adaptation/levels = %d allows", options.levels));
+  add(change.full, "number of points",
+      whole + formatted("Adaptation/largest number of points = %d leaves no room for all their cuts", options.largest_number_of_points));
+  add(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
+      formatted("refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
+                change.change));
+  return all;
 }
 
 }  // namespace tanktread

@@ -4,9 +4,12 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "motion/integrator.hpp"
 #include "scene/body.hpp"
+#include "scene/member.hpp"
+#include "scene/particles/warnings.hpp"
 #include "spline/space.hpp"
 
 namespace tanktread {
@@ -27,6 +30,9 @@ struct Adapted {
 /// on every rank.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films);
+
+/// Returns warnings about what a change of the mesh at this time lacks.
+std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
 /// Refines the mesh of a rigid body that is alone, at its first place, as Adaptation says of its shape, the film to a wall and the traction, and fits
 /// the shape again. The mesh stays from then on, because the body does not deform. `force_density`: control values, shape (N, 3), force/area, on the

@@ -1,7 +1,7 @@
 // Capsules and drops in the time loop, on meshes that may change.
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -286,21 +286,18 @@ class Deforming : public ParticleSystem {
 
   /// Velocity and tank-treading of those that deform, where the fluids move by v. Each particle is one rank's.
   void add_treading(const Net& x, const Net& v, const std::vector<std::unique_ptr<ParticleRow>>& rows) const {
-    constexpr std::size_t n = 5;
-    std::vector<double> found(n * rows.size(), 0.);
-    for (const int k : ranks_.share(static_cast<int>(rows.size()))) {
-      const Member& member = members_[k];
-      if (member.scene.particle.rigid()) continue;
-      ParticleRow& now = *rows[k];
-      tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(x), member.own(v), now);
-      std::ranges::copy(std::array<double, n>{now.velocity[0], now.velocity[1], now.velocity[2], now.treading.velocity, now.treading.frequency},
-                        &found[n * k]);
-    }
-    ranks_.add(found);
-    for (std::size_t p = 0; p < rows.size(); ++p) {
-      const double* of = &found[n * p];
-      if (!members_[p].scene.particle.rigid()) rows[p]->velocity = {of[0], of[1], of[2]}, rows[p]->treading = {of[3], of[4]};
-    }
+    const auto found = ranks_.divided<Eigen::MatrixXd>(static_cast<int>(rows.size()), 5, [&](std::span<const int> mine, Eigen::MatrixXd& to) {
+      for (const int k : mine) {
+        const Member& member = members_[k];
+        if (member.scene.particle.rigid()) continue;
+        ParticleRow& now = *rows[k];
+        tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(x), member.own(v), now);
+        to.row(k) << now.velocity.transpose(), now.treading.velocity, now.treading.frequency;
+      }
+    });
+    for (Eigen::Index p = 0; p < found.rows(); ++p)
+      if (!members_[p].scene.particle.rigid())
+        rows[p]->velocity = found.row(p).head<3>().transpose(), rows[p]->treading = {found(p, 3), found(p, 4)};
   }
 
   /// The angle that the material of particle p has turned by.
@@ -330,7 +327,7 @@ class Deforming : public ParticleSystem {
     if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), {}, &tube->wall());
     else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths);
-    remark_on(member, change, state.time);
+    std::ranges::move(adaptation_remarks(member, change, state.time), std::back_inserter(remarks_));
     if (!change.body) return;
     const int more = change.body->space.n_points - member.block.n_points;
     carry_contacts(p, change.body->nested());
@@ -373,25 +370,6 @@ class Deforming : public ParticleSystem {
     set_up();
     capsule_->work() = work_;
     for (Member& member : members_) follow(member);
-  }
-
-  /// What a change of the mesh lacks.
-  void remark_on(const Member& member, const Adapted& change, double time) {
-    const motion::AdaptationOptions& options = member.scene.adaptation;
-    const auto remark = [&](bool lacks, const std::string& kind, const std::string& sentence) {
-      if (lacks) remarks_.push_back({member.label(kind), member.label(formatted("at time %.4g ", time) + sentence)});
-    };
-    remark(change.refused > 0, "levels",
-         formatted("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows",
-                   options.levels));
-    remark(change.full, "number of points",
-         formatted("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all "
-                   "their cuts",
-                   options.largest_number_of_points));
-    remark(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
-         formatted(
-             "refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
-             change.change));
   }
 
   const Scene& scene_;

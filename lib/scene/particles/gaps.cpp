@@ -201,7 +201,7 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
   const std::array<double, 6> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
                                    of_rank.place[0], of_rank.place[1], of_rank.place[2]};
   Nearest found;
-  for (const auto& [gap, first, second, x1, x2, x3] : gathered(ranks, here))
+  for (const auto& [gap, first, second, x1, x2, x3] : ranks.gathered(here))
     if (gap < found.gap) found = {gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}};
   return found;
 }
@@ -228,17 +228,16 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
   const std::vector<Net> own = own_nets(members, x);
   const Pairs pairs(members, own, cell, reach);
   const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
-  std::vector<double> sites(n * close, 0.);
-  for (const int k : ranks.share(static_cast<int>(close))) {
-    const surface::ClosestPoints found = pairs.closest(pairs.all()[static_cast<std::size_t>(k)], reach);
-    if (found.gap >= reach) continue;
-    const auto& [a, b] = found.sites;
-    std::ranges::copy(std::array<double, n>{1, double(a.element), a.s, a.t, double(b.element), b.s, b.t}, sites.begin() + n * k);
-  }
-  ranks.add(sites);
+  const auto sites = ranks.divided<Eigen::MatrixXd>(static_cast<int>(close), n, [&](std::span<const int> mine, Eigen::MatrixXd& rows) {
+    for (const int k : mine) {
+      const surface::ClosestPoints found = pairs.closest(pairs.all()[static_cast<std::size_t>(k)], reach);
+      const auto& [a, b] = found.sites;
+      if (found.gap < reach) rows.row(k) << 1, a.element, a.s, a.t, b.element, b.s, b.t;
+    }
+  });
   std::vector<Approach> all;
   for (std::size_t k = 0; k < close; ++k) {
-    const double* of = &sites[n * k];
+    const Eigen::VectorXd of = sites.row(static_cast<Eigen::Index>(k));
     const Pair& pair = pairs.all()[k];
     if (of[0] == 0) continue;
     all.push_back(approach(members, x, {{pair.first, pair.second}, {spline::Site{int(of[1]), of[2], of[3]}, spline::Site{int(of[4]), of[5], of[6]}},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/formatted.hpp"
 #include "scene/series/diagnostics.hpp"
@@ -35,7 +36,7 @@ surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& rank
   const std::array<double, 7> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
                                   mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element)};
   surface::Quality result;
-  for (const auto& [jacobian, folded, x1, x2, x3, aspect, stretched] : gathered(ranks, own))
+  for (const auto& [jacobian, folded, x1, x2, x3, aspect, stretched] : ranks.gathered(own))
     result = surface::worse(result, {jacobian, static_cast<int>(folded), {x1, x2, x3}, aspect, static_cast<int>(stretched)});
   return result;
 }
@@ -46,6 +47,19 @@ double stiffness(const Scene& scene, double h) {
   const double k = wave_number(h), g = scene.modulus(), mu = mean_viscosity(scene);
   const double in_plane = std::max(1 + scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
   return std::max(in_plane, scene.bending_modulus() * k * k * k / (4 * mu));
+}
+
+StepFindings::StepFindings(const Scene& scene, const Scene& first, const Columns& row, const surface::Quality& quality, int n_elements)
+    : time(row.value("time")),
+      step(row.value("time_step")),
+      smallest_tension(row.smallest("smallest_tension")),
+      compressed_area(row.largest("compressed_area")),
+      volume_error(std::max(row.largest("volume_error"), -row.smallest("volume_error"))),
+      jacobian_ratio(quality.jacobian_ratio),
+      aspect_ratio(quality.aspect_ratio) {
+  if (scene.tube.present || (scene.wall.present && !first.adaptation.enabled)) gap = row.value("gap");
+  const std::vector<double> areas = row.of_particles("area");
+  element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
 }
 
 bool Warnings::fresh(const Warning& warning) {

@@ -21,7 +21,12 @@ struct StepFindings {
   double volume_error = 0;
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
   double element = 1;                           ///< mean size, the square root of the area over the elements
-  std::optional<double> gap;                    ///< to the wall of a tube
+  std::optional<double> gap;                    ///< to a wall
+
+  StepFindings() = default;
+
+  /// Takes them from a row. `first`: the scene of the first particle that deforms.
+  StepFindings(const Scene& scene, const Scene& first, const Columns& row, const surface::Quality& quality, int n_elements);
 };
 
 /// A sentence for the user, and what it is about: one of a kind is enough.

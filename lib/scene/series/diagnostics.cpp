@@ -263,7 +263,7 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
   }
   std::array<double, 2 * surface::Geometry::n_extremes> ends;
   for (size_t k = 0; k < extremes.size(); ++k) ends[2 * k] = extremes[k].smallest, ends[2 * k + 1] = extremes[k].largest;
-  for (const auto& of_rank : gathered(ranks, ends))
+  for (const auto& of_rank : ranks.gathered(ends))
     for (size_t k = 0; k < extremes.size(); ++k) extremes[k] = wider(extremes[k], {of_rank[2 * k], of_rank[2 * k + 1]});
   surface::Deformation result = surface::Geometry::deformation(measures, extremes);
   if (!plane_defined) result.inclination = std::numeric_limits<double>::quiet_NaN();
@@ -278,14 +278,11 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);
-  std::vector<double> moments = geometry.block_moments(x, blocks);
-  std::vector<double> energy = surface::block_sums(membrane.element_energies(x, elements));
-  std::vector<double> area = surface::block_sums(tensions.area), compressed = surface::block_sums(tensions.compressed);
-  std::vector<double> smallest = slots(ranks, elements.empty() ? 0 : tensions.smallest);
-  std::vector<double> change = slots(ranks, tensions.area_change);
-  std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, x, slope, own));
-  std::vector<double> shape = surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements);
-  ranks.add_all({moments, energy, area, compressed, smallest, change, fastest, shape});
+  const auto [moments, energy, area, compressed, smallest, change, fastest, shape] = ranks.of_all(std::array{
+      geometry.block_moments(x, blocks), surface::block_sums(membrane.element_energies(x, elements)), surface::block_sums(tensions.area),
+      surface::block_sums(tensions.compressed), slots(ranks, elements.empty() ? 0 : tensions.smallest), slots(ranks, tensions.area_change),
+      slots(ranks, normal_velocity(scene, body, geometry, x, slope, own)),
+      surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements)});
   DeformingRow now;
   now.n_points = body.space.n_points;
   now.measures = surface::Geometry::measures(x, moments);

@@ -17,17 +17,6 @@
 
 namespace tanktread {
 
-/// What every rank has, in their order. Collective.
-template <std::size_t n>
-std::vector<std::array<double, n>> gathered(const coupling::Ranks& ranks, const std::array<double, n>& mine) {
-  std::vector<double> all(n * static_cast<std::size_t>(ranks.size()), 0.);
-  std::ranges::copy(mine, all.begin() + static_cast<std::ptrdiff_t>(n) * ranks.rank());
-  ranks.add(all);
-  std::vector<std::array<double, n>> values(all.size() / n);
-  for (std::size_t k = 0; k < all.size(); ++k) values[k / n][k % n] = all[k];
-  return values;
-}
-
 /// Data of a moving particle for one row. Vectors are in the axes of space; units as the columns state.
 struct ParticleRow {
   int n_points = 0;

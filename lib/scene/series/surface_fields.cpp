@@ -19,7 +19,7 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
       all_.push_back({p, std::move(surfactant), known});
     }
     if (scene.maxwell_membrane())
-      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity(),
+      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity,
                                                                     *scene.membrane.relaxation_time)});
     for (const auto& part : scene.fields)
       all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});

@@ -43,7 +43,7 @@ void FlowHistory::declare(deck::Section& section) {
 void FlowHistory::read() {
   if (!file) return;
   for (const auto& [key, given] : {std::pair{"times", &times}, {"amplitudes", &amplitudes}, {"angles", &angles}})
-    if (*given) throw UserError(std::string("Flow/history/file and Flow/history/") + key + " contradict each other: the file holds all of them.");
+    refuse(given->has_value(), "Flow/history/file", std::string("Flow/history/") + key, "the file holds all of them");
   const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(*file, 80));
   const std::vector<CsvRow> rows = csv_rows(text_of_file(*file, name, 10'000'000), "time");
   if (rows.empty()) throw UserError(name + " holds no row of a time and an amplitude.");

@@ -71,25 +71,19 @@ void FlowOptions::check() const {
   belongs("profile", profile.has_value(), "parabolic");
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
-  if (held != "flow rate" && type != "duct")
-    throw UserError("Flow/held `" + held + "` and Flow/type `" + type + "` contradict each other: it belongs to `duct`.");
-  if (user && shear_rate != 1.0)
-    throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: that flow has keys of its own, in Flow/" + type + ".");
-  const bool own_speed = type == "duct" || type == "parabolic";
-  if (own_speed && shear_rate != 1.0)
-    throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: give Flow/" + (type == "duct" ? "mean" : "maximum") +
-                    " velocity.");
+  refuse(held != "flow rate" && type != "duct", "Flow/held `" + held + "`", choice(), "it belongs to `duct`");
+  refuse(user && shear_rate != 1.0, "Flow/shear rate", choice(), "that flow has keys of its own, in Flow/" + type);
+  refuse((type == "duct" || type == "parabolic") && shear_rate != 1.0, "Flow/shear rate", choice(),
+         std::string("give Flow/") + (type == "duct" ? "mean" : "maximum") + " velocity");
   if (history) {
-    if (type == "quiescent") throw UserError("Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has nothing to change.");
-    if (type == "duct" && history->angles)
-      throw UserError("Flow/history/angles and Flow/type `duct` contradict each other: the flow is along the tube.");
+    refuse(type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has nothing to change");
+    refuse(type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`", "the flow is along the tube");
     history->check();
   }
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
     throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
                     ".");
-  if (type == "linear" && shear_rate != 1.0)
-    throw UserError("Flow/shear rate and Flow/gradient contradict each other: the gradient of a `linear` flow holds its rate already.");
+  refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient", "the gradient of a `linear` flow holds its rate already");
 }
 
 double FlowOptions::rate() const {

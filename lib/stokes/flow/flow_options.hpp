@@ -35,6 +35,8 @@ struct FlowOptions {
 
   void declare(deck::Section& section);
 
+  std::string choice() const { return "Flow/type `" + type + "`"; }  ///< for sentences
+
   /// One sentence (UserError) for keys that contradict each other or are missing.
   void check() const;
 

@@ -86,17 +86,18 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
     layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), sharper());
     layer_->place(surface_->net);
   }
-  const Ranks& ranks = wall->ranks();
-  const bool shared = ranks.size() > 1 && x.rows() >= few;
-  std::vector<int> own = shared ? ranks.share(static_cast<int>(x.rows())) : std::vector<int>(static_cast<std::size_t>(x.rows()));
-  if (!shared) std::iota(own.begin(), own.end(), 0);
-  Net u(x.rows(), 3), v = Net::Zero(x.rows(), 3), at(static_cast<Eigen::Index>(own.size()), 3);
-  layer_->apply(traction, x, own, u);
-  for (std::size_t k = 0; k < own.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(own[k]);
-  Net rest = pressure_drop / viscosity() * wall->inlet().integral(at);
-  if (with_ends) rest += ends(at);
-  for (std::size_t k = 0; k < own.size(); ++k) v.row(own[k]) = rest.row(static_cast<Eigen::Index>(k)) - u.row(own[k]) / viscosity();
-  if (shared) ranks.add({v.data(), static_cast<std::size_t>(v.size())});
+  const auto evaluate = [&](std::span<const int> own, Net& v) {
+    const Net at = x(own, Eigen::all);
+    layer_->apply(traction, x, own, v);
+    Net rest = pressure_drop / viscosity() * wall->inlet().integral(at);
+    if (with_ends) rest += ends(at);
+    v(own, Eigen::all) = rest - v(own, Eigen::all) / viscosity();
+  };
+  if (x.rows() >= few) return wall->ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
+  std::vector<int> all(static_cast<std::size_t>(x.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  Net v(x.rows(), 3);
+  evaluate(all, v);
   return v;
 }
 

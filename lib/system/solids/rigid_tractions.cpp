@@ -84,11 +84,11 @@ void RigidTractions::make_regular(const Net& x, const Net& at) {
 /// A of the bodies alone at the sites, made regular.
 Eigen::MatrixXd RigidTractions::system() {
   const Eigen::Index n = flux_.size();
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-  stokes::Rows<double> rows;
-  layer_.assemble(own_points_, rows);
-  for (std::size_t i = 0; i < own_points_.size(); ++i) all.middleRows<3>(3 * own_points_[i]) = rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
-  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
+  Eigen::MatrixXd all = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& own) {
+    stokes::Rows<double> rows;
+    layer_.assemble(own_points_, rows);
+    for (std::size_t i = 0; i < own_points_.size(); ++i) own.middleRows<3>(3 * own_points_[i]) = rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
+  });
   for (const Particle& body : particles_) {
     const Eigen::Index first = 3 * body.block.first_point, length = 3 * body.block.n_points;
     all.block(first, first, length, length) += flat(outward_).segment(first, length) * flat(flux_).segment(first, length).transpose();
@@ -98,9 +98,7 @@ Eigen::MatrixXd RigidTractions::system() {
 
 /// The same of all images of a lattice, times f.
 Net RigidTractions::images_of(const Net& f) {
-  Net u = Net::Zero(f.rows(), 3);
-  layer_.apply(f, own_points_, u);
-  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  Net u = ranks_.divided<Net>(static_cast<int>(f.rows()), 3, [&](std::span<const int> own, Net& rows) { layer_.apply(f, own, rows); });
   for (const Particle& body : particles_)
     body.block.rows(u) += body.block.rows(flux_).cwiseProduct(body.block.rows(f)).sum() * body.block.rows(outward_);
   return u;
@@ -159,15 +157,13 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
 /// int N_A (v - v_inf - (1/mu) A f) dG, v that of these control values, v_inf at the places between the sites.
 Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
   between_layer_.place(x);
-  Net u = Net::Zero(between_.values.rows(), 3);
-  const std::vector<int> own = ranks_.share(static_cast<int>(u.rows()));
-  between_layer_.apply(f, own, u);
-  if (tube_) {
-    Net answer(u.rows(), 3);
-    tube_->velocity_at(between_.values * x, tube_->respond(f), own, answer);
-    for (const int i : own) u.row(i) -= viscosity_ * answer.row(i);
-  }
-  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  const Net at = between_.values * x;
+  const Tube::Response response = tube_ ? tube_->respond(f) : Tube::Response();
+  const Net u = ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& part) {
+    between_layer_.apply(f, own, part);
+    Net answer(part.rows(), 3);
+    if (tube_) tube_->velocity_at(at, response, own, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
+  });
   return between_.weights * (between_.values * v - flow - u / viscosity_);
 }
 

@@ -92,18 +92,17 @@ Net Tube::velocity_on_wall(const Net& v) {
 }
 
 Net Tube::wall_on_particle(const Net& traction) {
-  Net u(particle_->sites.rows(), 3);
-  wall_->layer().apply(traction, particle_->sites, particle_->own, u, particle_->kept(particle_->wall_on_sites));
-  particle_->ranks.replicate(u);
-  return -u / viscosity();
+  const auto& [sites, own] = std::tie(particle_->sites, particle_->own);
+  return particle_->ranks.filled(sites.rows(), [&](Net& u) {
+    wall_->layer().apply(traction, sites, own, u, particle_->kept(particle_->wall_on_sites));
+  }) / -viscosity();
 }
 
 Net Tube::copies_on_particle(const Net& f, const Net& v) {
-  Net u = Net::Zero(particle_->sites.rows(), 3);
-  if (f.size() > 0) particle_->add_copies(particle_->single, -f / viscosity(), particle_->sites, particle_->own, u);
-  if (v.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(v), particle_->sites, particle_->own, u);
-  particle_->ranks.replicate(u);
-  return u;
+  return particle_->ranks.filled(particle_->sites.rows(), [&](Net& u) {
+    if (f.size() > 0) particle_->add_copies(particle_->single, -f / viscosity(), particle_->sites, particle_->own, u);
+    if (v.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(v), particle_->sites, particle_->own, u);
+  });
 }
 
 Net Tube::wall_on_wall(const Net& traction) { return wall_->apply(traction) / viscosity(); }
@@ -167,24 +166,22 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
   if (wall_->iterates()) return Net::Zero(particle_->sites.rows(), 3);
   const Particle::Frozen& frozen = particle_->frozen;
   const double pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
-  Net on_wall = Net::Zero(wall_->sites().rows(), 3), part = on_wall;
-  if (f.size() > 0) {
-    frozen.single.apply(f, part);
-    on_wall -= part / viscosity();
-  }
-  if (v.size() > 0 && particle_->dual) {
-    frozen.dual.apply(particle_->strength(v), part);
-    on_wall += part;
-  }
-  wall_->ranks().replicate(on_wall);
-  Net u(particle_->sites.rows(), 3);
-  frozen.wall.apply(solve_wall(on_wall) + pressure * wall_->pumped(), u);
-  if (copies() > 1) {
-    part = Net::Zero(u.rows(), 3);
-    if (f.size() > 0) frozen.single_of_copies.apply(f, part), u += part;
-    if (v.size() > 0 && particle_->dual) frozen.dual_of_copies.apply(particle_->strength(v), part), u -= viscosity() * part;
-  }
-  particle_->ranks.replicate(u);
+  const auto add = [](double factor, const FrozenOperator& of, const Net& strength, Net& to) {
+    Net part = Net::Zero(to.rows(), 3);
+    of.apply(strength, part);
+    to += factor * part;
+  };
+  const bool loads = f.size() > 0, moves = v.size() > 0 && particle_->dual;
+  const Net on_wall = wall_->ranks().filled(wall_->sites().rows(), [&](Net& u) {
+    if (loads) add(-1 / viscosity(), frozen.single, f, u);
+    if (moves) add(1, frozen.dual, particle_->strength(v), u);
+  });
+  const Net traction = solve_wall(on_wall) + pressure * wall_->pumped();
+  const Net u = particle_->ranks.filled(particle_->sites.rows(), [&](Net& own) {
+    frozen.wall.apply(traction, own);
+    if (loads && copies() > 1) add(1, frozen.single_of_copies, f, own);
+    if (moves && copies() > 1) add(-viscosity(), frozen.dual_of_copies, particle_->strength(v), own);
+  });
   return -u / viscosity() + pressure * frozen.inlet - slowed(pressure) * frozen.ambient;
 }
 

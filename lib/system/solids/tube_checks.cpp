@@ -99,13 +99,13 @@ Tube::Leak Tube::leak(const Net& f) {
   options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
   layer.place(wall.net);
-  const std::vector<int> own = wall_->ranks().share(static_cast<int>(at.rows()));
-  Net of_wall(at.rows(), 3), of_load = of_wall, u = Net::Zero(at.rows(), 3);
-  layer.apply(response.wall_traction, own, of_wall);
-  particle_->single.apply(f, at, own, of_load);
-  for (const int i : own)
-    u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
-  wall_->ranks().add({u.data(), static_cast<std::size_t>(u.size())});
+  const Net u = wall_->ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
+    Net of_wall(at.rows(), 3), of_load = of_wall;
+    layer.apply(response.wall_traction, own, of_wall);
+    particle_->single.apply(f, at, own, of_load);
+    for (const int i : own)
+      velocity.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
+  });
   return {weights * u, checks(f, {}, response).flux * flow_->flow_rate()};
 }
 

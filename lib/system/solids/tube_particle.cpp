@@ -2,7 +2,6 @@
 
 #include <span>
 
-#include "surface/partition.hpp"
 #include "system/collocation.hpp"
 
 namespace tanktread::coupling {
@@ -33,14 +32,7 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
       collocation(collocation_matrix(particle)),
       from_sites(how.direct),
       single(Layer::Kernel::single_layer, particle, {}, how.quadrature) {
-  const surface::Symmetry& symmetry = parameters.symmetry;
-  if (symmetry.order() > 1) {
-    own = surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank()).points;
-    ranks.own(own, symmetry);
-  } else {
-    own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
-    ranks.own(own, space.n_points);
-  }
+  own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
   from_sites.factor(collocation);
   for (int m = 1; m <= how.copies; ++m) shifts.insert(shifts.end(), {m * how.period, -m * how.period});
   set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
@@ -167,15 +159,16 @@ void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
   const auto on_wall = [&](Layer& layer) {
     return [&](Targets targets, stokes::Rows<float>& rows) { wall.collocate<float>(targets, of_copies(layer, wall.targets(), true), rows); };
   };
-  Net weights = Net::Zero(space.n_points, 3);
   frozen.single.assemble(wall.own(), space.n_points, on_wall(single));
-  if (dual)
+  const Net weights = ranks.assembled<Net>(space.n_points, 3, [&](Net& sums) {
+    if (!dual) return;
     frozen.dual.assemble(wall.own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
       on_wall(*dual)(targets, rows);
-      Eigen::Map<Eigen::RowVectorXd> sum(weights.data(), weights.size());
+      Eigen::Map<Eigen::RowVectorXd> sum(sums.data(), sums.size());
       for (std::size_t k = 0; k < targets.size() && pressure_of_wall.size() > 0; ++k)
         for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
     });
+  });
   if (!shifts.empty()) {
     frozen.single_of_copies.assemble(own, space.n_points, of_copies(single, sites, false));
     if (dual) frozen.dual_of_copies.assemble(own, space.n_points, of_copies(*dual, sites, false));
@@ -183,9 +176,7 @@ void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
   frozen.wall.assemble(own, wall.surface().space.n_points,
                        [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
   frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
-  if (pressure_of_wall.size() == 0) return;
-  ranks.add({weights.data(), static_cast<std::size_t>(weights.size())});
-  frozen.pressure_of_velocity = contrasts.asDiagonal() * weights;
+  if (pressure_of_wall.size() > 0) frozen.pressure_of_velocity = contrasts.asDiagonal() * weights;
 }
 
 stokes::Evaluations Tube::Particle::evaluations() const {

@@ -36,13 +36,8 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
       inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
       sites_(collocation_points(wall.space, wall.net)),
       tolerance_(residual * quadrature.tolerance) {
-  const int n = wall.space.n_points, n_rows = static_cast<int>(symmetry_.fundamental().size());
-  for (int i = n_rows * ranks_.rank() / ranks_.size(); i < n_rows * (ranks_.rank() + 1) / ranks_.size(); ++i)
-    own_.push_back(symmetry_.fundamental()[static_cast<std::size_t>(i)]);
-  if (symmetry_.order() > 1)
-    ranks_.own(own_, symmetry_);
-  else
-    ranks_.own(own_, n);
+  const int n = wall.space.n_points;
+  own_ = ranks_.divide_in_order(symmetry_);
   if (phases) ranks_.measure(*phases);
   layer_.place(wall.net);
   targets_ = sites_, own_targets_ = own_;
@@ -91,23 +86,22 @@ Eigen::MatrixXd Wall::assembled() {
   for (const int a : symmetry_.fundamental())
     for (int c = 0; c < 3; ++c)
       if (signs(a, c) != 0) of_component[3 * a + c] = n++;
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-  stokes::Rows<double> part;
-  for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
-    const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
-    collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { on_itself_->assemble(targets, rows); }, part);
-    for (Eigen::Index p = 0; p < signs.rows(); ++p)
-      for (int d = 0; d < 3; ++d) {
-        if (signs(p, d) == 0) continue;
-        const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
-        for (std::size_t k = 0; k < some.size(); ++k)
-          for (int c = 0; c < 3; ++c)
-            if (const int row = of_component[3 * some[k] + c]; row >= 0)
-              all(row, column) += signs(p, d) * part(3 * static_cast<Eigen::Index>(k) + c, 3 * p + d);
-      }
-  }
-  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
-  return all;
+  return ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
+    stokes::Rows<double> part;
+    for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
+      const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
+      collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { on_itself_->assemble(targets, rows); }, part);
+      for (Eigen::Index p = 0; p < signs.rows(); ++p)
+        for (int d = 0; d < 3; ++d) {
+          if (signs(p, d) == 0) continue;
+          const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
+          for (std::size_t k = 0; k < some.size(); ++k)
+            for (int c = 0; c < 3; ++c)
+              if (const int row = of_component[3 * some[k] + c]; row >= 0)
+                all(row, column) += signs(p, d) * part(3 * static_cast<Eigen::Index>(k) + c, 3 * p + d);
+        }
+    }
+  });
 }
 
 template <class Real>
@@ -134,15 +128,13 @@ template void Wall::collocate(std::span<const int>, const std::function<void(std
                               stokes::Rows<float>&) const;
 
 Net Wall::collocated(const Net& u) const {
-  Net all = u.topRows(sites_.rows());
-  if (has_middles())
+  return ranks_.filled(sites_.rows(), [&](Net& all) {
     for (const int i : own_) {
-      all.row(i) *= 1 - mean_of_wave;
+      all.row(i) = (has_middles() ? 1 - mean_of_wave : 1) * u.row(i);
       for (const spline::Site& site : surface_.space.collocation[static_cast<std::size_t>(i)])
-        all.row(i) += share_of_middle(i) * u.row(surface_.space.n_points + site.element);
+        if (has_middles()) all.row(i) += share_of_middle(i) * u.row(surface_.space.n_points + site.element);
     }
-  ranks_.replicate(all);
-  return all;
+  });
 }
 
 Net Wall::apply(const Net& f) const {

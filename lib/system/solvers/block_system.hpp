@@ -1,37 +1,56 @@
 #pragma once
-// Velocity, wall traction, pressure drop and the multiplier of the volume as one linear system.
+// Blocks of unknowns as vectors of Thyra, and functions on plain arrays as its operators.
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "base/types.hpp"
-#include "system/solids/tube.hpp"
+#include <Thyra_LinearOpBase.hpp>
+#include <Thyra_LinearOpWithSolveFactoryBase.hpp>
+#include <Thyra_VectorBase.hpp>
+
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {
 
-/// Particles in a tube, nothing eliminated: unknowns v (control values), f^D on the wall, dp and the multiplier pi of (2.8),
-///
-///   B v + R^-1 [(1/mu) G_W f^D - dp c] + pi n = r_v,   B = 1 - (1 - lambda) R^-1 H        at the particle                (2.5)
-///   (1/mu) G_W f^D - dp c - (1 - lambda) (1 / 8 pi) int T v n dG = r_W                    at the wall                    (2.6)
-///   dp + (1/Q) (1 - lambda) int f_inf.v dG = r_p                                                                         (2.7)
-///   b.v / (b.n) = 0                                                                                                      (2.8)
-///
-/// b = dV/dx, n = M0^-1 b. As blocks of the system f^D and dp are taken times `unit`, so that all unknowns are velocities; the row of dp too.
-struct BlockSystem {
-  Tube& tube;
-  std::function<Net(const Net&)> viscous;          ///< B v
-  std::function<Net(const Net&)> control_values;   ///< R^-1
-  const Net& flux;                                 ///< b; empty where the volume is free: pi = 0
-  const Net& normal;                               ///< n
-  double unit = 1;                                 ///< R_T/mu
+using Space = Thyra::VectorSpaceBase<double>;
+using ThyraVector = Thyra::VectorBase<double>;
 
-  /// The system under one of the preconditioners, all with B = 1 and the factored wall: `block triangular` (v and pi, then dp, then f^D, each with
-  /// what the ones before do to it), `block diagonal` (none of that), `block` (none at all). It refers to this.
-  LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;
+/// The product of a space a block; of a single block that alone. Every rank holds all rows of each: operators need them all, dot products need no
+/// message, and an iteration count cannot differ between ranks. So they are Thyra's own vectors: what Tpetra's have beyond them (maps, imports) would
+/// not be used, and costs a fifth of a run of a tenth of a second.
+Teuchos::RCP<const Space> vector_space(const Blocks& blocks);
 
-  /// The right-hand side of the loads: r_v, and what the load f does to wall and pressure drop.
-  Eigen::VectorXd right_hand_side(const Net& velocity, const Net& f) const;
+/// The blocks of a vector, one after another.
+Eigen::VectorXd numbers_of(const ThyraVector& vector);
+
+/// A vector of that space with these numbers, which are the first rank's.
+Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, Eigen::VectorXd numbers);
+
+/// A linear function on all blocks, one after another, as an operator. Zeros are known to give zeros. What it gives is the first rank's.
+class FunctionOperator : public Thyra::LinearOpBase<double> {
+ public:
+  explicit FunctionOperator(Teuchos::RCP<const Space> space) : space_(std::move(space)) {}
+
+  Apply function;
+
+  Teuchos::RCP<const Space> range() const override { return space_; }
+  Teuchos::RCP<const Space> domain() const override { return space_; }
+
+ private:
+  bool opSupportedImpl(Thyra::EOpTransp transpose) const override { return transpose == Thyra::NOTRANS; }
+  void applyImpl(Thyra::EOpTransp transpose, const Thyra::MultiVectorBase<double>& x, const Teuchos::Ptr<Thyra::MultiVectorBase<double>>& y,
+                 double alpha, double beta) const override;
+
+  Teuchos::RCP<const Space> space_;
 };
+
+/// A solver of Belos, made as Krylov is. The flexible GMRES needs a preconditioner, if only the identity.
+struct BelosFactory {
+  Teuchos::RCP<Thyra::LinearOpWithSolveFactoryBase<double>> factory;
+  bool flexible = false;
+};
+BelosFactory belos_factory(const IterativeOptions& options);
 
 }  // namespace tanktread::coupling

@@ -16,7 +16,7 @@
 #include "deck/foreign.hpp"
 #include "deck/words.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
-#include "system/solvers/thyra_blocks.hpp"
+#include "system/solvers/block_system.hpp"
 
 namespace tanktread::coupling {
 

@@ -18,7 +18,7 @@
 
 #include "base/errors.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
-#include "system/solvers/thyra_blocks.hpp"
+#include "system/solvers/block_system.hpp"
 
 namespace tanktread::coupling {
 

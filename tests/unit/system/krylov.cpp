@@ -247,11 +247,11 @@ TEST(Ranks, WhatTheyHaveAddsUp) {
   }
 }
 
-TEST(Ranks, EveryItemIsDoneByOneRankAndNumbersAddUpInPlace) {
+TEST(Ranks, EveryItemIsDoneByOneRankAndNumbersAddUp) {
   const Ranks ranks;
-  std::vector<double> done(7, 0), weight(3, 1);
-  for (const int k : ranks.share(7)) done[static_cast<std::size_t>(k)] = 0.1 * k;
-  ranks.add_all({done, weight});
+  std::vector<double> mine(7, 0);
+  for (const int k : ranks.share(7)) mine[static_cast<std::size_t>(k)] = 0.1 * k;
+  const auto [done, weight] = ranks.of_all(std::array{mine, std::vector<double>(3, 1)});
   for (std::size_t k = 0; k < done.size(); ++k) EXPECT_EQ(done[k], 0.1 * static_cast<double>(k));  // one number and zeros
   for (const double w : weight) EXPECT_EQ(w, ranks.size());
 }
