@@ -105,7 +105,7 @@ class Capsule : public Dynamics {
   /// forces and flow, it is what was returned then.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
 
-  /// The same of a shape whose velocity is known, or not (no rows). It solves for the unknowns only where they are asked for and do not follow from the
+  /// The same of a shape whose velocity is known, or not (no rows). It solves for the unknowns only where they are asked for and do not follow from
   /// velocity. Those of the shape asked about last stand for them if it is within `distance` (in `norm`).
   std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
 
