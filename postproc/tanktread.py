@@ -325,7 +325,7 @@ def _text(value):
 
 
 def node_order(p):
-    """(i, j) of the nodes of a Lagrange quadrilateral, as lib/output/lagrange.hpp states it."""
+    """(i, j) of the nodes of a Lagrange quadrilateral, as lib/record/files/lagrange.hpp states it."""
     inner = range(1, p)
     edges = [(i, 0) for i in inner] + [(p, j) for j in inner] + [(i, p) for i in inner] + [(0, j) for j in inner]
     return [(0, 0), (p, 0), (p, p), (0, p)] + edges + [(i, j) for j in inner for i in inner]
