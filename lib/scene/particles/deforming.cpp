@@ -146,7 +146,8 @@ class Deforming : public ParticleSystem {
   Columns row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
-    const std::shared_ptr<coupling::Evaluation> here = recorded(state);
+    const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
+    if (body().wall && !accurate(state)) here->solve();  // the tube's response depends on the velocity
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -251,15 +252,9 @@ class Deforming : public ParticleSystem {
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
-  /// Returns what a row of the series is made of. In a tube, whose response depends on the velocity, it is solved for if the slope errs by more than
-  /// the tolerance.
-  std::shared_ptr<coupling::Evaluation> recorded(const motion::State& state) {
-    const Net& slope = state.history.front();
-    const double rate = capsule_->flow().amplitude() * scene_.rate();
-    const bool accurate = state.slope_error <= scene_.time.tolerance * std::abs(rate);
-    const auto here = capsule_->evaluation(state.x, slope, scene_.time.tolerance);
-    if (body().wall && !accurate) here->solve();
-    return here;
+  /// Whether the slope errs by no more than the tolerance.
+  bool accurate(const motion::State& state) const {
+    return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
   /// Of all particles.
