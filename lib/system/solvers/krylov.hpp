@@ -41,7 +41,7 @@ struct SolveReport {
 /// Throws RunFailure with the residuals when `report` is of a solve of `system` that did not reach `tolerance`.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
-/// One of Belos' solvers, with its list, through Thyra (thyra_blocks.hpp).
+/// One of Belos' solvers, with its list, through Thyra (block_system.hpp).
 class Krylov {
  public:
   /// The names of solvers: those of Belos' factory.
