@@ -1,14 +1,11 @@
 #include "app/steady.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <complex>
 #include <cstdio>
 #include <deque>
-#include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
 

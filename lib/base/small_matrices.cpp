@@ -1,6 +1,5 @@
 #include "base/small_matrices.hpp"
 
-#include <cmath>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <functional>
-#include <initializer_list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>

@@ -1,7 +1,6 @@
 #include "membrane/area_constraint.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"

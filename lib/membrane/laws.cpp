@@ -1,6 +1,5 @@
 #include "membrane/laws.hpp"
 
-#include <cmath>
 
 namespace tanktread::membrane {
 namespace {

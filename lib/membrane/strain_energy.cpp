@@ -4,7 +4,6 @@
 #include <cctype>
 #include <charconv>
 #include <optional>
-#include <string_view>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"

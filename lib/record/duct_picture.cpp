@@ -1,6 +1,5 @@
 #include "record/duct_picture.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "spline/basis.hpp"

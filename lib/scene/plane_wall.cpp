@@ -1,6 +1,5 @@
 #include "scene/plane_wall.hpp"
 
-#include <algorithm>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"

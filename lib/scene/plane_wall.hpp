@@ -2,7 +2,6 @@
 // Particles beside the plane wall of a scene.
 
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "base/columns.hpp"

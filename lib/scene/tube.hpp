@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "scene/body.hpp"
 #include "scene/series/diagnostics.hpp"

@@ -1,6 +1,5 @@
 #include "scene/wall_options.hpp"
 
-#include <algorithm>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"

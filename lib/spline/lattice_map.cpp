@@ -1,6 +1,5 @@
 #include "spline/refinement.hpp"
 
-#include <algorithm>
 
 #include "spline/locate.hpp"
 

@@ -1,6 +1,5 @@
 #include "spline/polar.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>

@@ -1,6 +1,5 @@
 // What a plane wall adds to a layer: the images of its nodes, and better rules for panels that a target is close to as the mirrored target sees them.
 
-#include <array>
 #include <cassert>
 
 #include <Eigen/Geometry>

@@ -1,8 +1,6 @@
 #include "surface/geometry.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>

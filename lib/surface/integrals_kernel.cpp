@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "base/kernel.hpp"
 #include "quadrature/gauss.hpp"

@@ -40,17 +40,16 @@ void MeshOptions::declare(deck::Section& section) {
 }
 
 void MeshOptions::check() const {
-  const auto refuse = [&](const char* key) {
-    throw UserError(std::string("Surface/") + key + " and Surface/mesh `" + mesh + "` contradict each other: it belongs to `" +
-                    (polar() ? "cube" : "polar") + "`.");
+  const auto misplaced = [&](bool given, const char* key) {
+    refuse(given, std::string("Surface/") + key, "Surface/mesh `" + mesh + "`", std::string("it belongs to `") + (polar() ? "cube" : "polar") + "`");
   };
-  if (polar() && elements_per_side) refuse("elements per side");
-  if (polar() && extraordinary_points) refuse("extraordinary points");
-  if (!polar() && azimuthal_elements) refuse("azimuthal elements");
-  if (!polar() && meridional_elements) refuse("meridional elements");
-  if (!polar() && pole_axis) refuse("pole axis");
-  if (!polar() && poles) refuse("poles");
-  if (!polar() && pole_subdivisions) refuse("pole subdivisions");
+  misplaced(polar() && elements_per_side, "elements per side");
+  misplaced(polar() && extraordinary_points, "extraordinary points");
+  misplaced(!polar() && azimuthal_elements, "azimuthal elements");
+  misplaced(!polar() && meridional_elements, "meridional elements");
+  misplaced(!polar() && pole_axis, "pole axis");
+  misplaced(!polar() && poles, "poles");
+  misplaced(!polar() && pole_subdivisions, "pole subdivisions");
   refuse(pole_subdivisions && poles != "bezier transform", "Surface/pole subdivisions", "Surface/poles `" + poles.value_or("c1") + "`",
          "it belongs to `bezier transform`");
 }

@@ -1,7 +1,6 @@
 #include "surface/shapes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "system/interface_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include <Eigen/Cholesky>

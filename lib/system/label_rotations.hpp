@@ -2,7 +2,6 @@
 // What relabels the material points of a membrane.
 
 #include <optional>
-#include <vector>
 
 #include "base/types.hpp"
 #include "membrane/symmetric_solver.hpp"

@@ -2,7 +2,6 @@
 // What the flow and forces do to the particles, and where it goes.
 
 #include <optional>
-#include <vector>
 
 #include <Eigen/SparseCore>
 

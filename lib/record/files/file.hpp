@@ -2,7 +2,6 @@
 // Files that are whole at every moment: written beside their place, then renamed into it; and the directory of a run.
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 
 namespace tanktread::output {

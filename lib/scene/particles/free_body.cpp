@@ -1,8 +1,5 @@
 // The free rigid body in the time loop.
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
 
 #include "scene/member.hpp"
 #include "scene/particles/adaptation.hpp"

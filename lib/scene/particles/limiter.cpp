@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "scene/particles/gaps.hpp"
 #include "spline/basis.hpp"

@@ -1,6 +1,5 @@
 #include "scene/particles/prescribed.hpp"
 
-#include <cmath>
 #include <functional>
 
 #include "base/errors.hpp"

@@ -1,11 +1,7 @@
 #pragma once
 // Measurements on a particle, and its columns in the record.
 
-#include <algorithm>
-#include <array>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include <Eigen/Geometry>
 

@@ -4,7 +4,6 @@
 #include <numbers>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "base/formatted.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 // The open ends of a tube.
 
-#include <span>
 #include <vector>
 
 #include "base/types.hpp"

@@ -2,7 +2,6 @@
 // The flow of a straight duct along x1 without a particle.
 
 #include <memory>
-#include <span>
 
 #include "base/types.hpp"
 #include "surface/outline.hpp"

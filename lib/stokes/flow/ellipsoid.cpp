@@ -1,6 +1,5 @@
 #include "stokes/flow/ellipsoid.hpp"
 
-#include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>

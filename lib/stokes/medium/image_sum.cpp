@@ -1,6 +1,5 @@
 #include "stokes/medium/image_sum.hpp"
 
-#include <algorithm>
 #include <numeric>
 #include <utility>
 

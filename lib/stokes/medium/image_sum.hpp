@@ -1,7 +1,6 @@
 #pragma once
 // Far sums of the images of nodes in a plane wall.
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>

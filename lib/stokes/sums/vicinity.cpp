@@ -1,7 +1,6 @@
 #include "stokes/sums/vicinity.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "stokes/kernels/panel_kernel.hpp"

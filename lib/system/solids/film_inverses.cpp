@@ -1,7 +1,6 @@
 #include "system/solids/film_inverses.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace tanktread::coupling {

@@ -1,6 +1,5 @@
 #include "system/solids/resistance.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"

@@ -1,6 +1,5 @@
 #include "system/solids/rigid_body.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>

@@ -2,7 +2,6 @@
 // Rigid bodies among capsules and drops.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 

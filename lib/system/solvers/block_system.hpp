@@ -1,10 +1,7 @@
 #pragma once
 // Blocks of unknowns as vectors of Thyra, and functions on plain arrays as its operators.
 
-#include <functional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <Thyra_LinearOpBase.hpp>
 #include <Thyra_LinearOpWithSolveFactoryBase.hpp>

@@ -1,6 +1,5 @@
 #include "system/solvers/corotation.hpp"
 
-#include <utility>
 
 #include <Eigen/SVD>
 

@@ -2,8 +2,6 @@
 
 #include <functional>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include <Teuchos_ParameterList.hpp>
 
