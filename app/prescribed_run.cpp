@@ -1,10 +1,9 @@
-#include "app/prescribed_run.hpp"
-
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
+#include "app/runs.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "record/plan.hpp"

@@ -13,7 +13,7 @@
 
 #include "app/provenance.hpp"
 #include "app/signals.hpp"
-#include "app/simulation.hpp"
+#include "app/runs.hpp"
 #include "base/errors.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"

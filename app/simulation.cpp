@@ -1,14 +1,11 @@
-#include "app/simulation.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <functional>
 #include <optional>
 
-#include "app/prescribed_run.hpp"
+#include "app/runs.hpp"
 #include "app/signals.hpp"
-#include "app/steady.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "motion/guarded.hpp"

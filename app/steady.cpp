@@ -1,5 +1,3 @@
-#include "app/steady.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/runs.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"

@@ -2,9 +2,7 @@
 
 #include <string>
 
-namespace Teuchos {
-class ParameterList;
-}
+#include "deck/forward.hpp"
 
 namespace tanktread::deck {
 

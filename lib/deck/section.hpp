@@ -11,10 +11,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-
-namespace Teuchos {
-class ParameterList;
-}
+#include "deck/forward.hpp"
 
 namespace tanktread::deck {
 

@@ -3,9 +3,7 @@
 #include <memory>
 #include <string>
 
-namespace Teuchos {
-class ParameterList;
-}
+#include "deck/forward.hpp"
 
 namespace tanktread::deck {
 

@@ -5,15 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "deck/forward.hpp"
 #include "membrane/laws.hpp"
 #include "membrane/patch_forces.hpp"
-
-namespace Teuchos {
-class ParameterList;
-}
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread::membrane {
 

@@ -6,12 +6,9 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "membrane/load.hpp"
 #include "spline/space.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread::membrane {
 

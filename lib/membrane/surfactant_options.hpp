@@ -3,9 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace tanktread::deck {
-class Section;
-}
+#include "deck/forward.hpp"
 
 namespace tanktread::membrane {
 

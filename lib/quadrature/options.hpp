@@ -2,9 +2,7 @@
 
 #include <string>
 
-namespace tanktread::deck {
-class Section;
-}
+#include "deck/forward.hpp"
 
 namespace tanktread::quadrature {
 

@@ -6,12 +6,9 @@
 
 #include "base/columns.hpp"
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "stokes/flow/flow_options.hpp"
 #include "stokes/medium/periodic_images.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread {
 

@@ -5,12 +5,9 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "stokes/flow/flow_options.hpp"
 #include "stokes/medium/plane_wall.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread {
 

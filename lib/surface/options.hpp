@@ -5,12 +5,9 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "spline/iga.hpp"
 #include "spline/polar.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread::surface {
 

@@ -7,15 +7,12 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "membrane/load.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread::coupling {
 

@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
+#include "deck/forward.hpp"
 
 namespace tanktread::stokes {
 

@@ -5,12 +5,9 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "stokes/flow/flow_history.hpp"
 #include "stokes/flow/user_flow.hpp"
-
-namespace tanktread::deck {
-class Section;
-}
 
 namespace tanktread::stokes {
 

@@ -47,6 +47,21 @@ void tile_sum(const PointForces& forces, const double* target, double* u) {
   }
 }
 
+/// For each pack of targets, which have `in` coordinates, the sums over the nodes k of term(k, r, target, 1/|r|, sums).
+template <int in, int out, class Nodes, class Term>
+void sums_of_packs(const Nodes& nodes, const double* target, double* value, const Term& term) {
+  for (int p = 0; p < packs; ++p) {
+    Register t[in], sums[out] = {};
+    for (int c = 0; c < in; ++c) t[c] = load(target + far_block * c + lanes * p);
+    const Register least = coincident(t[0], t[1], t[2]);
+    for (int k = 0; k < nodes.n; ++k) {
+      const Register r[3] = {nodes.x[k] - t[0], nodes.y[k] - t[1], nodes.z[k] - t[2]};
+      term(k, r, t, inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], least), sums);
+    }
+    for (int c = 0; c < out; ++c) store(sums[c], value + far_block * c + lanes * p);
+  }
+}
+
 }  // namespace
 
 void far_sum(const PointForces& forces, const double* target, double* u) {
@@ -68,24 +83,13 @@ void node_sum(const PointForces& forces, const double* x0, double* u) {
 }
 
 void far_sum(const Stresslets& nodes, const double* target, double* u) {
-  for (int p = 0; p < packs; ++p) {
-    Register t[6], ux{}, uy{}, uz{};
-    for (int c = 0; c < 6; ++c) t[c] = load(target + far_block * c + lanes * p);
-    const Register least = coincident(t[0], t[1], t[2]);
-    for (int k = 0; k < nodes.n; ++k) {
-      const Register rx = nodes.x[k] - t[0], ry = nodes.y[k] - t[1], rz = nodes.z[k] - t[2];
-      const Register inverse = inverse_root(rx * rx + ry * ry + rz * rz, least), square = inverse * inverse;
-      const Register velocity = rx * (nodes.vx[k] - t[3]) + ry * (nodes.vy[k] - t[4]) + rz * (nodes.vz[k] - t[5]);
-      const Register normal = rx * nodes.nx[k] + ry * nodes.ny[k] + rz * nodes.nz[k];
-      const Register strength = -6 * velocity * normal * (square * square * inverse);
-      ux += strength * rx;
-      uy += strength * ry;
-      uz += strength * rz;
-    }
-    store(ux, u + lanes * p);
-    store(uy, u + far_block + lanes * p);
-    store(uz, u + 2 * far_block + lanes * p);
-  }
+  sums_of_packs<6, 3>(nodes, target, u, [&](int k, const Register (&r)[3], const Register (&t)[6], const Register& inverse, Register (&sum)[3]) {
+    const Register square = inverse * inverse;
+    const Register velocity = r[0] * (nodes.vx[k] - t[3]) + r[1] * (nodes.vy[k] - t[4]) + r[2] * (nodes.vz[k] - t[5]);
+    const Register normal = r[0] * nodes.nx[k] + r[1] * nodes.ny[k] + r[2] * nodes.nz[k];
+    const Register strength = -6 * velocity * normal * (square * square * inverse);
+    for (int c = 0; c < 3; ++c) sum[c] += strength * r[c];
+  });
 }
 
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u) {
@@ -110,44 +114,22 @@ void stokeslet_sum(const Charges& p, const double* target, double* value) {
 
 void stresslet_sum(const Charges& points, const double* target, double* value) {
   const auto& q = points.q;
-  for (int p = 0; p < packs; ++p) {
-    Register t[3], u[3] = {};
-    for (int c = 0; c < 3; ++c) t[c] = load(target + far_block * c + lanes * p);
-    const Register least = coincident(t[0], t[1], t[2]);
-    for (int k = 0; k < points.n; ++k) {
-      const Register rx = points.x[k] - t[0], ry = points.y[k] - t[1], rz = points.z[k] - t[2];
-      const Register inverse = inverse_root(rx * rx + ry * ry + rz * rz, least), square = inverse * inverse;
-      const Register form =
-          rx * (q[0][k] * rx) + ry * (q[1][k] * ry) + rz * (q[2][k] * rz) + 2 * (rx * (q[3][k] * ry + q[4][k] * rz) + ry * (q[5][k] * rz));
-      const Register strength = -6 * form * (square * square * inverse);
-      u[0] += strength * rx;
-      u[1] += strength * ry;
-      u[2] += strength * rz;
-    }
-    for (int c = 0; c < 3; ++c) store(u[c], value + far_block * c + lanes * p);
-  }
+  sums_of_packs<3, 3>(points, target, value, [&](int k, const Register (&r)[3], const auto&, const Register& inverse, Register (&sum)[3]) {
+    const Register square = inverse * inverse;
+    const Register form = r[0] * (q[0][k] * r[0]) + r[1] * (q[1][k] * r[1]) + r[2] * (q[2][k] * r[2]) +
+                          2 * (r[0] * (q[3][k] * r[1] + q[4][k] * r[2]) + r[1] * (q[5][k] * r[2]));
+    const Register strength = -6 * form * (square * square * inverse);
+    for (int c = 0; c < 3; ++c) sum[c] += strength * r[c];
+  });
 }
 
 void normal_stress_sum(const Charges& points, const double* target, double* value) {
   const auto& n = points.q;
-  for (int p = 0; p < packs; ++p) {
-    Register t[3], u[6] = {};
-    for (int c = 0; c < 3; ++c) t[c] = load(target + far_block * c + lanes * p);
-    const Register least = coincident(t[0], t[1], t[2]);
-    for (int k = 0; k < points.n; ++k) {
-      const Register rx = points.x[k] - t[0], ry = points.y[k] - t[1], rz = points.z[k] - t[2];
-      const Register inverse = inverse_root(rx * rx + ry * ry + rz * rz, least), square = inverse * inverse;
-      const Register strength = -6 * (rx * n[0][k] + ry * n[1][k] + rz * n[2][k]) * (square * square * inverse);
-      const Register sx = strength * rx, sy = strength * ry;
-      u[0] += sx * rx;
-      u[1] += sy * ry;
-      u[2] += strength * rz * rz;
-      u[3] += sx * ry;
-      u[4] += sx * rz;
-      u[5] += sy * rz;
-    }
-    for (int c = 0; c < 6; ++c) store(u[c], value + far_block * c + lanes * p);
-  }
+  sums_of_packs<3, 6>(points, target, value, [&](int k, const Register (&r)[3], const auto&, const Register& inverse, Register (&sum)[6]) {
+    const Register square = inverse * inverse;
+    const Register strength = -6 * (r[0] * n[0][k] + r[1] * n[1][k] + r[2] * n[2][k]) * (square * square * inverse);
+    for (int c = 0; c < 6; ++c) sum[c] += strength * r[stresses[c][0]] * r[stresses[c][1]];
+  });
 }
 
 }  // namespace INSTRUCTIONS

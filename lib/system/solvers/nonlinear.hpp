@@ -7,11 +7,8 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "deck/forward.hpp"
 #include "system/solvers/options.hpp"
-
-namespace Teuchos {
-class ParameterList;
-}
 
 namespace tanktread::coupling {
 
