@@ -1,10 +1,10 @@
-// Derivatives of the Maxwell element's load and rate (3.24), exact at the state that linearise() keeps.
+// Derivatives of the Maxwell element's load and rate (3.24), exact at the state that linearise() keeps, by numbers that carry a derivative.
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/LU>
 
+#include "membrane/dual.hpp"
 #include "membrane/maxwell_element.hpp"
 
 namespace tanktread::membrane {
@@ -13,65 +13,47 @@ namespace {
 
 constexpr int gauss_room = max_order * max_order;
 
-/// Components 11, 12, 22 of a symmetric tensor, and their product with another one of the opposite position.
-using Symmetric = Eigen::Vector3d;
-double contracted(const Symmetric& a, const Symmetric& b) { return a[0] * b[0] + 2 * a[1] * b[1] + a[2] * b[2]; }
-double determinant(const Symmetric& a) { return a[0] * a[2] - a[1] * a[1]; }
-Symmetric inverse(const Symmetric& a) { return Symmetric(a[2], -a[1], a[0]) / determinant(a); }
+using Changing = Dual<double>;
+using Symmetric = Vector<Changing>;  // components 11, 12, 22
 
-/// -g^ac dg_cd g^db.
-Symmetric inverse_change(const Symmetric& up, const Symmetric& dg) {
-  return -Symmetric(up[0] * up[0] * dg[0] + 2 * up[0] * up[1] * dg[1] + up[1] * up[1] * dg[2],
-                    up[0] * up[1] * dg[0] + (up[0] * up[2] + up[1] * up[1]) * dg[1] + up[1] * up[2] * dg[2],
-                    up[1] * up[1] * dg[0] + 2 * up[1] * up[2] * dg[1] + up[2] * up[2] * dg[2]);
-}
+Changing determinant(const Symmetric& a) { return a[0] * a[2] - a[1] * a[1]; }
 
-Vec3 vector_of(const Pack* packs, int first, int lane) {
-  const double* all = numbers(packs);
+/// Numbers and their changes of three packs in a row.
+Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, int lane) {
   const int lanes = pack_lanes();
-  return {all[first * lanes + lane], all[(first + 1) * lanes + lane], all[(first + 2) * lanes + lane]};
+  const auto number = [&](int k) { return Changing{numbers(packs)[(first + k) * lanes + lane], numbers(changes)[(first + k) * lanes + lane]}; };
+  return {number(0), number(1), number(2)};
 }
 
 }  // namespace
 
+/// A Gauss point: tangents, g_ab, g^ab, C^ab; sqrt |g|, sqrt |C|, J, t. All with their changes.
 struct MaxwellElement::Point {
-  Vec3 a_s, a_t;             // tangents
-  Symmetric g, up, c;        // g_ab, g^ab, C^ab
-  double gamma, kappa, j, t;  // sqrt |g|, sqrt |C|, J, t
+  Vector<Changing> a_s, a_t;
+  Symmetric g, up, c;
+  Changing gamma, kappa, j, t;
 
-  Point(const Vec3& s, const Vec3& r, const Symmetric& strain) : a_s(s), a_t(r), g(s.dot(s), s.dot(r), r.dot(r)), up(inverse(g)), c(strain) {
-    gamma = std::sqrt(determinant(g)), kappa = std::sqrt(determinant(c)), j = gamma * kappa, t = contracted(c, g);
+  Point(const Vector<Changing>& s, const Vector<Changing>& r, const Symmetric& strain)
+      : a_s(s), a_t(r), g{dot(s, s), dot(s, r), dot(r, r)}, c(strain) {
+    const Changing det = determinant(g);
+    up = {g[2] / det, -g[1] / det, g[0] / det};
+    gamma = sqrt(det), kappa = sqrt(determinant(c)), j = gamma * kappa, t = c[0] * g[0] + 2.0 * (c[1] * g[1]) + c[2] * g[2];
   }
 
-  /// The changes that those of the tangents and of C make.
-  struct Change {
-    Symmetric up, c;
-    double div, phi, j, t;  // of up and C; (d gamma)/gamma, (d kappa)/kappa, dJ, dt
-  };
-  Change change(const Vec3& ds, const Vec3& dr, const Symmetric& dc) const {
-    const Symmetric dg(2 * a_s.dot(ds), a_s.dot(dr) + a_t.dot(ds), 2 * a_t.dot(dr));
-    const double div = contracted(up, dg) / 2, phi = contracted(inverse(c), dc) / 2;
-    return {inverse_change(up, dg), dc, div, phi, j * (div + phi), contracted(dc, g) + contracted(c, dg)};
-  }
-
-  /// S^ab of E (3.23) per parametric area, dE = S^ab x_,a.dx_,b, and its change.
-  Symmetric stress(const MaxwellSpring& spring) const {
-    const double k = spring.dilatation_modulus / 2 * (j - 1) * (3 * j - 1);
-    return spring.shear_modulus * (c / kappa - gamma * up) + k * gamma * up;
-  }
-  Symmetric stress_change(const MaxwellSpring& spring, const Change& d) const {
-    const double k = spring.dilatation_modulus / 2;
-    const Symmetric metric = gamma * (d.div * up + d.up);
-    return spring.shear_modulus * ((d.c - d.phi * c) / kappa - metric) + k * ((j - 1) * (3 * j - 1) * metric + (6 * j - 4) * d.j * gamma * up);
+  /// S^ab of E (3.23) per parametric area, dE = S^ab x_,a.dx_,b; k: 11, 12, 22.
+  Changing stress(const MaxwellSpring& spring, std::size_t k) const {
+    const Changing dilatation = (spring.dilatation_modulus / 2) * ((j - 1.0) * (3.0 * j - 1.0)), metric = gamma * up[k];
+    return spring.shear_modulus * (c[k] / kappa - metric) + dilatation * metric;
   }
 
   /// Change of T dC^ab/dt (3.24).
-  Symmetric rate_change(const Change& d) const {
-    return 2 * j / t * ((2 * d.j - j * d.t / t) * up + j * d.up) - d.j / (j * j) * c - (2 - 1 / j) * d.c;
+  Eigen::Vector3d rate_change() const {
+    const auto rate = [&](std::size_t k) { return 2.0 * (j * j / t * up[k]) + (1.0 / j - 2.0) * c[k]; };
+    return {rate(0).slope, rate(1).slope, rate(2).slope};
   }
 };
 
-/// Calls use(group, batch, Gauss point, lane, row of q, point, change, changes of the tangents) for every Gauss point of every element.
+/// Calls use(group, batch, Gauss point, lane, row of q, point) for every Gauss point of every element.
 template <class Use>
 void MaxwellElement::each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const {
   for (const Group& group : groups_)
@@ -82,11 +64,8 @@ void MaxwellElement::each_change(const Net& dx, const Eigen::VectorXd& dq, const
       for (int q = 0; q < group.n_gauss(); ++q)
         for (int l = 0; l < batch.used; ++l) {
           const Eigen::Index row = first_[static_cast<std::size_t>(batch.elements[static_cast<std::size_t>(l)])] + q;
-          const Eigen::Vector3d unit = unit_.row(row);
-          const Point at(vector_of(a, 6 * q, l), vector_of(a, 6 * q + 3, l), known_q_.segment<3>(3 * row).cwiseProduct(unit));
-          const Vec3 ds = vector_of(da, 6 * q, l), dt = vector_of(da, 6 * q + 3, l);
-          const typename Point::Change change = at.change(ds, dt, dq.segment<3>(3 * row).cwiseProduct(unit));
-          use(group, batch, q, l, row, at, change, ds, dt);
+          const auto strain = [&](int k) { return unit_(row, k) * Changing{known_q_[3 * row + k], dq[3 * row + k]}; };
+          use(group, batch, q, l, row, Point(vector_of(a, da, 6 * q, l), vector_of(a, da, 6 * q + 3, l), {strain(0), strain(1), strain(2)}));
         }
     }
 }
@@ -94,24 +73,24 @@ void MaxwellElement::each_change(const Net& dx, const Eigen::VectorXd& dq, const
 void MaxwellElement::linearise(const Net&) {
   known_x_ = x_, known_q_ = q_;
   known_rates_.assign(static_cast<std::size_t>(unit_.rows()), {});
-  for (int k = 0; k < 3; ++k)
-    each_change(Net::Zero(x_.rows(), 3), Eigen::Vector3d::Unit(k).replicate(unit_.rows(), 1),
-                [&](const Group&, const Batch&, int, int, Eigen::Index row, const Point& at, const Point::Change& change, const Vec3&, const Vec3&) {
-                  known_rates_[static_cast<std::size_t>(row)].col(k) = at.rate_change(change).cwiseQuotient(time_ * unit_.row(row).transpose());
-                });
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd change = rate_change(Net::Zero(x_.rows(), 3), Eigen::Vector3d::Unit(k).replicate(unit_.rows(), 1), {});
+    for (Eigen::Index row = 0; row < unit_.rows(); ++row) known_rates_[static_cast<std::size_t>(row)].col(k) = change.segment<3>(3 * row);
+  }
 }
 
 Net MaxwellElement::load_change(const Net& dx, const Eigen::VectorXd& dq) const {
   Net d = Net::Zero(space_.n_points, 3);
   Pack p[6 * gauss_room] = {};
   const int lanes = pack_lanes();
-  each_change(dx, dq, [&](const Group& group, const Batch& batch, int q, int l, Eigen::Index, const Point& at, const Point::Change& change,
-                          const Vec3& ds, const Vec3& dt) {
-    const Symmetric s = at.stress(spring_), more = at.stress_change(spring_, change);
+  each_change(dx, dq, [&](const Group& group, const Batch& batch, int q, int l, Eigen::Index, const Point& at) {
+    const Changing s11 = at.stress(spring_, 0), s12 = at.stress(spring_, 1), s22 = at.stress(spring_, 2);
     const double weight = group.weight[static_cast<std::size_t>(q)];
-    const Vec3 along_s = weight * (more[0] * at.a_s + more[1] * at.a_t + s[0] * ds + s[1] * dt);
-    const Vec3 along_t = weight * (more[1] * at.a_s + more[2] * at.a_t + s[1] * ds + s[2] * dt);
-    for (int k = 0; k < 3; ++k) numbers(p)[(6 * q + k) * lanes + l] = along_s[k], numbers(p)[(6 * q + 3 + k) * lanes + l] = along_t[k];
+    for (int k = 0; k < 3; ++k) {
+      const Changing &s = at.a_s[static_cast<std::size_t>(k)], &t = at.a_t[static_cast<std::size_t>(k)];
+      numbers(p)[(6 * q + k) * lanes + l] = weight * (s11 * s + s12 * t).slope;
+      numbers(p)[(6 * q + 3 + k) * lanes + l] = weight * (s12 * s + s22 * t).slope;
+    }
     if (q + 1 < group.n_gauss() || l + 1 < batch.used) return;
     add_transpose(group, batch, p, d);
     std::ranges::fill(p, Pack{});
@@ -121,8 +100,9 @@ Net MaxwellElement::load_change(const Net& dx, const Eigen::VectorXd& dq) const 
 
 Eigen::VectorXd MaxwellElement::rate_change(const Net& dx, const Eigen::VectorXd& dq, const Net&) const {
   Eigen::VectorXd rate(size());
-  each_change(dx, dq, [&](const Group&, const Batch&, int, int, Eigen::Index row, const Point& at, const Point::Change& change, const Vec3&,
-                          const Vec3&) { rate.segment<3>(3 * row) = at.rate_change(change).cwiseQuotient(time_ * unit_.row(row).transpose()); });
+  each_change(dx, dq, [&](const Group&, const Batch&, int, int, Eigen::Index row, const Point& at) {
+    rate.segment<3>(3 * row) = at.rate_change().cwiseQuotient(time_ * unit_.row(row).transpose());
+  });
   return rate;
 }
 

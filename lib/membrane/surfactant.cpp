@@ -86,8 +86,7 @@ Net Surfactant::load() const {
       }
     }
     test(3, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);
-    const std::vector<int>& points = space_.elements[e].points;
-    for (std::size_t a = 0; a < points.size(); ++a) d.row(points[a]) += Eigen::Map<const Eigen::RowVector3d>(rows + 3 * a);
+    add_rows(e, rows, d);
   }
   return d;
 }
@@ -117,7 +116,7 @@ Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const
       along_s[q] = at.area()[q] * up_s, along_t[q] = at.area()[q] * up_t;
     }
     test(1, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);
-    for (std::size_t a = 0; a < points.size(); ++a) rate[points[a]] += rows[a];
+    add_rows(e, rows, rate);
   }
   return rate.cwiseQuotient(share_);
 }

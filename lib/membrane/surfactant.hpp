@@ -76,9 +76,15 @@ class Surfactant : public Field {
     const double* area() const { return &metric[3 * static_cast<std::size_t>(n)]; }
     std::array<double, 2> raised(int q, double by_s, double by_t) const;
   };
-  struct MetricChange;
+  struct Point;
   template <class Use>
-  void each_change(const Net& dx, const Eigen::VectorXd* dc, const Use& use) const;
+  void each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const;
+  /// Adds what an element gives to the rows of its control points; as many numbers a point as `sums` has columns.
+  template <class Sums>
+  void add_rows(std::size_t element, const double* rows, Sums& sums) const {
+    constexpr int n = Sums::ColsAtCompileTime;
+    for (const int a : space_.elements[element].points) sums.row(a) += Eigen::Map<const Eigen::Matrix<double, 1, n>>(rows), rows += n;
+  }
   Eigen::VectorXd transport(const Net& slip, double diffusivity) const;
   Eigen::SparseMatrix<double> stiffness() const;
 

@@ -1,8 +1,8 @@
-// Derivatives of the surfactant's load (3.18) and transport (3.17), exact at the state that linearise() keeps.
+// Derivatives of the surfactant's load (3.18) and transport (3.17), exact at the state that linearise() keeps, by numbers that carry a derivative.
 
-#include <algorithm>
 #include <cmath>
 
+#include "membrane/dual.hpp"
 #include "membrane/surfactant.hpp"
 #include "membrane/surfactant_kernel.hpp"
 
@@ -16,55 +16,45 @@ constexpr double shift_ratio = 1.25;                           // of neighbourin
 /// Returns the neighbouring value in a geometric sequence, so that factors depend on the present shift only.
 double rounded(double shift) { return std::pow(shift_ratio, std::round(std::log(shift) / std::log(shift_ratio))); }
 
-Eigen::VectorXd own_values(const std::vector<int>& points, const Eigen::VectorXd& values) {
-  Eigen::VectorXd own(static_cast<Eigen::Index>(points.size()));
-  for (std::size_t a = 0; a < points.size(); ++a) own[static_cast<Eigen::Index>(a)] = values[points[a]];
-  return own;
-}
-
-Net own_rows(const std::vector<int>& points, const Net& net) {
-  Net own(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t a = 0; a < points.size(); ++a) own.row(static_cast<Eigen::Index>(a)) = net.row(points[a]);
-  return own;
-}
+using Changing = Dual<double>;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace
 
-/// Changes at the Gauss points of an element: tangents and concentration, three fields each and one; div = (dJ)/J; contravariant metric.
-struct Surfactant::MetricChange {
-  double s[3 * most_gauss_points], t[3 * most_gauss_points], c[most_gauss_points], c_s[most_gauss_points], c_t[most_gauss_points];
-  double div[most_gauss_points], g11[most_gauss_points], g12[most_gauss_points], g22[most_gauss_points];
+/// Surface and concentration at a Gauss point, by each parameter too, with their changes: weight times J, contravariant metric.
+struct Surfactant::Point {
+  Vector<Changing> s, t;
+  Changing c, c_s, c_t, area, g11, g12, g22;
+
+  Changing up_s(const Changing& along_s, const Changing& along_t) const { return g11 * along_s + g12 * along_t; }
+  Changing up_t(const Changing& along_s, const Changing& along_t) const { return g12 * along_s + g22 * along_t; }
 };
 
-/// Calls use(element, its points as linearised, change) for every element. Without `dc` the concentration does not change.
+/// Calls use(element, its points as linearised, point), where point(q) has the changes at Gauss point q, for every element.
 template <class Use>
-void Surfactant::each_change(const Net& dx, const Eigen::VectorXd* dc, const Use& use) const {
-  MetricChange change{};
+void Surfactant::each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const {
+  double s[4 * most_gauss_points], t[4 * most_gauss_points], c[most_gauss_points];
   for (std::size_t e = 0; e < known_.size(); ++e) {
     const ElementPoints& at = known_[e];
     const std::vector<int>& points = space_.elements[e].points;
-    const Net own = own_rows(points, dx);
-    sample(3, at.n, at.functions, at.by_s.data(), own.data(), change.s);
-    sample(3, at.n, at.functions, at.by_t.data(), own.data(), change.t);
-    if (dc) {
-      const Eigen::VectorXd own_c = own_values(points, *dc);
-      sample(1, at.n, at.functions, at.value.data(), own_c.data(), change.c);
-      sample(1, at.n, at.functions, at.by_s.data(), own_c.data(), change.c_s);
-      sample(1, at.n, at.functions, at.by_t.data(), own_c.data(), change.c_t);
-    }
-    const double *g11 = at.metric.data(), *g12 = g11 + at.n, *g22 = g12 + at.n;
-    for (int q = 0; q < at.n; ++q) {
-      double ss = 0, st = 0, tt = 0;  // of the covariant metric
-      for (int i = q; i < 3 * at.n; i += at.n) {
-        const double s = at.s[static_cast<std::size_t>(i)], t = at.t[static_cast<std::size_t>(i)];
-        ss += 2 * s * change.s[i], st += s * change.t[i] + t * change.s[i], tt += 2 * t * change.t[i];
-      }
-      change.div[q] = 0.5 * (g11[q] * ss + 2 * g12[q] * st + g22[q] * tt);
-      change.g11[q] = -(g11[q] * g11[q] * ss + 2 * g11[q] * g12[q] * st + g12[q] * g12[q] * tt);
-      change.g12[q] = -(g11[q] * g12[q] * ss + (g11[q] * g22[q] + g12[q] * g12[q]) * st + g12[q] * g22[q] * tt);
-      change.g22[q] = -(g12[q] * g12[q] * ss + 2 * g12[q] * g22[q] * st + g22[q] * g22[q] * tt);
-    }
-    use(e, at, change);
+    RowMajor own(points.size(), 4);
+    own << dx(points, Eigen::all), dc(points);
+    const Eigen::VectorXd own_c = own.col(3);
+    sample(4, at.n, at.functions, at.by_s.data(), own.data(), s);
+    sample(4, at.n, at.functions, at.by_t.data(), own.data(), t);
+    sample(1, at.n, at.functions, at.value.data(), own_c.data(), c);
+    use(e, at, [&](int q) {
+      const auto along = [&](const std::vector<double>& known, const double* change, int k) {
+        return Changing{known[static_cast<std::size_t>(k * at.n + q)], change[k * at.n + q]};
+      };
+      Point p;
+      for (int k = 0; k < 3; ++k) p.s[static_cast<std::size_t>(k)] = along(at.s, s, k), p.t[static_cast<std::size_t>(k)] = along(at.t, t, k);
+      p.c = along(at.c, c, 0), p.c_s = along(at.s, s, 3), p.c_t = along(at.t, t, 3);
+      const Changing ss = dot(p.s, p.s), st = dot(p.s, p.t), tt = dot(p.t, p.t), det = ss * tt - st * st;
+      p.area = at.weight[static_cast<std::size_t>(q)] * sqrt(det);
+      p.g11 = tt / det, p.g12 = -st / det, p.g22 = ss / det;
+      return p;
+    });
   }
 }
 
@@ -76,70 +66,61 @@ void Surfactant::linearise(const Net& slip) {
   for (std::size_t e = 0; e < known_.size(); ++e) {
     const ElementPoints& at = known_[e];
     known_slip_.emplace_back(3 * static_cast<std::size_t>(at.n));
-    sample(3, at.n, at.functions, at.value.data(), own_rows(space_.elements[e].points, slip).data(), known_slip_.back().data());
+    sample(3, at.n, at.functions, at.value.data(), RowMajor(slip(space_.elements[e].points, Eigen::all)).data(), known_slip_.back().data());
   }
 }
 
 /// M dc = dm - (dM) c.
 Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& dq) const {
-  Net content = Net::Zero(space_.n_points, 3);  // the solver has three columns
-  content.col(0) = share_.cwiseProduct(dq);
-  each_change(dx, nullptr, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
+  Eigen::VectorXd content = share_.cwiseProduct(dq);
+  each_change(dx, Eigen::VectorXd::Zero(dq.size()), [&](std::size_t e, const ElementPoints& at, const auto& point) {
     double spread[most_gauss_points], none[most_gauss_points] = {}, rows[functions_of_element];
-    for (int q = 0; q < at.n; ++q) spread[q] = at.area()[q] * at.c[static_cast<std::size_t>(q)] * change.div[q];
+    for (int q = 0; q < at.n; ++q) spread[q] = -at.c[static_cast<std::size_t>(q)] * point(q).area.slope;
     test(1, at.n, at.functions, at.value.data(), at.value.data(), spread, none, rows);
-    const std::vector<int>& points = space_.elements[e].points;
-    for (std::size_t a = 0; a < points.size(); ++a) content(points[a], 0) -= rows[a];
+    add_rows(e, rows, content);
   });
-  return solver_.solve(known_mass_.update(known_x_), content).col(0);
+  Net columns = Net::Zero(space_.n_points, 3);  // the solver has three
+  columns.col(0) = content;
+  return solver_.solve(known_mass_.update(known_x_), columns).col(0);
 }
 
 Net Surfactant::load_change(const Net& dx, const Eigen::VectorXd& dc) const {
   Net d = Net::Zero(space_.n_points, 3);
-  each_change(dx, &dc, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
+  each_change(dx, dc, [&](std::size_t e, const ElementPoints& at, const auto& point) {
     double along_s[3 * most_gauss_points], along_t[3 * most_gauss_points], rows[3 * functions_of_element];
     for (int q = 0; q < at.n; ++q) {
-      const double c = at.c[static_cast<std::size_t>(q)], area = clean_tension_ * at.area()[q], less = options_.tension(c) - 1;
-      const double more = options_.tension_slope(c) * change.c[q] + less * change.div[q];
-      for (int i = q; i < 3 * at.n; i += at.n) {
-        const double s = at.s[static_cast<std::size_t>(i)], t = at.t[static_cast<std::size_t>(i)];
-        const auto [up_s, up_t] = at.raised(q, more * s + less * change.s[i], more * t + less * change.t[i]);
-        along_s[i] = area * (up_s + less * (change.g11[q] * s + change.g12[q] * t));
-        along_t[i] = area * (up_t + less * (change.g12[q] * s + change.g22[q] * t));
+      const Point p = point(q);
+      const Changing tension{options_.tension(p.c.value) - 1, options_.tension_slope(p.c.value) * p.c.slope};
+      const Changing less = clean_tension_ * (tension * p.area);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(q) + k * static_cast<std::size_t>(at.n);
+        along_s[i] = (less * p.up_s(p.s[k], p.t[k])).slope, along_t[i] = (less * p.up_t(p.s[k], p.t[k])).slope;
       }
     }
     test(3, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);
-    const std::vector<int>& points = space_.elements[e].points;
-    for (std::size_t a = 0; a < points.size(); ++a) d.row(points[a]) += Eigen::Map<const Eigen::RowVector3d>(rows + 3 * a);
+    add_rows(e, rows, d);
   });
   return d;
 }
 
 Eigen::VectorXd Surfactant::rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
-  each_change(dx, &dc, [&](std::size_t e, const ElementPoints& at, const MetricChange& change) {
-    const std::vector<int>& points = space_.elements[e].points;
-    double w[3 * most_gauss_points] = {}, dw[3 * most_gauss_points] = {};
-    double along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
-    if (!known_slip_.empty()) std::ranges::copy(known_slip_[e], w);
-    if (slip_change.rows() > 0) sample(3, at.n, at.functions, at.value.data(), own_rows(points, slip_change).data(), dw);
+  each_change(dx, dc, [&](std::size_t e, const ElementPoints& at, const auto& point) {
+    double dw[3 * most_gauss_points] = {}, along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
+    if (slip_change.rows() > 0)
+      sample(3, at.n, at.functions, at.value.data(), RowMajor(slip_change(space_.elements[e].points, Eigen::all)).data(), dw);
     for (int q = 0; q < at.n; ++q) {
-      const double c = at.c[static_cast<std::size_t>(q)];
-      const auto gradient = static_cast<std::size_t>(3 * at.n + q);
-      double h_s = -diffusivity_ * at.s[gradient], h_t = -diffusivity_ * at.t[gradient];
-      double dh_s = -diffusivity_ * change.c_s[q], dh_t = -diffusivity_ * change.c_t[q];
-      for (int i = q; i < 3 * at.n; i += at.n) {
-        const double s = at.s[static_cast<std::size_t>(i)], t = at.t[static_cast<std::size_t>(i)];
-        const double moved = change.c[q] * w[i] + c * dw[i];
-        h_s += c * w[i] * s, h_t += c * w[i] * t;
-        dh_s += moved * s + c * w[i] * change.s[i], dh_t += moved * t + c * w[i] * change.t[i];
+      const Point p = point(q);
+      Vector<Changing> w;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(q) + k * static_cast<std::size_t>(at.n);
+        w[k] = {known_slip_.empty() ? 0 : known_slip_[e][i], dw[i]};
       }
-      const auto [up_s, up_t] = at.raised(q, change.div[q] * h_s + dh_s, change.div[q] * h_t + dh_t);
-      along_s[q] = at.area()[q] * (up_s + change.g11[q] * h_s + change.g12[q] * h_t);
-      along_t[q] = at.area()[q] * (up_t + change.g12[q] * h_s + change.g22[q] * h_t);
+      const Changing h_s = p.c * dot(w, p.s) - diffusivity_ * p.c_s, h_t = p.c * dot(w, p.t) - diffusivity_ * p.c_t;
+      along_s[q] = (p.area * p.up_s(h_s, h_t)).slope, along_t[q] = (p.area * p.up_t(h_s, h_t)).slope;
     }
     test(1, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);
-    for (std::size_t a = 0; a < points.size(); ++a) rate[points[a]] += rows[a];
+    add_rows(e, rows, rate);
   });
   return rate.cwiseQuotient(share_);
 }

@@ -27,21 +27,21 @@ bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
   } catch (const std::exception& error) {
     mine = failed, reason = error.what();
   }
-  const int worst = coupling::largest(mine, reason);
+  const auto [worst, why] = coupling::worst_of_all(mine, reason);
   if (worst == told_to_stop) throw Stopped();
-  if (worst >= failed) failure_ = coupling::error_of_any(reason);
+  if (worst >= failed) failure_ = why;
   if (worst == exhausted) throw RunFailure(failure_);
   return worst == fine;
 }
 
 Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate) {
   Net result;
-  const bool had = coupling::of_first(like.allFinite()) && done(false, [&] { return (result = evaluate()).allFinite(); });
+  const bool had = coupling::finite(like) && done(false, [&] { return (result = evaluate()).allFinite(); });
   return had ? result : not_a_number(like);
 }
 
 Net GuardedDynamics::velocity(const Net& x) {
-  if (!coupling::of_first(x.allFinite())) return not_a_number(x);
+  if (!coupling::finite(x)) return not_a_number(x);
   Net v;
   return done(told_(), [&] { return (v = motion_.velocity(x)).allFinite(); }) ? v : not_a_number(x);
 }
@@ -71,7 +71,7 @@ Net GuardedDynamics::missed(const Net& dv, const Net& delta) {
 }
 
 Net GuardedDynamics::defect(const Net& x, const Net& u) {
-  if (!coupling::of_first(x.allFinite())) return not_a_number(x);
+  if (!coupling::finite(x)) return not_a_number(x);
   Net d;
   return done(told_(), [&] { return (d = motion_.defect(x, u)).allFinite(); }) ? d : not_a_number(x);
 }
@@ -105,6 +105,8 @@ void GuardedDynamics::improve_start(Net& y, const Net& before, double shift) {
   });
 }
 
-double GuardedDynamics::norm(const Net& displacement) const { return coupling::of_first(motion_.norm(displacement)); }
+double GuardedDynamics::norm(const Net& displacement) const {
+  return coupling::decided([&] { return std::vector{motion_.norm(displacement)}; }).front();
+}
 
 }  // namespace tanktread::motion

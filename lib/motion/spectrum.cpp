@@ -173,8 +173,8 @@ Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shap
   Eigen::MatrixXd jacobian(n, n);
   const Linearised linearised(dynamics, shapes, x, kept, options.difference);
   for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(Eigen::VectorXd::Unit(n, k));
-  coupling::take_first({jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-  return coupling::eigenpairs(std::move(jacobian));
+  const std::vector<double> first = coupling::decided([&] { return std::vector(jacobian.data(), jacobian.data() + jacobian.size()); });
+  return coupling::eigenpairs(Eigen::Map<const Eigen::MatrixXd>(first.data(), n, n));
 }
 
 /// Those with the largest (1 - rate/shift)^-1: (I - J/shift)^-1 by GMRES, with what an implicit step has for it as preconditioner.

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "motion/quasi_newton.hpp"
 
@@ -24,6 +26,35 @@ struct Remembered {
   Orders orders;
 };
 
+/// Extrapolates slopes at earlier times, from the start of the step, by polynomials through the latest of them.
+class Prediction {
+ public:
+  Prediction(const State& state, const Memory& memory, std::size_t most) : times_{0, (2 * d - 1) * memory.step, -memory.step}, most_(most) {
+    for (const Net& slope : state.history) slopes_.push_back(&slope);
+  }
+
+  void add(double time, const Net& slope) { times_.insert(times_.begin(), time), slopes_.insert(slopes_.begin(), &slope); }
+
+  Net at(double time, double order) const {
+    const std::size_t n = std::min({slopes_.size(), most_ + 1, static_cast<std::size_t>(order) + 1});
+    return interpolated(times_, std::span(slopes_).first(n), time);
+  }
+
+  /// Returns the order that would have predicted this slope best.
+  double best_order(const coupling::Dynamics& dynamics, double time, const Net& slope) const {
+    double least = std::numeric_limits<double>::infinity(), best = 0;
+    for (std::size_t order = 0; order < slopes_.size(); ++order)
+      if (const double miss = dynamics.norm(at(time, static_cast<double>(order)) - slope); miss < worth_an_order * least)
+        least = miss, best = static_cast<double>(order);
+    return best;
+  }
+
+ private:
+  std::vector<double> times_;
+  std::vector<const Net*> slopes_;
+  std::size_t most_;
+};
+
 }  // namespace
 
 StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
@@ -36,36 +67,22 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
   for (;;) {
     const double dt = attempts.next(), shift = d * dt;
     const Net& k1 = state.history.front();
-    std::vector<double> times{0, (2 * d - 1) * memory.step, -memory.step};  // of the slopes, from the start of this step
-    std::vector<const Net*> slopes;
-    for (const Net& slope : state.history) slopes.push_back(&slope);
-    const auto predicted = [&](double time, std::size_t order) {
-      const std::size_t n = std::min({slopes.size(), static_cast<std::size_t>(options_.predictor_order) + 1, order + 1});
-      return interpolated(times, std::span(slopes).first(n), time);
-    };
-    const auto best_order = [&](double time, const Net& slope) {
-      double least = std::numeric_limits<double>::infinity(), best = 0;
-      for (std::size_t order = 0; order < slopes.size(); ++order)
-        if (const double miss = dynamics.norm(predicted(time, order) - slope); miss < worth_an_order * least)
-          least = miss, best = static_cast<double>(order);
-      return best;
-    };
+    Prediction prediction(state, memory, static_cast<std::size_t>(options_.predictor_order));
     Orders orders;
 
     Stage second, third;
     const Net rhs2 = state.x + shift * k1;
-    second.y = rhs2 + shift * predicted(2 * d * dt, static_cast<std::size_t>(known.second));
+    second.y = rhs2 + shift * prediction.at(2 * d * dt, known.second);
     dynamics.improve_start(second.y, state.x, shift);
     dynamics.at(state.time + 2 * d * dt, state.time);
     solve(dynamics, options_, rhs2, shift, secants, second);
     const Net& k2 = second.slope;
     if (second.solved) {
-      orders.second = best_order(2 * d * dt, k2);
-      times.insert(times.begin(), 2 * d * dt);
-      slopes.insert(slopes.begin(), &k2);
+      orders.second = prediction.best_order(dynamics, 2 * d * dt, k2);
+      prediction.add(2 * d * dt, k2);
       const Net rhs3 = state.x + dt * w * (k1 + k2);
       third.rate = second.rate;
-      third.y = rhs3 + shift * predicted(dt, static_cast<std::size_t>(known.third));
+      third.y = rhs3 + shift * prediction.at(dt, known.third);
       dynamics.improve_start(third.y, second.y, shift);
       dynamics.at(state.time + dt, state.time);
       solve(dynamics, options_, rhs3, shift, secants, third);
@@ -73,7 +90,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     attempts.report.iterations += second.iterations + third.iterations;
     double error = 0, slope_error = 0;
     if (third.solved) {
-      orders.third = best_order(dt, third.slope);
+      orders.third = prediction.best_order(dynamics, dt, third.slope);
       const Net raw = dt * ((4 * w - 1) / 3 * k1 - k2 / 3 + 2 * d / 3 * third.slope);
       const Net once = dynamics.solve(shift, raw, options_.linear_tolerance, {}), twice = dynamics.solve(shift, once, options_.linear_tolerance, {});
       error = (dynamics.norm(once) / accuracy + second.error + third.error) / options_.tolerance;

@@ -91,11 +91,25 @@ std::string failure_of_any(const std::function<void()>& act) {
   return error_of_any(error);
 }
 
+std::pair<int, std::string> worst_of_all(int mine, const std::string& reason) {
+  const int worst = largest(mine, reason);
+  return {worst, worst > 0 ? error_of_any(reason) : std::string()};
+}
+
+bool finite(const Net& net) { return of_first(net.allFinite()); }
+
 bool any_told_to_stop(bool told) { return largest(told) > 0; }
 
 std::vector<double> decided(const std::function<std::vector<double>()>& choose) {
+  if (everyone() == MPI_COMM_NULL) return choose();
   std::vector<double> numbers;
-  if (everyone() == MPI_COMM_NULL || rank() == 0) numbers = choose();
+  std::string error;
+  try {
+    if (rank() == 0) numbers = choose();
+  } catch (const std::exception& exception) {
+    error = exception.what();
+  }
+  if (error = error_of_any(error); !error.empty()) throw RunFailure(error);
   numbers.resize(static_cast<std::size_t>(of_first(static_cast<double>(numbers.size()))));
   take_first(numbers);
   return numbers;

@@ -4,7 +4,10 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "base/types.hpp"
 
 namespace tanktread::coupling {
 
@@ -22,11 +25,17 @@ std::string error_of_any(const std::string& mine);
 /// Collective.
 std::string failure_of_any(const std::function<void()>& act);
 
+/// Returns the largest outcome of all ranks, and if not all of them are 0 the reason that one of them gives. Collective; see `largest`.
+std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
+
+/// Returns whether a net that all ranks hold is finite, as the first rank finds it. Collective.
+bool finite(const Net& net);
+
 /// Returns whether any rank has been told to stop, so that all of them stop together. Collective.
 bool any_told_to_stop(bool told);
 
 /// Returns the numbers that `choose` returns on the first rank. It is not called on other ranks. A decision based on data that differ by round-off
-/// between ranks is one decision this way. Collective.
+/// between ranks is one decision this way. If it throws, every rank throws RunFailure. Collective.
 std::vector<double> decided(const std::function<std::vector<double>()>& choose);
 
 /// The first rank's numbers, on every rank: of data that should be equal to the bit, so that a decision is one even where it is not. Collective.
