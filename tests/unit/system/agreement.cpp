@@ -2,10 +2,12 @@
 
 #include "system/agreement.hpp"
 
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/errors.hpp"
 #include "system/ranks.hpp"
 
 namespace tanktread::coupling {
@@ -20,6 +22,25 @@ TEST(Agreement, TheWorstOutcomeAndTheFirstRanksNumbersAreEverybodys) {
   EXPECT_EQ(numbers, (std::vector<double>{1, -2}));
   EXPECT_EQ(of_first(0.5 + ranks.rank()), 0.5);
   EXPECT_TRUE(of_first(ranks.rank() == 0));
+}
+
+TEST(Agreement, TheFirstRankAloneDecides) {
+  const Ranks ranks;
+  int calls = 0;
+  EXPECT_EQ(decided([&] { return std::vector(static_cast<std::size_t>(++calls + 2), 1. + ranks.rank()); }), std::vector(3, 1.));
+  EXPECT_EQ(calls, ranks.rank() == 0 ? 1 : 0);
+  EXPECT_THROW(decided([]() -> std::vector<double> { throw std::logic_error("undecided"); }), RunFailure);
+  EXPECT_TRUE(any_told_to_stop(ranks.rank() == ranks.size() - 1));
+  EXPECT_FALSE(any_told_to_stop(false));
+}
+
+TEST(Agreement, TheWorstOutcomeHasAReason) {
+  const Ranks ranks;
+  const bool last = ranks.rank() == ranks.size() - 1;
+  EXPECT_EQ(worst_of_all(last ? 2 : 0, last ? "why" : ""), std::pair(2, std::string("why")));
+  EXPECT_EQ(worst_of_all(0, ""), std::pair(0, std::string()));
+  EXPECT_EQ(failure_of_any([&] { if (last) throw std::runtime_error("one failed"); }), "one failed");
+  EXPECT_EQ(failure_of_any([] {}), "");
 }
 
 TEST(Agreement, TheErrorOfOneRankIsTold) {

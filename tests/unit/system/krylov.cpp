@@ -256,6 +256,27 @@ TEST(Ranks, EveryItemIsDoneByOneRankAndNumbersAddUp) {
   for (const double w : weight) EXPECT_EQ(w, ranks.size());
 }
 
+TEST(Ranks, RowsAreEvaluatedByOneRankEach) {
+  const Ranks ranks;
+  const auto rows = ranks.divided<Eigen::MatrixXd>(7, 2, [](std::span<const int> own, Eigen::MatrixXd& all) {
+    for (const int k : own) all.row(k) << k + 1, 2 * k;
+  });
+  for (int k = 0; k < 7; ++k) EXPECT_EQ(rows.row(k), Eigen::RowVector2d(k + 1, 2 * k));
+  EXPECT_EQ(ranks.assembled<Eigen::MatrixXd>(2, 2, [](Eigen::MatrixXd& own) { own.diagonal().setOnes(); }),
+            ranks.size() * Eigen::MatrixXd::Identity(2, 2));
+  const auto all = ranks.gathered(std::array{1. + ranks.rank(), 5.});
+  for (std::size_t r = 0; r < all.size(); ++r) EXPECT_EQ(all[r], (std::array{1. + static_cast<double>(r), 5.}));
+}
+
+TEST(Ranks, OwnersFillTheRowsOfTheirPoints) {
+  Ranks ranks;
+  const std::vector<int> own = ranks.divide_in_order(surface::Symmetry(9));
+  const Net net = ranks.filled(9, [&](Net& rows) {
+    for (const int a : own) rows.row(a) << a, 1, -a;
+  });
+  for (int a = 0; a < 9; ++a) EXPECT_EQ(net.row(a), Eigen::RowVector3d(a, 1, -a));
+}
+
 TEST(Ranks, OneRankSpeaksForAll) {
   Ranks ranks;
   EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));
