@@ -25,7 +25,7 @@
 #include "scene/series/series.hpp"
 #include "system/agreement.hpp"
 #include "system/ranks.hpp"
-#include "system/solvers/solver_trial.hpp"
+#include "system/solvers/options.hpp"
 
 namespace tanktread {
 

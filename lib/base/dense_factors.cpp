@@ -3,7 +3,6 @@
 #include <cassert>
 #include <utility>
 
-#include "base/dense_kernel.hpp"
 
 namespace tanktread {
 

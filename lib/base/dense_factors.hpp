@@ -23,4 +23,10 @@ class DenseFactors {
   std::vector<int> row_of_;  // of P A: that of row i of A
 };
 
+/// Puts the factors L (with ones on the diagonal) and U of P A in the place of A of shape (n, n); row i of A is row row_of[i] of P A.
+void factor(int n, double* a, int* row_of);
+
+/// x = U^-1 L^-1 x for the columns of x, shape (n, columns).
+void solve_triangles(int n, const double* factors, int columns, double* x);
+
 }  // namespace tanktread

@@ -1,4 +1,4 @@
-#include "base/dense_kernel.hpp"
+#include "base/dense_factors.hpp"
 
 #include <Eigen/LU>
 

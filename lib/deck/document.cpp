@@ -10,7 +10,6 @@
 #include "deck/source.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
-#include "deck/yaml.hpp"
 
 namespace tanktread::deck {
 

@@ -7,9 +7,8 @@
 
 #include <Teuchos_ParameterList.hpp>
 
-#include "deck/synonyms.hpp"
-#include "deck/value.hpp"
 #include "deck/words.hpp"
+#include "deck/value.hpp"
 
 namespace tanktread::deck {
 

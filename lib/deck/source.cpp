@@ -8,7 +8,6 @@
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
-#include "deck/yaml.hpp"
 
 namespace tanktread::deck {
 

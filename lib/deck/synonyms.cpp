@@ -1,4 +1,4 @@
-#include "deck/synonyms.hpp"
+#include "deck/words.hpp"
 
 #include <algorithm>
 #include <array>

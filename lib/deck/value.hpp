@@ -5,10 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace Teuchos {
-class ParameterEntry;
-class ParameterList;
-}  // namespace Teuchos
+#include "deck/forward.hpp"
 
 namespace tanktread::deck {
 
@@ -28,5 +25,9 @@ std::string description(const Teuchos::ParameterEntry& entry);
 /// A list of another library as YAML, and the merge of two lists, key by key: `over` wins.
 std::string yaml_text(const Teuchos::ParameterList& list, int depth);
 void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over);
+
+/// Holds a list that is handed to another library against what that library says it takes (its getValidParameters()). Throws UserError at
+/// the first parameter that it does not know, with a guess of what was meant, or that is of another type (number, whole number, truth, text).
+void check_foreign(const std::string& path, const Teuchos::ParameterList& given, const Teuchos::ParameterList& valid);
 
 }  // namespace tanktread::deck

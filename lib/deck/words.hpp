@@ -32,4 +32,10 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
 /// no more than a third of the length, upper and lower case alike.
 std::string guess(const std::string& given, const std::vector<std::string>& candidates);
 
+/// The path of the key that is probably meant by a name which the deck does not know, `Time/final time` for `tend`; empty: none.
+std::string synonym(const std::string& name);
+
+/// Why the key at this path does not exist: a sentence, without its point, on what this program does not compute; empty: none.
+std::string missing_feature(const std::string& path);
+
 }  // namespace tanktread::deck

@@ -1,4 +1,4 @@
-#include "deck/yaml.hpp"
+#include "deck/source.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,12 +10,10 @@
 #include <yaml-cpp/yaml.h>
 #include <Teuchos_ParameterList.hpp>
 
-#include "base/csv.hpp"
+#include "base/text_file.hpp"
 #include "base/errors.hpp"
-#include "deck/source.hpp"
-#include "deck/synonyms.hpp"
-#include "deck/value.hpp"
 #include "deck/words.hpp"
+#include "deck/value.hpp"
 
 namespace tanktread::deck {
 

@@ -14,7 +14,7 @@
 #include <Tpetra_MultiVector.hpp>
 
 #include "base/errors.hpp"
-#include "deck/foreign.hpp"
+#include "deck/value.hpp"
 #include "spline/sparse_systems.hpp"
 
 namespace tanktread::membrane {

@@ -21,7 +21,7 @@
 #include "record/files/file.hpp"
 #include "record/files/progress.hpp"
 #include "record/files/state.hpp"
-#include "record/numbers.hpp"
+#include "record/plan.hpp"
 #include "scene/series/series.hpp"
 #include "spline/iga.hpp"
 #include "system/agreement.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "record/duct_picture.hpp"
-#include "record/numbers.hpp"
+#include "record/plan.hpp"
 #include "scene/series/series.hpp"
 #include "scene/series/run_totals.hpp"
 

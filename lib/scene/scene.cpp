@@ -11,7 +11,7 @@
 #include "deck/units.hpp"
 #include "deck/words.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "scene/free_motions.hpp"
+#include "scene/searches.hpp"
 #include "scene/tube.hpp"
 #include "surface/channel.hpp"
 #include "system/ranks.hpp"

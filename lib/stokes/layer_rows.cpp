@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 
 #include "stokes/kernels/assembly_kernel.hpp"
-#include "stokes/kernels/identity_kernel.hpp"
 #include "stokes/layer.hpp"
 
 namespace tanktread::stokes {

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/csv.hpp"
+#include "base/text_file.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "base/text_file.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread::surface {

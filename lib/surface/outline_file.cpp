@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include "base/csv.hpp"
-#include "base/errors.hpp"
 #include "base/text_file.hpp"
+#include "base/errors.hpp"
 #include "deck/words.hpp"
 #include "surface/outline.hpp"
 

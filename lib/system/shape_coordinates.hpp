@@ -9,7 +9,6 @@
 #include "base/types.hpp"
 #include "membrane/symmetric_solver.hpp"
 #include "spline/space.hpp"
-#include "surface/parity.hpp"
 #include "surface/symmetry.hpp"
 #include "system/coupled_motion.hpp"
 #include "system/dynamics.hpp"
@@ -33,7 +32,7 @@ namespace tanktread::coupling {
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
 /// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone, or
-/// those of another parity (surface/parity.hpp), for whom nothing else may know of the symmetry.
+/// those of another parity (surface/symmetry.hpp), for whom nothing else may know of the symmetry.
 ///
 /// Of a rigid body those of six orthonormal fields, its translations and rotations.
 ///

@@ -13,6 +13,7 @@
 #include "record/files/snapshot.hpp"
 #include "scene/member.hpp"
 #include "scene/series/diagnostics.hpp"
+#include "stokes/kernels/kernels.hpp"
 #include "system/coupled_motion.hpp"
 
 namespace tanktread {
@@ -73,5 +74,13 @@ class SurfaceFields {
   std::optional<coupling::CoupledMotion> motion_;
   motion::State shapes_;
 };
+
+/// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and for several particles their number. `all`: the body
+/// of all members; x, load and velocity (of the fluids, or empty): control values of all. Serial.
+std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
+                                           const Net& load, const Net& velocity);
+
+/// Returns, at each node, the displacement that moves its particle into the cell around the origin.
+output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 
 }  // namespace tanktread

@@ -7,10 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "base/csv.hpp"
+#include "base/text_file.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "base/text_file.hpp"
 #include "deck/section.hpp"
 #include "deck/words.hpp"
 

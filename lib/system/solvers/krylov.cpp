@@ -13,7 +13,7 @@
 #include <Thyra_LinearOpWithSolveFactoryHelpers.hpp>
 
 #include "base/errors.hpp"
-#include "deck/foreign.hpp"
+#include "deck/value.hpp"
 #include "deck/words.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
 #include "system/solvers/block_system.hpp"

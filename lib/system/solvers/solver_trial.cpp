@@ -1,4 +1,4 @@
-#include "system/solvers/solver_trial.hpp"
+#include "system/solvers/options.hpp"
 
 #include <functional>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "deck/foreign.hpp"
+#include "deck/value.hpp"
 
 #include <gtest/gtest.h>
 #include <Teuchos_ParameterList.hpp>

@@ -1,4 +1,4 @@
-#include "deck/yaml.hpp"
+#include "deck/source.hpp"
 
 #include <gtest/gtest.h>
 

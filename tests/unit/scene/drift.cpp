@@ -1,5 +1,5 @@
 #include "scene/body.hpp"
-#include "scene/free_motions.hpp"
+#include "scene/searches.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/packing.hpp"
+#include "scene/copies.hpp"
 
 namespace tanktread {
 namespace packing_test {

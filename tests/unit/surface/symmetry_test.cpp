@@ -10,7 +10,6 @@
 
 #include "spline/refinement.hpp"
 #include "surface/geometry.hpp"
-#include "surface/parity.hpp"
 #include "surface/shapes.hpp"
 #include "surfaces.hpp"
 

@@ -1,11 +1,10 @@
-#include "record/files/lagrange.hpp"
+#include "record/files/nodes.hpp"
 
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "patches.hpp"
-#include "record/files/nodes.hpp"
 
 namespace tanktread::output {
 namespace {

@@ -1,7 +1,10 @@
 #pragma once
-// Rigid motions that a scene leaves free, what holds a particle against them, and the step of a steady search.
+// What searches for steady shapes, periodic motions and branches need of a scene: the rigid motions that it leaves free, what holds a particle
+// against them, the step of a search, and the parameters of a branch.
 
+#include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "motion/integrator.hpp"
@@ -33,5 +36,14 @@ bool holds_centre(const Scene& scene);
 /// Moves the state so that its centroid is at `place`, and the slopes and earlier places of the scheme along: v(x + c) = v(x) + L c in an affine
 /// flow, whatever the shape, so that x(t) + c(t) with dc/dt = L c is a motion where x(t) is one, and was displaced by exp(-L s) c at a time s ago.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
+
+/// The value of Continuation/parameter, and that of the second parameter, 0 where there is none.
+using Parameters = std::array<double, 2>;
+
+/// The scene with other values of the parameters of its branch. `deck`: the effective one.
+Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values);
+
+/// With which the branch begins. Throws UserError where a parameter is no number of the deck.
+Parameters first_parameters(const Scene& scene, const std::string& deck);
 
 }  // namespace tanktread

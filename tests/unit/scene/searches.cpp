@@ -6,7 +6,7 @@
 
 #include "deck/document.hpp"
 #include "scene/body.hpp"
-#include "scene/free_motions.hpp"
+#include "scene/searches.hpp"
 
 namespace tanktread {
 namespace {
