@@ -11,7 +11,7 @@
 #include "motion/guarded.hpp"
 #include "motion/integrator.hpp"
 #include "record/files/progress.hpp"
-#include "record/files/state.hpp"
+#include "record/files/checkpoint.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
 #include "scene/body.hpp"

@@ -20,7 +20,7 @@
 #include "record/files/checksum.hpp"
 #include "record/files/file.hpp"
 #include "record/files/progress.hpp"
-#include "record/files/state.hpp"
+#include "record/files/checkpoint.hpp"
 #include "record/plan.hpp"
 #include "scene/series/series.hpp"
 #include "spline/iga.hpp"

@@ -58,7 +58,7 @@ struct CopiesOptions {
 };
 
 /// The kinds with every copy as one of its own, `<name> 1`, `<name> 2`, …. What is placed at random in a box or ball keeps clear of all that is
-/// placed before it, as far as the spheres around them tell; what is placed in the cell, all of it together, of everything (packing.hpp). Throws
+/// placed before it, as far as the spheres around them tell; what is placed in the cell, all of it together, of everything. Throws
 /// UserError for a file that does not hold places, or where there is no room.
 std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain);
 

@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include "motion/integrator.hpp"
+
 namespace tanktread::output {
 
 /// What a run needs to go on, to the last bit: control nets, the frozen operator's geometry, the memory of the step controller, the
@@ -60,5 +62,14 @@ struct Saved {
 /// The newest snapshot of a directory that is sound. None: empty. Throws RunFailure when the system does not read one that is newer (permission, a
 /// failing disk), since it may be sound.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
+
+/// Adds all of `state` to the checkpoint: number "time" among others.
+void store(const motion::State& state, Checkpoint& checkpoint);
+
+/// The same state, to the last bit. Throws std::out_of_range where the checkpoint holds none.
+motion::State stored_state(const Checkpoint& checkpoint);
+
+/// Whether all ranks hold the same state, to the last bit. Collective.
+bool equal_on_all_ranks(const motion::State& state);
 
 }  // namespace tanktread::output

@@ -1,17 +1,33 @@
 #pragma once
 // Rigid bodies among capsules and drops.
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
+#include "spline/space.hpp"
 #include "system/particle.hpp"
-#include "system/solids/own_lacking.hpp"
 #include "system/solids/rigid_motion.hpp"
 
 namespace tanktread::coupling {
+
+/// Projected less collocated, M^-1 int N_A u dG - R^-1 u, of the velocity u that a body's own layers give it, for a viscosity of 1. A spline surface
+/// of n elements a side is higher at its collocation sites than between them by some 1/n^4, and on either side of it a velocity is not the same:
+/// collocated, a sphere that is turned by a load turns too slowly by 0.035/n^4, and its stresslet in a strain errs as much.
+struct OwnLacking {
+  std::array<Net, 6> loads;  ///< u = A f of the loads f = e_k and e_k x r, k = 0, 1, 2, r from the centre of the volume
+  Eigen::MatrixXd density;   ///< u = H w of any density w, shape (3 N, 3 N); empty for more than `most_points` control points
+
+  /// 72 bytes for each pair of them. In single precision GMRES takes the rounding for a residual that does not fall.
+  static constexpr int most_points = 2000;
+
+  OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
+};
 
 /// The limit lambda -> infinity of (2.22). There v = V + w/(lambda - 1) on the body, V = U + Omega x r, and
 ///
@@ -39,7 +55,7 @@ class RigidParticles {
   void push(const Net& work);
 
   void add_load(Net& load) const;            ///< the load of given forces and torques
-  void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (own_lacking.hpp)
+  void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (OwnLacking)
   void subtract_prescribed(Net& v) const;          ///< V of the bodies that move as prescribed
   void complete(const Net& w, Net& v) const; ///< rows of v: w out, <w> in where force and torque are given, and what R^-1 D w lacks
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as prescribed, 0 elsewhere
@@ -66,7 +82,7 @@ class RigidParticles {
   /// Whether two bodies are equal where they were at rest, but for where that was.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (own_lacking.hpp).
+  /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (OwnLacking).
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
   /// Component k of <w>, the velocity's and then the angular velocity's, as a linear functional of its rows of w, row after row, where it was at

@@ -17,10 +17,27 @@
 #include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 #include "system/ranks.hpp"
-#include "system/solids/wall_patches.hpp"
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {
+
+/// Rows of the inverses of the wall's operator between few neighbours, five by five: what f_i is where rhs is theirs alone.
+class WallPatches {
+ public:
+  /// Of these control points; `layer`: of the wall at its collocation points, placed.
+  WallPatches(const surface::TubeWall& wall, stokes::Layer& layer, const std::vector<int>& points);
+
+  /// Rows of f for these points.
+  void apply(const Net& rhs, Net& f) const;
+
+ private:
+  struct Patch {
+    int point;
+    std::vector<int> neighbours;
+    Eigen::Matrix<double, 3, Eigen::Dynamic> row;
+  };
+  std::vector<Patch> patches_;
+};
 
 /// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
 /// Making the rows is shared out, the factors are on every rank: 72 bytes a pair of control points.

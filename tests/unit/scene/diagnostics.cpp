@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
-#include "scene/flow_plane.hpp"
+#include "scene/body.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
 #include "spline/extraction.hpp"

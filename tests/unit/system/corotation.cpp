@@ -1,6 +1,6 @@
 // Frozen layer operators turn with the particle for which they were assembled.
 
-#include "system/solvers/corotation.hpp"
+#include "system/solvers/frozen_operator.hpp"
 
 #include <cmath>
 #include <vector>

@@ -15,7 +15,6 @@
 #include "patches.hpp"
 #include "record/files/file.hpp"
 #include "record/files/snapshot.hpp"
-#include "record/files/state.hpp"
 #include "scratch.hpp"
 #include "system/ranks.hpp"
 
