@@ -18,7 +18,7 @@
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
-#include "record/files/checksum.hpp"
+#include "record/files/file.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
 #include "scene/scene.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "record/files/arrays.hpp"
+#include "record/files/file.hpp"
 #include "stokes/flow/duct_flow.hpp"
 #include "system/solids/channel_flow.hpp"
 

@@ -17,7 +17,6 @@
 #include "deck/expectation.hpp"
 #include "deck/units.hpp"
 #include "record/duct_picture.hpp"
-#include "record/files/checksum.hpp"
 #include "record/files/file.hpp"
 #include "record/files/progress.hpp"
 #include "record/files/checkpoint.hpp"

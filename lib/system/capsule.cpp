@@ -9,7 +9,7 @@
 #include "base/formatted.hpp"
 #include "base/small_matrices.hpp"
 #include "system/collocation.hpp"
-#include "system/label_rotations.hpp"
+#include "system/symmetry.hpp"
 #include "system/solvers/tube_system.hpp"
 
 namespace tanktread::coupling {

@@ -2,6 +2,7 @@
 // Which symmetries a scene has, so that only a part of it needs to be solved.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "base/types.hpp"
 #include "deck/forward.hpp"
 #include "membrane/load.hpp"
+#include "membrane/symmetric_solver.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/symmetry.hpp"
@@ -36,5 +38,15 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 /// The same in a channel: mirror planes and half turns that leave its wall as it is.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const surface::TubeWall& wall, const LoadList& loads = {});
+
+/// Control values, on points `block` of the net x, of the rates at which material points pass each other along the surface where the unstressed
+/// surface turns in itself about the axis x_{axis+1} through its centre:
+///
+///   D x = F (e_k x (X - X_c)),   F the deformation gradient                                                        (4.22)
+///
+/// Tensions do not change by that, so that a membrane that treads around a steady shape moves by v = omega D x. Nothing where the unstressed surface
+/// is not one that turns in itself, or has a pole, where F is not known.
+std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
+                                  const membrane::SymmetricSolver& collocation);
 
 }  // namespace tanktread::coupling

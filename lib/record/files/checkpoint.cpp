@@ -11,7 +11,6 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "record/files/checksum.hpp"
 #include "record/files/file.hpp"
 #include "record/files/hdf.hpp"
 #include "system/agreement.hpp"

@@ -4,15 +4,17 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
+#include <unistd.h>
 #include <vector>
 
-#include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include "base/errors.hpp"
+#include "record/files/hdf.hpp"
 
 namespace tanktread::output {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,6 +134,16 @@ Occupation::Occupation(const std::filesystem::path& directory) {
 
 Occupation::~Occupation() {
   if (descriptor_ >= 0) close(descriptor_);
+}
+
+void write_arrays(const std::filesystem::path& path, const std::vector<Array>& arrays) {
+  const hdf::Id file = hdf::new_file();
+  for (const Array& array : arrays) {
+    hdf::write(file, array.name, array.values, hdf::Shape(array.shape.begin(), array.shape.end()));
+    hdf::attribute(file, array.name, "unit", array.unit);
+    hdf::attribute(file, array.name, "description", array.description);
+  }
+  write_whole(path, hdf::image(file));
 }
 
 }  // namespace tanktread::output

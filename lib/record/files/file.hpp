@@ -1,10 +1,38 @@
 #pragma once
 // Files that are whole at every moment: written beside their place, then renamed into it; and the directory of a run.
 
+#include <bit>
+#include <cinttypes>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace tanktread::output {
+
+/// Mixes words into one number that every bit of them changes (a chain of invertible steps, the constants of FNV-1a).
+class Checksum {
+ public:
+  void add(std::uint64_t word) { sum_ = std::rotl((sum_ ^ word) * 0x00000100000001b3u, 29); }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(const std::string& text) {
+    add(static_cast<std::uint64_t>(text.size()));
+    for (const char c : text) add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+  }
+
+  /// Sixteen hexadecimal ones.
+  std::string digits() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016" PRIx64, sum_);
+    return text;
+  }
+
+ private:
+  std::uint64_t sum_ = 0xcbf29ce484222325u;
+};
 
 /// Whether bytes are on the disk itself, which a failure of power leaves as it is, before anything says that they are.
 enum class Durable { no, yes };
@@ -47,5 +75,15 @@ class Occupation {
  private:
   int descriptor_ = -1;
 };
+
+/// Row-major; an empty shape is a number.
+struct Array {
+  std::string name, unit, description;
+  std::vector<double> values;
+  std::vector<std::size_t> shape;
+};
+
+/// HDF5: `/<name>`, doubles with attributes `unit` and `description`. In one step (write_whole). Throws RunFailure.
+void write_arrays(const std::filesystem::path& path, const std::vector<Array>& arrays);
 
 }  // namespace tanktread::output

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
-#include "record/files/checksum.hpp"
+#include "record/files/file.hpp"
 #include "record/files/hdf.hpp"
 
 namespace tanktread::output {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "system/collocation.hpp"
-#include "system/label_rotations.hpp"
+#include "system/symmetry.hpp"
 #include "tests/unit/system/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {

@@ -1,4 +1,4 @@
-#include "record/files/arrays.hpp"
+#include "record/files/file.hpp"
 
 #include <gtest/gtest.h>
 
