@@ -17,7 +17,7 @@ std::string ParticleOptions::choice() const { return "Particle/motion " + text(m
 
 void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
-  const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "in flows whose gradient is the same everywhere";
+  const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "whose gradient is the same everywhere";
   to.pair(!scene.runs_in_time() && told, scene.sought(), choice(), "a body that moves as told has no place or attitude to be found");
   to.pair(scene.tube.repulsion && told, scene.tube.list() + "/repulsion", choice(), forced);
   to.pair(density_difference && told, "Particle/density difference", choice(), forced);
@@ -26,8 +26,8 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(rigid() && scene.volume_given, "Volume", choice(), "a rigid particle keeps its volume");
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", choice(), "there is no fluid in a rigid particle");
   to.pair(rigid() && shape.initial, "Particle/initial shape", choice(), "a rigid particle has the shape that it has");
-  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow.choice(), "it is for particles " + gradient);
-  to.pair(held && (tube || rigid()), "Particle/drift `held`", tube ? scene.tube.list() : choice(), "it is for particles that deform " + gradient);
+  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow.choice(), "it is for flows " + gradient);
+  to.pair(held && (tube || rigid()), "Particle/drift `held`", tube ? scene.tube.list() : choice(), "it is for particles that deform in a flow " + gradient);
   to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
           "Solvers/projection `" + scene.solvers.projection + "`", tube ? "Tube" : scene.wall.present ? "Wall" : choice(),
           "it is for what deforms away from walls");

@@ -101,11 +101,10 @@ bool finite(const Net& net) { return of_first(net.allFinite()); }
 bool any_told_to_stop(bool told) { return largest(told) > 0; }
 
 std::vector<double> decided(const std::function<std::vector<double>()>& choose) {
-  if (everyone() == MPI_COMM_NULL) return choose();
   std::vector<double> numbers;
   std::string error;
   try {
-    if (rank() == 0) numbers = choose();
+    if (everyone() == MPI_COMM_NULL || rank() == 0) numbers = choose();
   } catch (const std::exception& exception) {
     error = exception.what();
   }
