@@ -150,9 +150,7 @@ class Capsule : public Dynamics {
   /// Solves the linear system of an implicit step for `rhs`, a state of any number of rows, to this relative residual, and counts it. Collective.
   Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
   bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
-  void symmetrise(const membrane::Field& field, Eigen::VectorXd& q) const {
-    if (parameters_.symmetry.order() > 1) field.symmetrise(parameters_.symmetry, q);
-  }
+  const surface::Symmetry& symmetry() const { return parameters_.symmetry; }
 
   /// Load of the fluids on the membrane, as control values: per unstressed or per current area, as its particle says. Of a rigid body the load of
   /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
