@@ -228,7 +228,8 @@ class SteadyRun {
     coupling::Ranks whole_ranks;  // of other rows
     const coupling::CoupledMotion* on_it = system_->particle->fields();
     const bool apart = on_it && !on_it->knows_images(shape);
-    if (apart && options.parity) throw UserError("Spectrum/parity needs fields whose images are known: without the key there are modes of all parities.");
+    if (apart && options.parity)
+      throw UserError("Spectrum/parity needs fields whose images are known: without the key there are modes of all parities.");
     const std::shared_ptr<System> system = options.parity || apart ? whole(whole_ranks) : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();

@@ -16,7 +16,8 @@ namespace tanktread::coupling {
 
 ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                                    const VelocityProjection* projection, const Vec3& parity)
-    : symmetry_(symmetry), of_planes_(parity), parity_(symmetry, parity), sites_(collocation_matrix(space)), collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
+    : symmetry_(symmetry), of_planes_(parity), parity_(symmetry, parity), sites_(collocation_matrix(space)),
+      collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
       projection_(projection) {
   collocation_.factor(sites_);
   for (const int i : symmetry.fundamental()) {
