@@ -68,8 +68,6 @@ REASONS = [
      "without walls nothing balances a net force in every cell"),
 ]
 NOT_YET = [  # without a reason in physics
-    ("it is a steady problem", {"kind": ("prescribed body",)}, {"flow": ("changing",)}, "one prescribed body in a flow that changes"),
-    ("the mesh of a rigid particle stays as it is", {"kind": RIGID, "law": ("none",)}, {"adaptation": ("yes",)}, "the mesh of one body adapts"),
     ("a lattice can follow no flow but one", {"medium": LATTICES}, {"flow": ("round parabolic", "plane parabolic", "duct", "changing"), "duct": ("tube", "channel")},
      "lattices with flows that repeat or change"),
     ("a tube does not repeat", {"medium": LATTICES}, {"duct": ("tube", "channel")}, "ducts that repeat"),
