@@ -15,7 +15,6 @@ class Parity {
   /// What the vector, or the scalar, of a point is multiplied by to be that of its source's image, as Symmetry::signs.
   const Net& signs() const { return signs_; }
   const Eigen::VectorXd& scalar_signs() const { return scalar_signs_; }
-  int source(Eigen::Index point) const { return source_[static_cast<std::size_t>(point)]; }  ///< the fundamental point that it is an image of
 
   /// Fields of this parity from their rows of the fundamental points, as Symmetry::complete.
   void complete(Net& field) const;
