@@ -77,7 +77,8 @@ def mesh(snapshot, kind):
     grid.SetPoints(points)
     for nodes in cells:
         for cell in nodes:
-            grid.InsertNextCell(model.VTK_LAGRANGE_QUADRILATERAL if hasattr(model, "VTK_LAGRANGE_QUADRILATERAL") else 70,
+            grid.InsertNextCell(model.VTK_LAGRANGE_QUADRILATERAL if hasattr(model,
+                                                                            "VTK_LAGRANGE_QUADRILATERAL") else 70,
                                 len(cell), cell.tolist())
     for name, values in snapshot.fields.items():
         array = convert.numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)

@@ -48,6 +48,7 @@ def table(path, names=()):
     whole = found.ndim == 2 and found.shape[1] > 1
     if names:
         whole = found.size > 1 and set(names) <= set(found.dtype.names or ())
-    expect(whole, f"{path} is no table {'with the columns ' + ', '.join(names) if names else 'of two columns of numbers'}, "
+    expect(whole,
+           f"{path} is no table {'with the columns ' + ', '.join(names) if names else 'of two columns of numbers'}, "
                   "separated by commas")
     return found if names else found[numpy.isfinite(found).all(axis=1)]

@@ -1,4 +1,5 @@
-"""Lagrange polynomials of the cells in snapshots. Node (i, j) of a cell of degree p lies at the parameters (i/p, j/p)."""
+"""Lagrange polynomials of the cells in snapshots. Node (i, j) of a cell of degree p lies at the parameters (i/p,
+j/p)."""
 
 import numpy
 

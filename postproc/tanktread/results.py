@@ -65,7 +65,8 @@ class Run:
         return sorted({name.split("/")[0] for name in self.series if "/" in name}, key=order)
 
     def of(self, particle, name):
-        """Returns a series (rows,) of one particle by its name in `particles`. Raises Mistake if it was not recorded."""
+        """Returns a series (rows,) of one particle by its name in `particles`. Raises Mistake if it was not
+        recorded."""
         path = f"{particle}/{name}" if self.several else name
         self.require(path)
         return self.series[path]
@@ -165,7 +166,8 @@ class Run:
         return node
 
     def cell(self, time):
-        """Returns the vectors of a lattice's periodic cell over R_C at a time, as rows (3, 3); None without a lattice."""
+        """Returns the vectors of a lattice's periodic cell over R_C at a time, as rows (3, 3); None without a
+        lattice."""
         if "cell_1_x1" not in self.series:
             return None
         row = numpy.abs(self.series["time"] - time).argmin()

@@ -31,7 +31,7 @@ def _program():
 PROGRAM = _program()
 
 
-def _shared():
+def shared():
     """Yields folders below which the decks and studies in `inputs` are looked for."""
     yield pathlib.Path()
     yield SOURCE
@@ -41,7 +41,7 @@ def _shared():
 def deck_at(name):
     """Returns the absolute path of a deck, looked for from the present directory, then from the source directory or the
     installation. Raises Mistake if there is none."""
-    found = next((place / name for place in _shared() if (place / name).is_file()), None)
+    found = next((place / name for place in shared() if (place / name).is_file()), None)
     expect(found, f"{name}: there is no such deck")
     return found.resolve()
 
@@ -56,6 +56,13 @@ def text_of(value):
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:.15g}" if isinstance(value, float) else str(value)
+
+
+def settings_of(words):
+    """Returns {key: value} of the words KEY=VALUE."""
+    for word in words:
+        expect("=" in word, f"{word}: a setting is KEY=VALUE")
+    return dict(word.split("=", 1) for word in words)
 
 
 def run(where, settings=None):
@@ -170,8 +177,8 @@ class Study:
     def run(self, decks, settings, ranks=1):
         """Returns the Outcome of `tanktread decks… --set …`.
 
-        `decks`: a path (`deck_at`), or several that overlay each other; `settings`: {"Section/key": value}. A run that a
-        signal stopped is resumed from its checkpoint."""
+        `decks`: a path (`deck_at`), or several that overlay each other; `settings`: {"Section/key": value}. A run that
+        a signal stopped is resumed from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note = where / "outcome.json"

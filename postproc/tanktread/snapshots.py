@@ -15,6 +15,11 @@ DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pre
               "largest tension": "tension", "mean curvature": "curvature"}
 
 
+def evenly(items, n):
+    """Returns n of a list of items, or all if there are fewer, evenly from the first to the last one."""
+    return [items[k] for k in sorted(set(numpy.linspace(0, len(items) - 1, min(n, len(items))).round().astype(int)))]
+
+
 class Snapshot:
     """A saved step, in the units of the deck.
 
@@ -43,7 +48,8 @@ class Snapshot:
 
     @property
     def positions(self):
-        """Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the cell at the origin."""
+        """Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the cell at the
+        origin."""
         return self.points if self.cell is None else self.points + self.fields["into cell"]
 
     places = positions  # the former name

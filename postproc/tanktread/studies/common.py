@@ -1,0 +1,49 @@
+"""Options, tables and the bisection that the studies share."""
+
+import pathlib
+
+from ..runs import PROGRAM, Study, quoted, text_of
+
+
+def edge(holds, low, high, factor=1.05):
+    """The largest value at which `holds` still does, by bisection of the logarithm to a factor, and what it is: `edge`,
+    or `holds to here` (high), `fails from here` (low) where there is none between. It is taken to hold below and to
+    fail above."""
+    if not holds(low):
+        return low, "fails from here"
+    if holds(high):
+        return high, "holds to here"
+    while high / low > factor:
+        middle = (low * high) ** 0.5
+        if holds(middle):
+            low = middle
+        else:
+            high = middle
+    return low, "edge"
+
+
+def arguments(parser, results):
+    """The options that all studies share."""
+    parser.add_argument("--program", default=PROGRAM, type=pathlib.Path, help="default: %(default)s")
+    parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
+                        help="of pictures, tables and, under runs/, results (default: %(default)s)")
+    parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
+    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS",
+                        help="of processor time that one run may take (default: %(default)s)")
+
+
+def study(parsed, jobs=1):
+    return Study(parsed.program, parsed.output / "runs", parsed.limit, jobs, parsed.fresh)
+
+
+def write_table(path, head, rows):
+    """A CSV file; `rows` of numbers and words."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = [",".join(head)] + [",".join(text_of(entry).replace(",", ";") for entry in row) for row in rows]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    log.info(path)
+
+
+def command_of(script, *words):
+    """The command line that makes a chart again, as printed under it."""
+    return " ".join([f"{pathlib.Path(script).parent.name}/{pathlib.Path(script).name}", *map(quoted, words)])
