@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Cubic arrays of spheres: the drag of held ones, and how the viscosity that free ones add begins to grow with the volume fraction.
+"""Cubic arrays of spheres: the drag of held ones, and how the viscosity that free ones add begins to grow with the
+volume fraction.
 
-    tests/benchmark/arrays.py drag 0.2 0.45 --elements 6 8
+tests/benchmark/arrays.py drag 0.2 0.45 --elements 6 8
     tests/benchmark/arrays.py viscosity
 
-`drag`: K = F/(6 pi mu a U), U the mean velocity over the cell, by the tractions of the first kind. `viscosity`: at time zero the stress is 2 mu (1 + v) E,
-v = 5/2 phi/(1 - k phi + ...), where the array is stretched along its axes (alpha) or sheared in them (beta); k from v at three volume fractions, less
-what grows like phi^(2/3) and phi^(4/3), beside that of Nunan & Keller (J. Fluid Mech. 142, 1984).
-"""
+`drag`: K = F/(6 pi mu a U), U the mean velocity over the cell, by the tractions of the first kind. `viscosity`: at time
+zero the stress is 2 mu (1 + v) E, v = 5/2 phi/(1 - k phi + ...), where the array is stretched along its axes (alpha) or
+sheared in them (beta); k from v at three volume fractions, less what grows like phi^(2/3) and phi^(4/3), beside that of
+Nunan & Keller (J. Fluid Mech. 142, 1984). """
 
 import argparse
 import pathlib
@@ -18,7 +19,8 @@ import numpy
 import tanktread
 from tanktread.mistakes import answer
 
-ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2), "face-centred": (4, (1 - numpy.eye(3)) / 2)}
+ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2),
+          "face-centred": (4, (1 - numpy.eye(3)) / 2)}
 K = {"simple": (3.787, -0.858), "body-centred": (0.14079, 1.57281), "face-centred": (0.23611, 1.50926)}
 FLOWS = {"alpha": {"Flow/type": "uniaxial extension"}, "beta": {"Flow/type": "simple shear"}}
 DECK = """Tanktread:
@@ -30,7 +32,8 @@ DECK = """Tanktread:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("drag", "viscosity"))
-    parser.add_argument("fractions", nargs="*", type=float, help="volume fractions (default: 0.001 0.064 0.2; 0.0025 0.005 0.01)")
+    parser.add_argument("fractions", nargs="*", type=float,
+                        help="volume fractions (default: 0.001 0.064 0.2; 0.0025 0.005 0.01)")
     parser.add_argument("--elements", nargs="+", type=int, default=[6], help="per side of a sphere (default: 6)")
     parser.add_argument("--quadrature", type=float, default=1e-7, help="Quadrature/tolerance (default: %(default)g)")
     parser.add_argument("--arrays", nargs="+", choices=ARRAYS, default=list(ARRAYS), help="(default: all)")
@@ -51,12 +54,14 @@ def of(arguments, deck, array, fraction, n, settings):
 
 
 def drag(arguments, deck):
-    held = {"Flow/type": "uniform", "Flow/velocity": "[1, 0, 0]", "Particles/sphere/motion": "prescribed", "Solvers/rigid bodies": "first kind"}
+    held = {"Flow/type": "uniform", "Flow/velocity": "[1, 0, 0]", "Particles/sphere/motion": "prescribed",
+            "Solvers/rigid bodies": "first kind"}
     for array in arguments.arrays:
         for fraction in arguments.fractions or (0.001, 0.064, 0.2):
             for n in arguments.elements:
                 series = of(arguments, deck, array, fraction, n, held)
-                print(f"{array}, {fraction:g}, n = {n}: K = {series['sphere/drag_x1'][0] / (6 * numpy.pi):.10g}", flush=True)
+                print(f"{array}, {fraction:g}, n = {n}: K = {series['sphere/drag_x1'][0] / (6 * numpy.pi):.10g}",
+                      flush=True)
 
 
 def viscosity(arguments, deck):
@@ -66,7 +71,8 @@ def viscosity(arguments, deck):
         for flow, expected in zip(FLOWS, K[array]):
             free = {"Particles/sphere/motion": "free", **FLOWS[flow]}
             for n in arguments.elements:
-                v = [of(arguments, deck, array, fraction, n, free)["relative_viscosity"][0] - 1 for fraction in fractions]
+                v = [of(arguments, deck, array, fraction, n, free)["relative_viscosity"][0] - 1
+                     for fraction in fractions]
                 k = numpy.linalg.solve(powers, (1 - 2.5 * fractions / v) / fractions)[0]
                 print(f"{array}, {flow}, n = {n}: k = {k:.5f} (Nunan & Keller: {expected:.5f})", flush=True)
 

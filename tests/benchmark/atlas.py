@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""The atlas of failure: for a method, the edge where it stops working, found by bisection on short runs, drawn and explained.
+"""The atlas of failure: for a method, the edge where it stops working, found by bisection on short runs, drawn and
+explained.
 
-    tests/benchmark/atlas.py --list                           # the maps, with what each shows
-    tests/benchmark/atlas.py --map fixed-step                 # one of them: results/atlas/fixed-step.png and fixed-step.csv
-    tests/benchmark/atlas.py                                  # all: an hour or two on one core
+tests/benchmark/atlas.py --list                           # the maps, with what each shows tests/benchmark/atlas.py
+--map fixed-step                 # one of them: results/atlas/fixed-step.png and fixed-step.csv tests/benchmark/atlas.py
+# all: an hour or two on one core
 
-Runs are kept under results/atlas/runs and not made again. What a map shows is held by a test of tests/stability (README.md there).
-"""
+Runs are kept under results/atlas/runs and not made again. What a map shows is held by a test of tests/stability
+(README.md there). """
 
 import argparse
 import sys
@@ -52,7 +53,8 @@ def draw(name, study, output):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--map", nargs="+", default=list(MAPS), choices=list(MAPS), metavar="NAME", help="which (default: all)")
+    parser.add_argument("--map", nargs="+", default=list(MAPS), choices=list(MAPS), metavar="NAME",
+                        help="which (default: all)")
     parser.add_argument("--list", action="store_true", help="print the maps and what they show, run nothing")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default: %(default)s)")
     studies.arguments(parser, "results/atlas")

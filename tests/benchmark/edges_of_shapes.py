@@ -1,5 +1,6 @@
 """Maps of the atlas about the particle itself: where there is no steady shape any more."""
 
+import package  # noqa: F401 before the package tanktread
 import numpy
 
 from tanktread.figures import pushed as stuck
@@ -11,21 +12,24 @@ SHEARED = "inputs/drop_shear_folds.yaml"
 CAPSULE = "inputs/capsule_branch.yaml"
 STUCK = "inputs/capsule_stuck_folds.yaml"
 WRINKLED = "inputs/capsule_wrinkles.yaml"
-ELLIPSOID = {"Flow/type": "planar hyperbolic", "Particle/shape": "ellipsoid", "Particle/semi-axes": "[1.8785, 0.7653, 0.6957]",
+ELLIPSOID = {"Flow/type": "planar hyperbolic", "Particle/shape": "ellipsoid",
+             "Particle/semi-axes": "[1.8785, 0.7653, 0.6957]",
              "Particle/initial shape/stretch": "[0.7167, 1.1541, 1.2091]"}  # 2.7 : 1.1 : 1, at first 1.6 : 1.05 : 1
-INFLATED = {"Continuation/second parameter": "Membrane/pre-inflation", "Continuation/second values": "[0.15, 0.2, 0.3, 0.4]", "Continuation/points": 12}
+INFLATED = {"Continuation/second parameter": "Membrane/pre-inflation",
+            "Continuation/second values": "[0.15, 0.2, 0.3, 0.4]", "Continuation/points": 12}
 
 
 def bursting(study):
     """Where drops and capsules burst: the folds of their steady branches
 
-    Left: critical Ca = μEa/σ of drops against their viscosity in uniaxial extension (-x₁/2, -x₂/2, x₃)E and planar hyperbolic flow (x₁, 0, -x₃)E,
-    and in simple shear at the rate E. Right: critical Ca = μEa/G_s of neo-Hookean capsules in uniaxial extension against the pre-inflation of the radius.
-    Each is a fold that `Continuation` locates and goes on with; the table has D there, and how far the mesh before is off.
+    Left: critical Ca = μEa/σ of drops against their viscosity in uniaxial extension (-x₁/2, -x₂/2, x₃)E and planar
+    hyperbolic flow (x₁, 0, -x₃)E, and in simple shear at the rate E. Right: critical Ca = μEa/G_s of neo-Hookean
+    capsules in uniaxial extension against the pre-inflation of the radius. Each is a fold that `Continuation` locates
+    and goes on with; the table has D there, and how far the mesh before is off.
 
     Survives: smaller Ca. Skalak membranes harden, and have no fold."""
-    curves = [("drop, uniaxial", DROP, {}, (5, 6)), ("drop, planar", DROP, ELLIPSOID, (5, 6)), ("drop, shear", SHEARED, {}, (7, 8)),
-              ("neo-Hookean capsule, uniaxial", CAPSULE, INFLATED, (10, 12))]
+    curves = [("drop, uniaxial", DROP, {}, (5, 6)), ("drop, planar", DROP, ELLIPSOID, (5, 6)),
+              ("drop, shear", SHEARED, {}, (7, 8)), ("neo-Hookean capsule, uniaxial", CAPSULE, INFLATED, (10, 12))]
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
     rows = []
     for (name, deck, settings, meshes), color in zip(curves, style.RUNS):
@@ -43,16 +47,18 @@ def bursting(study):
     for axis in left, right:
         axis.set_ylabel("Ca at the fold")
         axis.legend()
-    return figure, ["scene", "viscosity_ratio_or_pre_inflation", "capillary_number", "taylor_parameter", "change_of_ca_relative", "change_of_d"], rows
+    return figure, ["scene", "viscosity_ratio_or_pre_inflation", "capillary_number", "taylor_parameter",
+                    "change_of_ca_relative", "change_of_d"], rows
 
 
 def squeezing(study):
     """The largest capsule that a constriction lets through
 
-    Neo-Hookean capsules, pre-inflated by 0.1, in a round channel that narrows to half its radius, the pressure drop held. Smaller ones than the curve tells
-    pass; larger ones rest before the throat, on a branch of steady shapes whose fold, in the pressure drop or in the size, is that curve. Ca = μV/G_s,
-    V being the mean velocity of the empty channel. The wall repels the membrane, so that a film stays; broken line: a membrane
-    without film and friction, axisymmetric, whatever the viscosity ratio (postproc/stuck.py).
+    Neo-Hookean capsules, pre-inflated by 0.1, in a round channel that narrows to half its radius, the pressure drop
+    held. Smaller ones than the curve tells pass; larger ones rest before the throat, on a branch of steady shapes whose
+    fold, in the pressure drop or in the size, is that curve. Ca = μV/G_s, V being the mean velocity of the empty
+    channel. The wall repels the membrane, so that a film stays; broken line: a membrane without film and friction,
+    axisymmetric, whatever the viscosity ratio (postproc/stuck.py).
 
     Survives: a smaller or softer capsule, a larger pressure drop."""
     figure, axis = plt.subplots(figsize=(5.6, 4.2))
@@ -62,7 +68,8 @@ def squeezing(study):
         size, ca, _ = folds(outcome)
         axis.plot(size, ca, mark, color=style.RUNS[0], ms=4, label=f"Continuation, n = {n}")
         rows += [("with a film", n, *pair) for pair in zip(size, ca)]
-    dry = [stuck.highest(*stuck.Pushed(outcome.run, 160, radius).through())[0] / stuck.drop_of_velocity(outcome.run) for radius in size]
+    dry = [stuck.highest(*stuck.Pushed(outcome.run, 160, radius).through())[0] / stuck.drop_of_velocity(outcome.run)
+           for radius in size]
     axis.plot(size, dry, "--", color=style.RUNS[1], label="without film and friction")
     rows += [("without film", "", *pair) for pair in zip(size, dry)]
     axis.set_xlabel("radius of the capsule over that of the channel")
@@ -74,9 +81,10 @@ def squeezing(study):
 def wrinkling(study):
     """How stiff against bending a capsule must be to stay smooth
 
-    Neo-Hookean capsule in uniaxial extension, not pre-inflated: its waist is compressed. Left: the bending number E_b/(G_s R²) at which the leading mode of the
-    smooth steady shape has the rate zero, for waves with an even and with an odd number of crests around the axis (Spectrum/parity), on two meshes;
-    below, they grow. Right: that mode along the waist; the table has the number of its crests.
+    Neo-Hookean capsule in uniaxial extension, not pre-inflated: its waist is compressed. Left: the bending number
+    E_b/(G_s R²) at which the leading mode of the smooth steady shape has the rate zero, for waves with an even and with
+    an odd number of crests around the axis (Spectrum/parity), on two meshes; below, they grow. Right: that mode along
+    the waist; the table has the number of its crests.
 
     Survives: a stiffer membrane, pre-inflation."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
@@ -85,13 +93,15 @@ def wrinkling(study):
         for n, mark in ((8, "x"), (10, "o-")):
             onsets = []
             for ca in numbers:
-                bending, outcome = onset(study, {"Membrane/capillary number": ca, "Spectrum/parity": parity, "Surface/elements per side": n})
+                bending, outcome = onset(study, {"Membrane/capillary number": ca, "Spectrum/parity": parity,
+                                                 "Surface/elements per side": n})
                 angle, wave = along_waist(outcome)
                 crests = number_of_crests(angle, wave)
                 onsets.append(bending)
                 rows.append((name, n, ca, bending, crests))
                 if ca == 0.2 and n == 10:
-                    right.plot(angle, wave / abs(wave).max(), color=color, label=f"{name}: {crests} crests, Ca = {ca:g}")
+                    right.plot(angle, wave / abs(wave).max(), color=color,
+                               label=f"{name}: {crests} crests, Ca = {ca:g}")
             left.plot(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
     left.set_xlabel("Ca")
     left.set_ylabel("E_b/(G_s R²) at onset")
@@ -104,7 +114,8 @@ def wrinkling(study):
 
 
 def onset(study, settings):
-    """The bending number at which the leading rate passes through zero, by secants of its logarithm; and the last run."""
+    """The bending number at which the leading rate passes through zero, by secants of its logarithm; and the last
+    run."""
     known = []
     while len(known) < 9:
         number = (0.0045, 0.005)[len(known)] if len(known) < 2 else secant(known)
@@ -144,7 +155,8 @@ def number_of_crests(angle, wave):
 def folds(outcome):
     """Rows: the second parameter, critical Ca and D there; as far as the run came."""
     series = outcome.series
-    return numpy.array([series[name][series["fold"] > 0] for name in ("second_parameter", "parameter", "taylor_surface")])
+    return numpy.array([series[name][series["fold"] > 0]
+                        for name in ("second_parameter", "parameter", "taylor_surface")])
 
 
 MAPS = [bursting, squeezing, wrinkling]

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (the paper's Figures 17 and 18).
+"""A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (the paper's
+Figures 17 and 18).
 
-    tests/benchmark/fixed_against_refined.py                                 # runs inputs/hyperbolic_skalak_ca0.8.yaml, refined and not
-    tests/benchmark/fixed_against_refined.py results/refined results/fixed   # runs of yours
-"""
+tests/benchmark/fixed_against_refined.py                                 # runs inputs/hyperbolic_skalak_ca0.8.yaml,
+refined and not tests/benchmark/fixed_against_refined.py results/refined results/fixed   # runs of yours """
 
 import argparse
 
@@ -22,11 +22,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("refined", nargs="?", help="directory of a run's results")
     parser.add_argument("fixed", nargs="*", help="of others, to be compared with it")
-    parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE", help="the picture (default: %(default)s)")
+    parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE",
+                        help="the picture (default: %(default)s)")
     parser.add_argument("--field", default="traction", help="field along the section (default: %(default)s)")
     arguments = parser.parse_args()
 
-    runs = [tanktread.run(directory) for directory in ([arguments.refined, *arguments.fixed] if arguments.refined else made())]
+    runs = [tanktread.run(directory) for directory in ([arguments.refined, *arguments.fixed]
+                                                       if arguments.refined else made())]
     end = min(run.series["time"][-1] for run in runs)
     shots = [run.snapshot_at(end).scaled(run) for run in runs]
     names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
@@ -42,16 +44,19 @@ def main():
         axis.set_title(name)
     vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
     words = tanktread.field_label(runs, arguments.field, "|{}|" if vector else "{}")
-    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal", label=words)
+    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
+                    label=words)
 
     outline, tip, along = (figure.add_subplot(grid[2, k]) for k in range(3))
     curves = []
     for k, (shot, name, color) in enumerate(zip(shots, names, style.RUNS)):
-        look = {"color": color, "linewidth": 2.2 if k == 0 else 1.2, "linestyle": "-" if k == 0 else (0, (4, 2)), "zorder": 2 + k}
+        look = {"color": color, "linewidth": 2.2 if k == 0 else 1.2, "linestyle": "-" if k == 0 else (0, (4, 2)),
+                "zorder": 2 + k}
         middle = (shot.points.min(0) + shot.points.max(0)) / 2
         section = draw.section(shot, middle[1]) - middle[[0, 2]]
         for axis in outline, tip:
-            axis.add_collection(LineCollection(section, colors=color, linewidths=look["linewidth"], linestyles=look["linestyle"]))
+            axis.add_collection(LineCollection(section, colors=color, linewidths=look["linewidth"],
+                                               linestyles=look["linestyle"]))
         curves.append(profile(shot, arguments.field))
         along.plot(*by_distance(shot, arguments.field), label=name, **look)
     outline.set_aspect("equal")
@@ -59,7 +64,8 @@ def main():
     reach = outline.dataLim.x1
     tip.set_xlim(0.9 * reach, 1.01 * reach)
     tip.set_ylim(-0.11 * reach, 0.11 * reach)
-    outline.add_patch(plt.Rectangle((0.9 * reach, -0.11 * reach), 0.11 * reach, 0.22 * reach, fill=False, edgecolor=style.FAINT, linewidth=0.8))
+    outline.add_patch(plt.Rectangle((0.9 * reach, -0.11 * reach), 0.11 * reach, 0.22 * reach, fill=False,
+                                    edgecolor=style.FAINT, linewidth=0.8))
     for axis, title in (outline, "the section x₂ = 0"), (tip, "its tip"):
         axis.set_title(title)
         axis.set_xlabel("x₁ / R$_C$")

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """How a velocity evaluation grows with the mesh: seconds by part, interactions and bytes, with fitted exponents.
 
-    tests/benchmark/growth.py                # runs the program benchmark first: minutes
-    tests/benchmark/growth.py growth.json    # what build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json wrote
+tests/benchmark/growth.py                # runs the program benchmark first: minutes tests/benchmark/growth.py
+growth.json    # what build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json
+wrote
 
 Exponents are fitted by least squares to the meshes from --from control points on.
 """
@@ -21,8 +22,9 @@ import tanktread
 from tanktread.figures.style import plt
 from tanktread.mistakes import answer
 
-PARTS = [("evaluation s", "whole evaluation"), ("layer far s", "far sum"), ("layer near s", "near elements"), ("layer self s", "own elements"),
-         ("layer setup s", "nodes and forces"), ("projection s", "sparse solves"), ("membrane s", "membrane")]
+PARTS = [("evaluation s", "whole evaluation"), ("layer far s", "far sum"), ("layer near s", "near elements"),
+         ("layer self s", "own elements"), ("layer setup s", "nodes and forces"), ("projection s", "sparse solves"),
+         ("membrane s", "membrane")]
 
 
 def rows(benchmarks, dense):
@@ -40,17 +42,19 @@ def exponent(chosen, key, least):
 
 
 def table(trees, dense, least):
-    keys = ["evaluation s", "layer far s", "layer near s", "layer self s", "layer setup s", "projection s", "membrane s", "volume s", "setup s",
-            "far interactions", "far error", "bytes kept", "bytes peak"]
+    keys = ["evaluation s", "layer far s", "layer near s", "layer self s", "layer setup s", "projection s",
+            "membrane s", "volume s", "setup s", "far interactions", "far error", "bytes kept", "bytes peak"]
     print(f"{'':>18}" + "".join(f"{one['points']:>12.0f}" for one in trees) + f"{'exponent':>12}{'step by step':>16}")
     for key in keys:
         slope = exponent(trees, key, least)
         known = [one for one in trees if one["points"] >= least]
         steps = [numpy.log(b[key] / a[key]) / numpy.log(b["points"] / a["points"]) for a, b in zip(known, known[1:])]
-        print(f"{key:>18}" + "".join(f"{one[key]:>12.4g}" for one in trees) + ("" if slope is None else f"{slope:>12.2f}")
+        print(f"{key:>18}" + "".join(f"{one[key]:>12.4g}" for one in trees) + (""
+                                                                               if slope is None else f"{slope:>12.2f}")
               + "".join(f"{step:>8.2f}" for step in steps))
     for one in dense:
-        print(f"{'dense':>18}  {one['points']:.0f} control points: {one['evaluation s']:.4g} s, {one['far interactions']:.4g} far interactions")
+        print(f"{'dense':>18}  {one['points']:.0f} control points: {one['evaluation s']:.4g} s, "
+              f"{one['far interactions']:.4g} far interactions")
 
 
 def draw(axis, chosen, key, label, color, least, line="o-"):
@@ -61,7 +65,7 @@ def draw(axis, chosen, key, label, color, least, line="o-"):
 
 def measured():
     """The file that the benchmark writes, which is run when there is none."""
-    path, program = pathlib.Path("results") / "growth.json", tanktread.SOURCE / "build" / "release" / "tests" / "benchmark" / "benchmark"
+    path, program = pathlib.Path("results/growth.json"), tanktread.SOURCE / "build/release/tests/benchmark/benchmark"
     if not path.exists():
         if not program.exists():
             sys.exit(f"{program} does not exist: build it (tests/run does)")
@@ -72,9 +76,12 @@ def measured():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", nargs="?", help="what the benchmark wrote (default: results/growth.json, written now if it is not there)")
-    parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS", help="fit from here on (default: %(default)g)")
-    parser.add_argument("-o", "--output", default="growth.png", metavar="FILE", help="the picture (default: %(default)s)")
+    parser.add_argument("file", nargs="?",
+                        help="what the benchmark wrote (default: results/growth.json, written now if it is not there)")
+    parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS",
+                        help="fit from here on (default: %(default)g)")
+    parser.add_argument("-o", "--output", default="growth.png", metavar="FILE",
+                        help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
     if arguments.file and not pathlib.Path(arguments.file).is_file():
         sys.exit(f"{arguments.file} is no file: give what the benchmark wrote")
@@ -102,9 +109,10 @@ def main():
         axis.legend(loc="upper left")
     left.set_ylim(top=left.get_ylim()[1] * 1000)  # room for the legend
     error = max(one["far error"] for one in trees)
-    figure.supxlabel("\\$ build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json; tests/benchmark/growth.py growth.json\n"
-                     f"a capsule in shear on one core, tolerance 1e-5; far sum against the dense one: at most {error:.1e} of the largest velocity",
-                     x=0.01, ha="left", fontsize=7.5)
+    figure.supxlabel("\\$ build/release/tests/benchmark/benchmark --benchmark_filter=growth "
+                     "--benchmark_out=growth.json; tests/benchmark/growth.py growth.json\n"
+                     "a capsule in shear on one core, tolerance 1e-5; far sum against the dense one: "
+                     f"at most {error:.1e} of the largest velocity", x=0.01, ha="left", fontsize=7.5)
     style.save(figure, arguments.output)
 
 

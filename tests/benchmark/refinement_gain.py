@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Refined against uniform meshes: errors of D and of the largest traction against control points, kernel evaluations and seconds.
+"""Refined against uniform meshes: errors of D and of the largest traction against control points, kernel evaluations
+and seconds.
 
-All at the final time of the runs. The values to compare with are extrapolated from the three finest uniform runs with the order that they
-show; the finest is not drawn, for it is too close to them. Prints what a refined mesh saves at equal accuracy, from the uniform runs by
-interpolation of logarithms. Kernel evaluations tell the work on a machine that does other things too.
+All at the final time of the runs. The values to compare with are extrapolated from the three finest uniform runs with
+the order that they show; the finest is not drawn, for it is too close to them. Prints what a refined mesh saves at
+equal accuracy, from the uniform runs by interpolation of logarithms. Kernel evaluations tell the work on a machine that
+does other things too.
 
-    tests/benchmark/refinement_gain.py                                      # runs inputs/hyperbolic_skalak_ca0.8.yaml on seven meshes, to time 2
-    tests/benchmark/refinement_gain.py --uniform a b c d --refined e f      # runs of yours
-"""
+tests/benchmark/refinement_gain.py                                      # runs inputs/hyperbolic_skalak_ca0.8.yaml on
+seven meshes, to time 2 tests/benchmark/refinement_gain.py --uniform a b c d --refined e f      # runs of yours """
 
 import argparse
 
@@ -26,9 +27,11 @@ COSTS = {"points": "control points", "kernel": "kernel evaluations", "seconds": 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--uniform", nargs="+", help="directories of runs on fixed meshes, coarse to fine, three at least")
+    parser.add_argument("--uniform", nargs="+",
+                        help="directories of runs on fixed meshes, coarse to fine, three at least")
     parser.add_argument("--refined", nargs="+", help="of runs whose mesh refined itself")
-    parser.add_argument("-o", "--output", default="refinement_gain.png", metavar="FILE", help="the picture (default: %(default)s)")
+    parser.add_argument("-o", "--output", default="refinement_gain.png", metavar="FILE",
+                        help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
     if not (arguments.uniform or arguments.refined):
@@ -41,18 +44,22 @@ def main():
     refined = [result(directory) for directory in arguments.refined]
     truth = {quantity: extrapolated(uniform, quantity) for quantity in ("D", "traction")}
     for run in uniform + refined:
-        print(f"{run['name']:14} {run['points']:5.0f} points {run['seconds']:7.1f} s  D {run['D']:.6f}  largest traction {run['traction']:.4f}")
+        print(f"{run['name']:14} {run['points']:5.0f} points {run['seconds']:7.1f} s  D {run['D']:.6f}  largest "
+              f"traction {run['traction']:.4f}")
     figure, axes = plt.subplots(2, 3, figsize=(10.8, 6.6), sharey="row", sharex="col")
     for axis, cost in zip(axes[1], COSTS):
         axis.set_xlabel(COSTS[cost])
     for row, quantity in zip(axes, truth):
         for axis, cost in zip(row, COSTS):
-            for runs, color, mark, name in (uniform, style.RUNS[0], "o", "uniform"), (refined, style.RUNS[1], "s", "refined"):
+            for runs, color, mark, name in (uniform, style.RUNS[0], "o",
+                                            "uniform"), (refined, style.RUNS[1], "s", "refined"):
                 shown = runs[:-1] if runs is uniform else runs
-                axis.loglog([run[cost] for run in shown], [error(run, quantity, truth) for run in shown], mark + "-", color=color, label=name)
+                axis.loglog([run[cost] for run in shown], [error(run, quantity, truth) for run in shown], mark + "-",
+                            color=color, label=name)
         row[0].set_ylabel({"D": "error of D", "traction": "relative error of the largest traction"}[quantity])
     for run in uniform[:-1] + refined:
-        axes[0][0].annotate(f"{run['points']:.0f}", (run["points"], error(run, "D", truth)), (5, 4), textcoords="offset points", fontsize=7.5)
+        axes[0][0].annotate(f"{run['points']:.0f}", (run["points"], error(run, "D", truth)), (5, 4),
+                            textcoords="offset points", fontsize=7.5)
     for scale in axes[1][0].xaxis, axes[1][2].xaxis, axes[1][0].yaxis:
         scale.set_major_locator(LogLocator(subs=(1, 2, 5)))
         scale.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -65,9 +72,11 @@ def main():
 def made():
     """Uniform and refined runs."""
     deck, short = tanktread.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml", {"Time/final time": 2}
-    uniform = [tanktread.results_of(deck, f"refinement_gain/n{n}", short | {"Adaptation/enabled": "false", "Surface/elements per side": n})
+    uniform = [tanktread.results_of(deck, f"refinement_gain/n{n}",
+                                    short | {"Adaptation/enabled": "false", "Surface/elements per side": n})
                for n in (6, 8, 11, 15)]
-    refined = [tanktread.results_of(deck, f"refinement_gain/tolerance_{tolerance:g}", short | {"Adaptation/surface tolerance": tolerance})
+    refined = [tanktread.results_of(deck, f"refinement_gain/tolerance_{tolerance:g}",
+                                    short | {"Adaptation/surface tolerance": tolerance})
                for tolerance in (8e-4, 4e-4, 2e-4)]
     return uniform, refined
 
@@ -77,12 +86,14 @@ def result(directory):
     shot = run.snapshot_at(None)
     traction = draw.magnitude(shot.sampled(shot.fields["traction"], 12).reshape(-1, 3)).max()
     return {"name": run.name, "points": run.series["n_control_points"][-1], "seconds": run.series["wall_seconds"][-1],
-            "kernel": sum(number for name, number in run.summary["counts"].items() if name.startswith("kernel_evaluations")),
-            "D": run.series["taylor_inertia"][-1], "traction": traction}
+            "kernel": sum(number for name, number in run.summary["counts"].items()
+                          if name.startswith("kernel_evaluations")), "D": run.series["taylor_inertia"][-1],
+            "traction": traction}
 
 
 def extrapolated(runs, quantity):
-    """From the three finest: the value at h = 0 of v + c h^p, p between 2 and 6; of the finest where they have converged to rounding or steps."""
+    """From the three finest: the value at h = 0 of v + c h^p, p between 2 and 6; of the finest where they have
+    converged to rounding or steps."""
     h = numpy.array([run["points"] for run in runs[-3:]]) ** -0.5
     v = numpy.array([run[quantity] for run in runs[-3:]])
     if (v[0] - v[1]) * (v[1] - v[2]) <= 0:
@@ -111,7 +122,8 @@ def report(uniform, refined, truth):
             for cost in COSTS:
                 costs = numpy.array([one[cost] for one in uniform[:-1]])[::-1]
                 equal = numpy.exp(numpy.interp(numpy.log(mine), numpy.log(errors), numpy.log(costs)))
-                words.append(f"{equal / run[cost]:.2f} times the {COSTS[cost]} uniformly" + (" or more" if mine < errors[0] else ""))
+                words.append(f"{equal / run[cost]:.2f} times the {COSTS[cost]} uniformly"
+                             + (" or more" if mine < errors[0] else ""))
         print(", ".join(words))
 
 

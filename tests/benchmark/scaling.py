@@ -1,19 +1,17 @@
 #!/usr/bin/python3
 """How the phases of a run scale with the number of ranks.
 
-    tests/benchmark/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
+tests/benchmark/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
 
-Runs the deck on one rank, on several, and as that many one-rank runs at the same time, in turns, and prints medians over the repetitions:
+Runs the deck on one rank, on several, and as that many one-rank runs at the same time, in turns, and prints medians
+over the repetitions:
 
-    ratio       seconds a phase of one rank alone over those of the first of several ranks
-    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side. No program scales better
-                there: cores that share memory, cache, power or a host slow each other down
-    efficiency  ratio over capacity
+ratio       seconds a phase of one rank alone over those of the first of several ranks capacity    what the machine
+gives: ranks x seconds of one rank alone over those of one of the runs side by side. No program scales better there:
+cores that share memory, cache, power or a host slow each other down efficiency  ratio over capacity
 
-Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; `start` holds that of MPI. The last lines say whether both runs
-did the same.
-The machine should have a free core for every rank.
-"""
+Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; `start` holds that of MPI. The last
+lines say whether both runs did the same. The machine should have a free core for every rank. """
 
 import argparse
 import os
@@ -36,10 +34,12 @@ def summaries(program, deck, settings, ranks, copies):
         places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
         runs = []
         for place in places:
-            words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output", str(place)]
+            words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output",
+                     str(place)]
             for setting in settings:
                 words += ["--set", setting]
-            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=os.environ | tanktread.ENVIRONMENT))
+            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                         env=os.environ | tanktread.ENVIRONMENT))
         said = [run.communicate()[1] for run in runs]
         for place, error in zip(places, said):
             if not (place / "summary.yaml").exists():
@@ -55,7 +55,8 @@ def seconds(summary):
 
 def difference(one, many, name="taylor_inertia"):
     """Largest of a series at the end, of any particle."""
-    return max((abs(value - many["final"][key]) for key, value in one["final"].items() if key.split("/")[-1] == name), default=0)
+    return max((abs(value - many["final"][key]) for key, value in one["final"].items() if key.split("/")[-1] == name),
+               default=0)
 
 
 def main():
@@ -65,7 +66,8 @@ def main():
     parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
     parser.add_argument("--set", dest="settings", action="append", metavar="KEY=VALUE",
                         help="(default: 24 elements a side, to time 0.4)")
-    parser.add_argument("--capacity", action=argparse.BooleanOptionalAction, default=True, help="measure what the machine gives (default: do)")
+    parser.add_argument("--capacity", action=argparse.BooleanOptionalAction, default=True,
+                        help="measure what the machine gives (default: do)")
     parser.add_argument("--program", default=tanktread.PROGRAM)
     arguments = parser.parse_args()
     settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""The paper's section 4.1: Figures 8, 9 and 10, Table 1, and error against work, for every surface and every way to take the integrals.
+"""The paper's section 4.1: Figures 8, 9 and 10, Table 1, and error against work, for every surface and every way to
+take the integrals.
 
-Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed, keeps the results, and draws what is there. A run
-that has been made already is not made again. The largest meshes take minutes; `--largest 2` leaves them out.
-"""
+Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed, keeps the results, and
+draws what is there. A run that has been made already is not made again. The largest meshes take minutes; `--largest 2`
+leaves them out. """
 
 import argparse
 import math
@@ -20,7 +21,8 @@ from tanktread.mistakes import answer
 
 SIZES = [0, 1, 2, 3]  # 56, 218, 866, 3458 control points on the cube; 42, 146, 546, 2114 on the structured mesh
 
-PAPER_TABLE = [(1.332e-3, 6.499e-4, 1.735e-6), (3.494e-4, 2.362e-4, 1.682e-6), (8.947e-5, 1.825e-4, 1.679e-6), (8.947e-5, 1.781e-4, 1.679e-6)]
+PAPER_TABLE = [(1.332e-3, 6.499e-4, 1.735e-6), (3.494e-4, 2.362e-4, 1.682e-6), (8.947e-5, 1.825e-4, 1.679e-6),
+               (8.947e-5, 1.781e-4, 1.679e-6)]
 PAPER_SLOPES = {"normal": (2.03, 1.62), "pressure": (1.61, 1.64), "drag": (2.21, 2.28)}  # structured, unstructured
 
 FIXED = {"Quadrature/rule": "fixed", "Quadrature/points": 8}
@@ -34,19 +36,23 @@ class Option:
 
     def __init__(self, name, label, mesh, settings, color, line="-", mark="o", paper=False):
         self.name, self.label, self.mesh, self.settings = name, label, mesh, settings
-        self.pen = {"color": color, "linestyle": line, "marker": mark, "ms": 4.5, "mfc": "none" if paper else color, "mew": 1.1}
+        self.pen = {"color": color, "linestyle": line, "marker": mark, "ms": 4.5, "mfc": "none" if paper else color,
+                    "mew": 1.1}
 
 
-OPTIONS = [
-    Option("cube", "unstructured, rules by tolerance", "cube", {}, style.RUNS[0]),
-    Option("c1", "structured, C1 poles, rules by tolerance", "polar", {"Surface/poles": "c1"}, style.RUNS[2]),
-    Option("plain", "structured, plain poles, rules by tolerance", "polar", {"Surface/poles": "plain"}, style.RUNS[1]),
-    Option("transform", "structured, Bézier transformation, rules by tolerance", "polar", TRANSFORM, style.RUNS[3]),
-    Option("cube_fixed", "unstructured, 8 × 8 Gauss", "cube", FIXED, style.RUNS[0], "--", "s", True),
-    Option("plain_fixed", "structured, plain poles, 8 × 8 Gauss (standard)", "polar", FIXED | {"Surface/poles": "plain"}, style.RUNS[1], "--", "s", True),
-    Option("c1_smooth", "structured, C1 poles, desingularised", "polar", SMOOTH | {"Surface/poles": "c1"}, style.RUNS[4], "--", "D", True),
-    Option("transform_fixed", "structured, Bézier transformation, 8 × 8 Gauss", "polar", FIXED | EIGHTFOLD, style.RUNS[3], "--", "s", True),
-]
+OPTIONS = [Option("cube", "unstructured, rules by tolerance", "cube", {}, style.RUNS[0]),
+           Option("c1", "structured, C1 poles, rules by tolerance", "polar", {"Surface/poles": "c1"}, style.RUNS[2]),
+           Option("plain", "structured, plain poles, rules by tolerance", "polar", {"Surface/poles": "plain"},
+                  style.RUNS[1]),
+           Option("transform", "structured, Bézier transformation, rules by tolerance", "polar", TRANSFORM,
+                  style.RUNS[3]),
+           Option("cube_fixed", "unstructured, 8 × 8 Gauss", "cube", FIXED, style.RUNS[0], "--", "s", True),
+           Option("plain_fixed", "structured, plain poles, 8 × 8 Gauss (standard)", "polar",
+                  FIXED | {"Surface/poles": "plain"}, style.RUNS[1], "--", "s", True),
+           Option("c1_smooth", "structured, C1 poles, desingularised", "polar", SMOOTH | {"Surface/poles": "c1"},
+                  style.RUNS[4], "--", "D", True), Option("transform_fixed",
+                                                          "structured, Bézier transformation, 8 × 8 Gauss", "polar",
+                                                          FIXED | EIGHTFOLD, style.RUNS[3], "--", "s", True),]
 
 
 class Study:
@@ -109,7 +115,8 @@ def draw_guide(axes, points, start, order, text):
 
 
 def normal_far_from_extraordinary_points(run):
-    """L2 error of the normal over what is at least 0.5 away, on the unit sphere, from the images of the cube's corners."""
+    """L2 error of the normal over what is at least 0.5 away, on the unit sphere, from the images of the cube's
+    corners."""
     result = tanktread.run(run["directory"])
     axes = numpy.array(result.value("Particle/semi-axes"))
     snapshot = result.snapshots()[-1]
@@ -131,10 +138,12 @@ def normal_far_from_extraordinary_points(run):
 def figure_8(found, path):
     figure, axes = plt.subplots(figsize=(5.6, 4.2))
     # The rule does not change the surface: one curve a surface.
-    draw_convergence(axes, found, "normal_l2_error", options=[o for o in OPTIONS if o.name in ("cube", "c1", "plain", "transform")])
+    draw_convergence(axes, found, "normal_l2_error",
+                     options=[o for o in OPTIONS if o.name in ("cube", "c1", "plain", "transform")])
     points = column(found["cube"], "n_control_points")
     far = [normal_far_from_extraordinary_points(one) for one in found["cube"]]
-    axes.loglog(points, far, color=style.RUNS[0], linestyle=":", marker="o", ms=4.5, mfc="none", label="unstructured, far from extraordinary points")
+    axes.loglog(points, far, color=style.RUNS[0], linestyle=":", marker="o", ms=4.5, mfc="none",
+                label="unstructured, far from extraordinary points")
     print("\nNormal on the cube mesh, far from its extraordinary points:", " ".join(f"{error:.3e}" for error in far),
           "  slope %.2f, finest pair %.2f" % slope(points, far))
     axes.plot(546, PAPER_TABLE[2][0], "*", color=style.INK, ms=9, label="paper, Table 1", zorder=5)
@@ -155,8 +164,8 @@ def figure_9(found, path):
     left.set_title("Figure 9 (a): the pressure")
     draw_convergence(right, found, "drag_error", 100.0)
     cube = [one for one in found["cube"] if "drag_error_of_traction" in one]
-    right.loglog(column(cube, "n_control_points"), 100 * column(cube, "drag_error_of_traction"), color=style.RUNS[0], linestyle=":", marker="o", ms=4.5,
-                 mfc="none", label="unstructured, without the reciprocal theorem")
+    right.loglog(column(cube, "n_control_points"), 100 * column(cube, "drag_error_of_traction"), color=style.RUNS[0],
+                 linestyle=":", marker="o", ms=4.5, mfc="none", label="unstructured, without the reciprocal theorem")
     right.plot(546, PAPER_TABLE[3][2], "*", color=style.INK, ms=9, label="paper, Table 1", zorder=5)
     right.set_ylabel("error of the drag, per cent")
     right.set_title("Figure 9 (b): the drag")
@@ -166,8 +175,9 @@ def figure_9(found, path):
 
 
 def figure_10(study, found, path):
-    wanted = [("plain_fixed", "(a) plain poles, 8 × 8 Gauss"), ("transform_fixed", "(b) Bézier transformation, 8 × 8 Gauss"),
-              ("cube", "(c) unstructured"), ("c1", "(d) C1 poles, rules by tolerance")]
+    wanted = [("plain_fixed", "(a) plain poles, 8 × 8 Gauss"),
+              ("transform_fixed", "(b) Bézier transformation, 8 × 8 Gauss"), ("cube", "(c) unstructured"),
+              ("c1", "(d) C1 poles, rules by tolerance")]
     shown = [(found[name][2], title) for name, title in wanted if len(found[name]) > 2]
     if not shown:
         return
@@ -191,10 +201,11 @@ def draw_pressure_error(axes, run, title):
     corner = (numpy.arange(k)[:, None] * (k + 1) + numpy.arange(k)).ravel()
     two = numpy.concatenate([corner[:, None] + [0, 1, k + 1], corner[:, None] + [1, k + 2, k + 1]])
     triangles = (numpy.arange(len(points))[:, None, None] * (k + 1) ** 2 + two).reshape(-1, 3)
-    mesh = axes.tripcolor(points[..., 0].ravel(), points[..., 2].ravel(), triangles, error.ravel(), shading="gouraud", cmap=style.FIELD,
-                          norm=plt.matplotlib.colors.LogNorm(1e-7, 1e-2), rasterized=True)
+    mesh = axes.tripcolor(points[..., 0].ravel(), points[..., 2].ravel(), triangles, error.ravel(), shading="gouraud",
+                          cmap=style.FIELD, norm=plt.matplotlib.colors.LogNorm(1e-7, 1e-2), rasterized=True)
     for cell in points:
-        if numpy.linalg.norm(numpy.cross(cell[-1, -1] - cell[0, 0], cell[-1, 0] - cell[0, -1])) < 4e-4:  # the slim pieces of transformed elements would be all outline
+        # the slim pieces of transformed elements would be all outline
+        if numpy.linalg.norm(numpy.cross(cell[-1, -1] - cell[0, 0], cell[-1, 0] - cell[0, -1])) < 4e-4:
             continue
         edge = numpy.concatenate([cell[0], cell[:, -1], cell[-1, ::-1], cell[::-1, 0]])
         axes.plot(edge[:, 0], edge[:, 2], color="white", linewidth=0.25, alpha=0.6)
@@ -205,19 +216,22 @@ def draw_pressure_error(axes, run, title):
 
 
 def table_1(study):
-    print("\nTable 1: structured mesh of 546 control points, Bezier transformation, n azimuthal subdivisions; drag in per cent")
+    print("\nTable 1: structured mesh of 546 control points, Bezier transformation, n azimuthal subdivisions; drag in "
+          "per cent")
     print(f"{'':30}{'normal':>11}{'pressure':>11}{'drag %':>11}   paper: normal, pressure, drag %")
     for level, paper in enumerate(PAPER_TABLE):
         for label, settings in (("8 x 8 Gauss", FIXED), ("rules by tolerance", {})):
             run = study.run("polar", TRANSFORM | settings | {"Surface/pole subdivisions": level})
             if run:
-                print(f"n = {level}, {label:23} {run['normal_l2_error']:10.3e} {run['pressure_l2_error']:10.3e} {100 * run['drag_error']:10.3e}"
-                      f"   {paper[0]:.3e}  {paper[1]:.3e}  {paper[2]:.3e}")
+                print(f"n = {level}, {label:23} {run['normal_l2_error']:10.3e} {run['pressure_l2_error']:10.3e} "
+                      f"{100 * run['drag_error']:10.3e}   {paper[0]:.3e}  {paper[1]:.3e}  {paper[2]:.3e}")
 
 
 def table_of_options(found, largest):
-    print("\nSlopes against the number of control points: mean over the meshes, finest pair; drag_error_of_traction is without the reciprocal theorem")
-    keys = [("normal", "normal_l2_error"), ("pressure", "pressure_l2_error"), ("drag", "drag_error"), ("its traction's", "drag_error_of_traction")]
+    print("\nSlopes against the number of control points: mean over the meshes, finest pair; drag_error_of_traction "
+          "is without the reciprocal theorem")
+    keys = [("normal", "normal_l2_error"), ("pressure", "pressure_l2_error"), ("drag", "drag_error"),
+            ("its traction's", "drag_error_of_traction")]
     for option in OPTIONS:
         runs = found[option.name]
         if len(runs) < 2:
@@ -229,30 +243,36 @@ def table_of_options(found, largest):
             mean, finest = slope(points, errors)
             paper = PAPER_SLOPES.get(name)
             beside = f"   paper {paper[option.mesh == 'cube']:.2f}" if paper else ""
-            print(f"  {name:14} " + " ".join(f"{e:10.3e}" for e in errors) + f"   slope {mean:5.2f}, finest pair {finest:5.2f}{beside}")
+            print(f"  {name:14} " + " ".join(f"{e:10.3e}"
+                                             for e in errors)
+                  + f"   slope {mean:5.2f}, finest pair {finest:5.2f}{beside}")
         print("  iterations     " + " ".join(f"{one['solver_iterations']:10.0f}" for one in runs))
         print("  evaluations    " + " ".join(f"{one['kernel_evaluations']:10.3g}" for one in runs))
         print("  seconds        " + " ".join(f"{one['wall_seconds']:10.2f}" for one in runs))
 
 
 def work(study, path):
-    """Error of drag and pressure against seconds and kernel evaluations, for one option after another, at 866 or 546 control points."""
-    sweeps = [
-        ("cube", "unstructured, tolerance 1e-3 … 1e-10", "cube", {}, "tolerance"),
-        ("c1", "structured, C1 poles, tolerance", "polar", {"Surface/poles": "c1"}, "tolerance"),
-        ("plain", "structured, plain poles, tolerance", "polar", {"Surface/poles": "plain"}, "tolerance"),
-        ("transform", "structured, Bézier transformation, tolerance", "polar", TRANSFORM, "tolerance"),
-        ("cube_fixed", "unstructured, fixed rule, 4 … 16 points", "cube", {"Quadrature/rule": "fixed"}, "points"),
-        ("cube_smooth", "unstructured, desingularised, points", "cube", {"Quadrature/rule": "desingularised"}, "points"),
-        ("plain_fixed", "structured, plain poles, fixed rule, points", "polar", {"Quadrature/rule": "fixed", "Surface/poles": "plain"}, "points"),
-        ("c1_smooth", "structured, C1 poles, desingularised, points", "polar", {"Quadrature/rule": "desingularised", "Surface/poles": "c1"}, "points"),
-    ]
+    """Error of drag and pressure against seconds and kernel evaluations, for one option after another, at 866 or 546
+    control points."""
+    sweeps = [("cube", "unstructured, tolerance 1e-3 … 1e-10", "cube", {}, "tolerance"),
+              ("c1", "structured, C1 poles, tolerance", "polar", {"Surface/poles": "c1"}, "tolerance"),
+              ("plain", "structured, plain poles, tolerance", "polar", {"Surface/poles": "plain"}, "tolerance"),
+              ("transform", "structured, Bézier transformation, tolerance", "polar", TRANSFORM, "tolerance"),
+              ("cube_fixed", "unstructured, fixed rule, 4 … 16 points", "cube", {"Quadrature/rule": "fixed"}, "points"),
+              ("cube_smooth", "unstructured, desingularised, points", "cube", {"Quadrature/rule": "desingularised"},
+               "points"),
+              ("plain_fixed", "structured, plain poles, fixed rule, points", "polar",
+               {"Quadrature/rule": "fixed", "Surface/poles": "plain"}, "points"),
+              ("c1_smooth", "structured, C1 poles, desingularised, points", "polar",
+               {"Quadrature/rule": "desingularised", "Surface/poles": "c1"}, "points"),]
     figure, grid = plt.subplots(2, 2, figsize=(10.5, 7.6), sharey="row")
     for i, (name, label, mesh, settings, key) in enumerate(sweeps):
         values = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10] if key == "tolerance" else [4, 6, 8, 12, 16]
-        runs = [study.run(mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value}) for value in values]
+        runs = [study.run(mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value})
+                for value in values]
         runs = [one for one in runs if one]
-        pen = {"color": style.RUNS[i % 4], "linestyle": "-" if key == "tolerance" else "--", "marker": style.MARKS[i // 4], "ms": 4, "label": label}
+        pen = {"color": style.RUNS[i % 4], "linestyle": "-" if key == "tolerance" else "--",
+               "marker": style.MARKS[i // 4], "ms": 4, "label": label}
         for row, error in enumerate(("pressure_l2_error", "drag_error")):
             for axes, cost in zip(grid[row], ("kernel_evaluations", "wall_seconds")):
                 axes.loglog(column(runs, cost), column(runs, error), **pen)
@@ -272,9 +292,12 @@ def work(study, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=tanktread.PROGRAM, type=pathlib.Path, help="default: %(default)s")
-    parser.add_argument("--results", default="results/spheroid", metavar="DIR", help="where runs are kept (default: %(default)s)")
-    parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR", help="of the pictures (default: %(default)s)")
-    parser.add_argument("--largest", type=int, default=3, choices=SIZES, help="largest mesh of the four (default: %(default)s)")
+    parser.add_argument("--results", default="results/spheroid", metavar="DIR",
+                        help="where runs are kept (default: %(default)s)")
+    parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR",
+                        help="of the pictures (default: %(default)s)")
+    parser.add_argument("--largest", type=int, default=3, choices=SIZES,
+                        help="largest mesh of the four (default: %(default)s)")
     parser.add_argument("--read-only", action="store_true", help="draw what is there, run nothing")
     parser.add_argument("--no-work", action="store_true", help="leave out error against work")
     arguments = parser.parse_args()

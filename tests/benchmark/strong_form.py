@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Weak and strong form of the load side by side: deformation and step size over time, and the section where the strong form stalls.
+"""Weak and strong form of the load side by side: deformation and step size over time, and the section where the strong
+form stalls.
 
-    tests/benchmark/strong_form.py                               # runs inputs/shear_neo_hookean.yaml in both forms, to time 2
-    tests/benchmark/strong_form.py results/weak results/strong   # runs of yours
-"""
+tests/benchmark/strong_form.py                               # runs inputs/shear_neo_hookean.yaml in both forms, to time
+2 tests/benchmark/strong_form.py results/weak results/strong   # runs of yours """
 
 import argparse
 
@@ -21,10 +21,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("weak", nargs="?", help="directory of the results of a run in the weak form")
     parser.add_argument("strong", nargs="?", help="directory of the results of the same run in the strong form")
-    parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE", help="the picture (default: %(default)s)")
+    parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE",
+                        help="the picture (default: %(default)s)")
     arguments = parser.parse_args()
 
-    weak, strong = (tanktread.run(given or made(load)) for load, given in (("weak", arguments.weak), ("strong", arguments.strong)))
+    weak, strong = (tanktread.run(given or made(load)) for load,
+                    given in (("weak", arguments.weak), ("strong", arguments.strong)))
     runs = [("weak form", weak, style.RUNS[0]), ("strong form", strong, style.RUNS[1])]
     end = runs[1][1].series["time"][-1]
     figure = plt.figure(figsize=(9.6, 4.6))
@@ -39,7 +41,8 @@ def main():
 def made(load):
     deck = tanktread.SOURCE / "inputs" / "shear_neo_hookean.yaml"
     settings = {"Membrane/load": load, "Surface/elements per side": 6, "Time/final time": 2, "Output/interval": 0.05}
-    return tanktread.results_of(deck, f"strong_form/{load}", settings, accepted=(0, 1, 3))  # 3: the strong form fails, which is what is shown
+    # 3: the strong form fails, which is what is shown
+    return tanktread.results_of(deck, f"strong_form/{load}", settings, accepted=(0, 1, 3))
 
 
 def draw_series(upper, lower, runs, end):
@@ -50,8 +53,9 @@ def draw_series(upper, lower, runs, end):
     for axes in upper, lower:
         axes.axvline(end, color=style.FAINT, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
     first = runs[0][1]
-    upper.set_title(f"{first.value('Membrane/law')}, {first.value('Flow/type')}, Ca = {first.value('Membrane/capillary number'):g}, "
-                    f"{first.series['n_control_points'][-1]:.0f} control points")
+    upper.set_title(f"{first.value('Membrane/law')}, {first.value('Flow/type')}, Ca = "
+                    f"{first.value('Membrane/capillary number'):g}, " f"{first.series['n_control_points'][-1]:.0f} "
+                                                                      "control points")
     upper.set_ylabel("Taylor parameter D (surface)")
     upper.set_ylim(bottom=0)
     upper.tick_params(labelbottom=False)
@@ -59,18 +63,20 @@ def draw_series(upper, lower, runs, end):
     lower.set_ylabel("step")
     lower.set_xlabel("time")
     lower.set_xlim(left=0)
-    lower.annotate(f"stalls at {end:.3g}", (end, lower.get_ylim()[0]), (5, 8), textcoords="offset points", color=style.INK, fontsize=8.5)
+    lower.annotate(f"stalls at {end:.3g}", (end, lower.get_ylim()[0]), (5, 8), textcoords="offset points",
+                   color=style.INK, fontsize=8.5)
 
 
 def draw_sections(axis, runs):
     (_, weak, blue), (_, strong, orange) = runs
     last = strong.snapshots()[-1]
     regular = [shot for shot in strong.snapshots() if shot.time < last.time][-1]
-    shots = [("weak form", weak.snapshot_at(regular.time).scaled(weak), blue, 1.6), ("strong form", regular.scaled(strong), orange, 1.6),
-             ("strong form", last.scaled(strong), orange, 0.7)]
+    shots = [("weak form", weak.snapshot_at(regular.time).scaled(weak), blue, 1.6),
+             ("strong form", regular.scaled(strong), orange, 1.6), ("strong form", last.scaled(strong), orange, 0.7)]
     for name, shot, color, width in shots:
         x2 = (shot.points[:, 1].min() + shot.points[:, 1].max()) / 2
-        axis.add_collection(LineCollection(section(shot, x2), colors=color, linewidths=width, capstyle="round", label=f"{name}, t = {shot.time:.4g}"))
+        axis.add_collection(LineCollection(section(shot, x2), colors=color, linewidths=width, capstyle="round",
+                                           label=f"{name}, t = {shot.time:.4g}"))
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
     low, high = axis.get_ylim()

@@ -2,14 +2,16 @@
 
 import numpy
 
-import tanktread
+import package  # noqa: F401 before the package tanktread
+from tanktread.lagrange import by_degree, grid_table
 
 SMOOTH = 8  # the flow and its answer live in degrees up to this one
 
 
 class Spectrum:
-    """Power of a field by degree: `power[l]`, the sum over orders and components of the squared coefficients. The unstressed surface is a sphere of
-    radius `radius`, on which degree l has the wavelength 2 pi radius/sqrt(l (l + 1))."""
+    """Power of a field by degree: `power[l]`, the sum over orders and components of the squared coefficients. The
+    unstressed surface is a sphere of radius `radius`, on which degree l has the wavelength 2 pi radius/sqrt(l (l +
+    1))."""
 
     def __init__(self, snapshot, field="load", largest=40):
         self.radius, directions, weights, values = _on_the_sphere(snapshot, field)
@@ -40,14 +42,16 @@ def short_share(run, field="load"):
 
 
 def harmonics(directions, largest):
-    """(degree, order, values) of the real, orthonormal spherical harmonics at unit vectors (n, 3), by the stable recursion in the degree."""
+    """(degree, order, values) of the real, orthonormal spherical harmonics at unit vectors (n, 3), by the stable
+    recursion in the degree."""
     x, y, z = directions.T
     sine, azimuth = numpy.hypot(x, y), numpy.arctan2(y, x)
     sectoral = numpy.full_like(z, (4 * numpy.pi) ** -0.5)
     for order in range(largest + 1):
         if order > 0:
             sectoral = sectoral * sine * -((2 * order + 1) / (2 * order)) ** 0.5
-        waves = [numpy.ones_like(z)] if order == 0 else [2**0.5 * numpy.cos(order * azimuth), 2**0.5 * numpy.sin(order * azimuth)]
+        waves = [numpy.ones_like(z)] if order == 0 else [2**0.5 * numpy.cos(order * azimuth),
+                                                         2**0.5 * numpy.sin(order * azimuth)]
         before, now = numpy.zeros_like(z), sectoral
         for degree in range(order, largest + 1):
             for wave in waves:
@@ -58,32 +62,21 @@ def harmonics(directions, largest):
 
 
 def _on_the_sphere(snapshot, field, gauss=6):
-    """Mean radius of the unstressed surface, and at Gauss points of its cells directions, weights of the unit sphere, values of the field."""
+    """Mean radius of the unstressed surface, and at Gauss points of its cells directions, weights of the unit sphere,
+    values of the field."""
     nodes = snapshot.points - snapshot.fields["displacement"]
     nodes = nodes - nodes.mean(0)
     values = numpy.asarray(snapshot.fields[field]).reshape(len(nodes), -1)
     points, weights = numpy.polynomial.legendre.leggauss(gauss)
     places, areas, found = [], [], []
-    for n in {len(cell) for cell in snapshot.cells}:
-        cells = numpy.array([cell for cell in snapshot.cells if len(cell) == n])
-        table, by_s, by_t = _tables(int(round(n**0.5)) - 1, (points + 1) / 2)
+    for p, _, cells in by_degree(snapshot.cells):
+        table, by_s, by_t = (grid_table(p, (points + 1) / 2, *order) for order in ((0, 0), (1, 0), (0, 1)))
         place, along, across = (numpy.einsum("gn,cnk->cgk", one, nodes[cells]) for one in (table, by_s, by_t))
-        solid = numpy.abs((place * numpy.cross(along, across)).sum(-1)) / numpy.linalg.norm(place, axis=-1) ** 3  # of the element, over the parameters
+        # of the element, over the parameters
+        solid = numpy.abs((place * numpy.cross(along, across)).sum(-1)) / numpy.linalg.norm(place, axis=-1) ** 3
         places.append(place.reshape(-1, 3))
         areas.append((solid * numpy.outer(weights, weights).ravel() / 4).ravel())
         found.append(numpy.einsum("gn,cnk->cgk", table, values[cells]).reshape(-1, values.shape[1]))
     places = numpy.concatenate(places)
     radii = numpy.linalg.norm(places, axis=1)
     return radii.mean(), places / radii[:, None], numpy.concatenate(areas), numpy.concatenate(found)
-
-
-def _tables(p, grid):
-    """Lagrange polynomials of a cell's nodes at the points (t, s) of grid x grid, t first, and their derivatives by s and by t."""
-    nodes = numpy.arange(p + 1) / p
-    value, slope = numpy.ones((len(grid), p + 1)), numpy.zeros((len(grid), p + 1))
-    for i in range(p + 1):
-        polynomial = numpy.polynomial.Polynomial.fromroots(numpy.delete(nodes, i))
-        polynomial = polynomial / polynomial(nodes[i])
-        value[:, i], slope[:, i] = polynomial(grid), polynomial.deriv()(grid)
-    order = tanktread.node_order(p)
-    return tuple(numpy.array([numpy.outer(b[:, j], a[:, i]).ravel() for i, j in order]).T for a, b in ((value, value), (slope, value), (value, slope)))

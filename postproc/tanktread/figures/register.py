@@ -108,7 +108,8 @@ def parser_of(name, program="tanktread-figure"):
 def measurements():
     """Returns {name: caption} of the scripts of the source directory that measure the program and draw a figure."""
     texts = {path.stem: path.read_text(encoding="utf-8") for path in BENCHMARK.glob("*.py")}
-    return {name.replace("_", "-"): " ".join(text.split('"""')[1].split("\n\n")[0].split()) for name, text in texts.items()
+    return {name.replace("_", "-"): " ".join(text.split('"""')[1].split("\n\n")[0].split()) for name,
+            text in texts.items()
             if "style.save(" in text and text.startswith("#!")}
 
 
@@ -132,7 +133,8 @@ def command():
         return subprocess.run([sys.executable, BENCHMARK / f"{name}.py", *words[1:]], check=False).returncode
     expect(name in FIGURES, f"there is no figure {words[0]}; there are: {', '.join(sorted(names))}")
     parsed = vars(parser_of(name).parse_args(words[1:]))
-    given, output, settings = parsed.pop("given"), pathlib.Path(parsed.pop("output")), settings_of(parsed.pop("set", []))
+    given, output = parsed.pop("given"), pathlib.Path(parsed.pop("output"))
+    settings = settings_of(parsed.pop("set", []))
     if settings:
         given = [run_of(one, settings) for one in given] if isinstance(given, list) else run_of(given, settings)
     save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)

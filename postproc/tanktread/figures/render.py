@@ -5,7 +5,7 @@ import itertools
 
 import numpy
 
-STEP = 0.7        # pixels between samples of a surface: no pixel of it is left out, which a square lattice of 1/√2 or less ensures
+STEP = 0.7        # pixels between samples of a surface: below 1/√2, so that no pixel of it is left out
 COARSE = 6        # facets along a side of a cell to measure it by
 RIM = 0.14        # what of a colour is lost where the surface turns away from the eye; none where it faces it
 EDGE_WIDTH = 1.2  # of an element edge on the surface, pixels

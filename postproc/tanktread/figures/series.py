@@ -38,7 +38,10 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
     upper.set_ylabel("Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""))
     upper.set_ylim(bottom=0)
     upper.set_title(title(runs))
-    upper.legend(**({"loc": "lower right"} if len(runs) == 1 else {"loc": "upper left", "bbox_to_anchor": (1.01, 1)}))
+    if len(runs) == 1:
+        upper.legend(loc="lower right")
+    else:
+        upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
     lower.set_ylabel("inclination, degrees")
     lower.set_xlabel(time_label(runs))
     lower.set_xlim(left=0)

@@ -56,8 +56,10 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     reference: reference values of its variation, in the deck's unit, one or one per panel: circles in the lower row
     view: azimuth and elevation of the eye, in degrees"""
     end = runs[0].series["time"][-1]
-    moments = times or ([None] if len(runs) > 1 else [0, end / 2, end])
-    pairs = [(run, moments[-1]) for run in runs] if len(runs) > 1 else [(runs[0], moment) for moment in moments]
+    if len(runs) > 1:
+        pairs = [(run, times[-1] if times else end) for run in runs]
+    else:
+        pairs = [(runs[0], moment) for moment in times or [0, end / 2, end]]
     shots = [(run, run.snapshot_at(moment).scaled(run)) for run, moment in pairs]
     norm, colours, pattern = field_of([shot for _, shot in shots], field)
     seen = numpy.concatenate([(shot.points - (shot.points.min(0) + shot.points.max(0)) / 2) @ view_axes(*view)[:2].T
@@ -76,7 +78,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         unit = run.scale(DIMENSIONS.get(field))[0] / run.scale("length")[0]
         circle = reference and reference[min(k, len(reference) - 1)] / unit
         tops.append((draw_variation(polar, shot, field, circle), polar))
-        if circle and (k == 0 or len(set(reference)) > 1):
+        if circle and (k == 0 or len(set(reference or [])) > 1):
             polar.legend(loc="upper left", bbox_to_anchor=(-0.1, 0.04))
     share_window(surfaces)
     for _, polar in tops:

@@ -57,7 +57,8 @@ class Energy:
         expect(run.value("Flow/type", "") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
         numbers = run.summary["numbers"]
         self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
-        self.tension, self.bending, self.curvature = of("surface tension"), of("bending modulus"), of("spontaneous curvature")
+        names = "surface tension", "bending modulus", "spontaneous curvature"
+        self.tension, self.bending, self.curvature = (of(name) for name in names)
         self.of_area = of("global area dilatation") * self.tension / self.area
         self.of_leaves = numpy.pi * of("area difference modulus") * self.bending / self.area
         self.leaves = of("area difference") * 4 * numpy.sqrt(numpy.pi * self.area)

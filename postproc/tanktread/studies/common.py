@@ -2,6 +2,7 @@
 
 import pathlib
 
+from ..mistakes import log
 from ..runs import PROGRAM, Study, quoted, text_of
 
 

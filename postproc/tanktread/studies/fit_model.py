@@ -155,7 +155,7 @@ class Fit:
         places = len(x) - len(self.unknowns)
         free = len(x) - (self.length() - self.count)  # less what is known beforehand
         expect(free < self.count,
-               f"{self.law}: {free} numbers are unknown, places of outlines among them, and there are {self.count} data")
+               f"{self.law}: {free} numbers are unknown, positions included, and there are {self.count} data")
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
 
         def function(x):
@@ -232,7 +232,9 @@ class Fit:
     @property
     def aic(self):
         parameters = len(self.x)
-        return self.square + 2 * parameters if self.stated else self.count * numpy.log(self.square / self.count) + 2 * (parameters + 1)
+        if self.stated:
+            return self.square + 2 * parameters
+        return self.count * numpy.log(self.square / self.count) + 2 * (parameters + 1)
 
     def runs_test(self):
         """Wald and Wolfowitz, of the signs along all outlines and curves together: how many deviations fewer runs of

@@ -87,14 +87,16 @@ def _rise(fit, candidate):
 
 def rounded(value, error):
     """A value with a digit more than its error tells."""
-    return f"{value:.{int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10))}g}" if value and error else f"{value:.6g}"
+    digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value and error else 6
+    return f"{value:.{digits}g}"
 
 
 def told(fits, rows):
     """The report as text."""
     lines = []
     for fit in fits:
-        said = f"chi square {fit.square:.4g} for {fit.freedom} degrees of freedom" + (f" (probability {fit.probability:.2g})" if fit.stated else "")
+        said = f"chi square {fit.square:.4g} for {fit.freedom} degrees of freedom"
+        said += f" (probability {fit.probability:.2g})" if fit.stated else ""
         lines += [f"{fit.law}: {said}, AIC {fit.aic:.2f}, {fit.runs.count} runs"]
         if not fit.stated:
             lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing "
@@ -122,8 +124,8 @@ def told(fits, rows):
                       (j, b) in itertools.combinations(enumerate(shown), 2)]
         if any(datum.count >= SERIES for datum in fit.data):
             z = fit.runs_test()
-            lines.append(f"  signs of the residuals along the data: "
-                         f"{'change as by chance' if z > -2 else 'stay the same too long: the model is not the data’s'} "
+            meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
+            lines.append(f"  signs of the residuals along the data: {meaning} "
                          f"({z:.1f} standard deviations)")
     if len(fits) > 1:
         gap = [fit.aic - fits[0].aic for fit in fits]
@@ -131,7 +133,8 @@ def told(fits, rows):
         lines.append("laws, best first: "
                      + ", ".join(f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit,
                                  one in zip(fits, gap)))
-        said = f"tell {fits[0].law} from the others" if gap[1] > 10 else "do not tell these laws apart (a difference in AIC below 10)"
+        said = "do not tell these laws apart (a difference in AIC below 10)"
+        said = f"tell {fits[0].law} from the others" if gap[1] > 10 else said
         lines.append(f"the data {said}{', but none of them describes the data' if fits[0].missed else ''}")
     for settings, errors, rises in rows:
         name = ", ".join(f"{key} {value}" for key, value in settings.items())
