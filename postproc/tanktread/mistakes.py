@@ -47,6 +47,7 @@ class _Lines(logging.Handler):
 def answer(main):
     """Runs the main function of a command and ends the process: exit code 2 with one sentence if the input is wrong."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader such as head may stop early
     log.setLevel(logging.INFO)
     log.handlers[:] = [_Lines()]
     try:

@@ -58,7 +58,7 @@ def squeezing(study):
     held. Smaller ones than the curve tells pass; larger ones rest before the throat, on a branch of steady shapes whose
     fold, in the pressure drop or in the size, is that curve. Ca = μV/G_s, V being the mean velocity of the empty
     channel. The wall repels the membrane, so that a film stays; broken line: a membrane without film and friction,
-    axisymmetric, whatever the viscosity ratio (postproc/stuck.py).
+    axisymmetric, whatever the viscosity ratio (postproc/tanktread-figure stuck).
 
     Survives: a smaller or softer capsule, a larger pressure drop."""
     figure, axis = plt.subplots(figsize=(5.6, 4.2))
