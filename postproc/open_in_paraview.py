@@ -1,11 +1,11 @@
 """A run as ParaView shows it: curved elements, exact normals, coloured by a field, with the time slider.
 
-pvpython postproc/open_in_paraview.py results/shear_neo_hookean --state run.pvsm              # then: paraview run.pvsm
-xvfb-run -a pvpython postproc/open_in_paraview.py results/shear_neo_hookean -o last.png       # without a display
-(package xvfb)
+    pvpython postproc/open_in_paraview.py results/shear_neo_hookean --state run.pvsm          # then: paraview run.pvsm
+    xvfb-run -a pvpython postproc/open_in_paraview.py results/shear_neo_hookean -o last.png   # without a display (xvfb)
 
-ParaView 5.11 (Debian 12: package python3-paraview) or newer. The wall of a tube is not in its files: postproc/tanktread-figure tube
-draws it. This file must not be called paraview.py: it would hide the module. """
+ParaView 5.11 (Debian 12: package python3-paraview) or newer. The wall of a tube is not in its files:
+postproc/tanktread-figure tube draws it. This file must not be called paraview.py: it would hide the module.
+"""
 
 import argparse
 import os

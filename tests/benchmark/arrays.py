@@ -2,13 +2,14 @@
 """Cubic arrays of spheres: the drag of held ones, and how the viscosity that free ones add begins to grow with the
 volume fraction.
 
-tests/benchmark/arrays.py drag 0.2 0.45 --elements 6 8
+    tests/benchmark/arrays.py drag 0.2 0.45 --elements 6 8
     tests/benchmark/arrays.py viscosity
 
 `drag`: K = F/(6 pi mu a U), U the mean velocity over the cell, by the tractions of the first kind. `viscosity`: at time
 zero the stress is 2 mu (1 + v) E, v = 5/2 phi/(1 - k phi + ...), where the array is stretched along its axes (alpha) or
 sheared in them (beta); k from v at three volume fractions, less what grows like phi^(2/3) and phi^(4/3), beside that of
-Nunan & Keller (J. Fluid Mech. 142, 1984). """
+Nunan & Keller (J. Fluid Mech. 142, 1984).
+"""
 
 import argparse
 import pathlib

@@ -2,12 +2,13 @@
 """The atlas of failure: for a method, the edge where it stops working, found by bisection on short runs, drawn and
 explained.
 
-tests/benchmark/atlas.py --list                           # the maps, with what each shows tests/benchmark/atlas.py
---map fixed-step                 # one of them: results/atlas/fixed-step.png and fixed-step.csv tests/benchmark/atlas.py
-# all: an hour or two on one core
+    tests/benchmark/atlas.py --list  # the maps, with what each shows
+    tests/benchmark/atlas.py --map fixed-step  # one of them: results/atlas/fixed-step.png and fixed-step.csv
+    tests/benchmark/atlas.py  # all: an hour or two on one core
 
 Runs are kept under results/atlas/runs and not made again. What a map shows is held by a test of tests/stability
-(README.md there). """
+(README.md there).
+"""
 
 import argparse
 import sys

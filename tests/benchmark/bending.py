@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """A capsule that resists bending, in shear: D over time beside the literature's curves, on several meshes and moduli.
 
-tests/benchmark/bending.py --curves DIR      # beside the literature's curves
+    tests/benchmark/bending.py --curves DIR  # beside the literature's curves
 
 Runs inputs/shear_bending.yaml (Ca = 0.15, E_b = 0.0375 R^2 E_s), with its own reference curvature and relaxed when
 flat, and without bending. The curves are tables of time and D, `bending_<author>_<year>.csv` or `.txt` (columns t,
-shortest, longest, D, angle). """
+shortest, longest, D, angle).
+"""
 
 import argparse
 import pathlib

@@ -2,8 +2,9 @@
 """A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (the paper's
 Figures 17 and 18).
 
-tests/benchmark/fixed_against_refined.py                                 # runs inputs/hyperbolic_skalak_ca0.8.yaml,
-refined and not tests/benchmark/fixed_against_refined.py results/refined results/fixed   # runs of yours """
+    tests/benchmark/fixed_against_refined.py  # runs inputs/hyperbolic_skalak_ca0.8.yaml, refined and not
+    tests/benchmark/fixed_against_refined.py results/refined results/fixed  # runs of yours
+"""
 
 import argparse
 

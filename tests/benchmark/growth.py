@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """How a velocity evaluation grows with the mesh: seconds by part, interactions and bytes, with fitted exponents.
 
-tests/benchmark/growth.py                # runs the program benchmark first: minutes tests/benchmark/growth.py
-growth.json    # what build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json
-wrote
+    tests/benchmark/growth.py  # runs the program benchmark first: minutes
+    # what build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json wrote
+    tests/benchmark/growth.py growth.json
 
 Exponents are fitted by least squares to the meshes from --from control points on.
 """

@@ -7,8 +7,9 @@ the order that they show; the finest is not drawn, for it is too close to them. 
 equal accuracy, from the uniform runs by interpolation of logarithms. Kernel evaluations tell the work on a machine that
 does other things too.
 
-tests/benchmark/refinement_gain.py                                      # runs inputs/hyperbolic_skalak_ca0.8.yaml on
-seven meshes, to time 2 tests/benchmark/refinement_gain.py --uniform a b c d --refined e f      # runs of yours """
+    tests/benchmark/refinement_gain.py  # runs inputs/hyperbolic_skalak_ca0.8.yaml on seven meshes, to time 2
+    tests/benchmark/refinement_gain.py --uniform a b c d --refined e f  # runs of yours
+"""
 
 import argparse
 

@@ -1,17 +1,20 @@
 #!/usr/bin/python3
 """How the phases of a run scale with the number of ranks.
 
-tests/benchmark/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
+    tests/benchmark/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
 
 Runs the deck on one rank, on several, and as that many one-rank runs at the same time, in turns, and prints medians
 over the repetitions:
 
-ratio       seconds a phase of one rank alone over those of the first of several ranks capacity    what the machine
-gives: ranks x seconds of one rank alone over those of one of the runs side by side. No program scales better there:
-cores that share memory, cache, power or a host slow each other down efficiency  ratio over capacity
+    ratio       seconds a phase of one rank alone over those of the first of several ranks
+    # 
+    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side. No program scales better
+                there: cores that share memory, cache, power or a host slow each other down
+    efficiency  ratio over capacity
 
 Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; `start` holds that of MPI. The last
-lines say whether both runs did the same. The machine should have a free core for every rank. """
+lines say whether both runs did the same. The machine should have a free core for every rank.
+"""
 
 import argparse
 import os

@@ -4,7 +4,8 @@ take the integrals.
 
 Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed, keeps the results, and
 draws what is there. A run that has been made already is not made again. The largest meshes take minutes; `--largest 2`
-leaves them out. """
+leaves them out.
+"""
 
 import argparse
 import math

@@ -2,12 +2,13 @@
 """Schemes of time integration against each other: error in D over the run against velocity evaluations and against
 seconds, scene by scene.
 
-tests/benchmark/stiff.py build/release/app/tanktread results/stiff --elements 6
+    tests/benchmark/stiff.py build/release/app/tanktread results/stiff --elements 6
 
 Runs every scene below by every scheme at several tolerances and once by tr-bdf2 at 1e-7, the reference. Results are
 kept, and a run that has been made already is not made again; `--scenes` and `--schemes` choose. The table says what
 each scheme needs for an error of 1e-3, 2e-4 and 5e-5 (between runs: by their logarithms), in evaluations and in
-seconds, over the best scheme. Seconds are those of the integration, without diagnostics and output. """
+seconds, over the best scheme. Seconds are those of the integration, without diagnostics and output.
+"""
 
 import argparse
 import pathlib

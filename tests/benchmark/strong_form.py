@@ -2,8 +2,9 @@
 """Weak and strong form of the load side by side: deformation and step size over time, and the section where the strong
 form stalls.
 
-tests/benchmark/strong_form.py                               # runs inputs/shear_neo_hookean.yaml in both forms, to time
-2 tests/benchmark/strong_form.py results/weak results/strong   # runs of yours """
+    tests/benchmark/strong_form.py  # runs inputs/shear_neo_hookean.yaml in both forms, to time 2
+    tests/benchmark/strong_form.py results/weak results/strong  # runs of yours
+"""
 
 import argparse
 

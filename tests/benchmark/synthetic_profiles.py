@@ -2,11 +2,13 @@
 """Whether tanktread-fit gives moduli back, and its errors are right: profiles of a capsule in a tube at five speeds,
 made with one modulus and law.
 
-tests/benchmark/synthetic_profiles.py --exact              # no noise, from a start a factor of 10 off, by runs of the
-program: minutes tests/benchmark/synthetic_profiles.py --samples 100        # noise of 0.5 % and 2 % of the radius, both
-laws fitted to each sample: minutes tests/benchmark/synthetic_profiles.py --pictures 20        # from pictures, 256
-pixels across, blurred and noisy tests/benchmark/synthetic_profiles.py --write DIR          # outlines with noise, from
-a finer mesh, as inputs/studies has them
+    # no noise, from a start a factor of 10 off, by runs of the program: minutes
+    tests/benchmark/synthetic_profiles.py --exact
+    # noise of 0.5 % and 2 % of the radius, both laws fitted to each sample: minutes
+    tests/benchmark/synthetic_profiles.py --samples 100
+    tests/benchmark/synthetic_profiles.py --pictures 20  # from pictures, 256 pixels across, blurred and noisy
+    # outlines with noise, from a finer mesh, as inputs/studies has them
+    tests/benchmark/synthetic_profiles.py --write DIR
 
 The steady shape depends on the capillary number alone, so fits to samples and pictures use an emulator: outlines of
 NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how far it is from runs in between is printed.

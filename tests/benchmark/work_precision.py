@@ -1,14 +1,15 @@
 #!/usr/bin/python3
 """Error against work: a scene with all combinations of choices that differ from the default in one or two.
 
-tests/benchmark/work_precision.py tests/benchmark/shear.yaml                       # results/work_precision/shear.png,
-.csv tests/benchmark/work_precision.py tests/benchmark/shear.yaml --differences 1       # one choice at a time
-tests/benchmark/work_precision.py tests/benchmark/shear.yaml --only time mesh      # these choices
+    tests/benchmark/work_precision.py tests/benchmark/shear.yaml  # results/work_precision/shear.png, .csv
+    tests/benchmark/work_precision.py tests/benchmark/shear.yaml --differences 1  # one choice at a time
+    tests/benchmark/work_precision.py tests/benchmark/shear.yaml --only time mesh  # these choices
 
 A study is a small YAML file (tests/benchmark/README.md): a deck, what counts as its error, and the choices, each with
 options of a few keys; the first option is the default. Work is told in kernel evaluations, which no machine changes,
 and in processor seconds of this machine, all ranks together. Each point is a run; the black line is the Pareto front,
-whose runs are numbered and told beside it by what differs from the default, the ring. """
+whose runs are numbered and told beside it by what differs from the default, the ring.
+"""
 
 import argparse
 import itertools

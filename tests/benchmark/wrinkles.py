@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Wrinkles of a membrane at low Ca: without resistance to bending their length follows the mesh, with it they do not.
 
-tests/benchmark/wrinkles.py                                     # n = 6, 9, 12: minutes
+    tests/benchmark/wrinkles.py  # n = 6, 9, 12: minutes
     tests/benchmark/wrinkles.py --meshes 6 9 12 18 --modulus 0.002
 
 A neo-Hookean capsule in shear at Ca = 0.1, compressed along its belt, on a mesh that is turned out of the planes of

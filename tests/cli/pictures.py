@@ -32,7 +32,7 @@ Tanktread:
 def _command(name, *arguments, code=0):
     """Runs a command of the package, tanktread-figure unless it is another one, and returns what it prints."""
     words = [SOURCE / f"postproc/tanktread-{name}"] if name in ("read", "report") else [SOURCE / "postproc/tanktread-figure", name]
-    result = subprocess.run([*words, *arguments], capture_output=True, text=True)
+    result = subprocess.run([*words, *arguments], capture_output=True, text=True, env=os.environ | {"TANKTREAD": str(PROGRAM)})
     check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
     return result.stdout + result.stderr
 
@@ -180,11 +180,11 @@ def _alone():
     return "alone"
 
 
-def the_readme_names_every_script_and_its_commands_name_what_is_there():
+def the_readme_names_every_figure_and_its_commands_name_what_is_there():
     text = (SOURCE / "README.md").read_text()
-    scripts = {path.name for path in (SOURCE / "postproc").glob("*.py") if os.access(path, os.X_OK)}
-    named = set(re.findall(r"postproc/(\w+\.py)", text))
-    check(scripts <= named, "scripts that README.md does not name:", scripts - named)
+    named = set(re.findall(r"tanktread-figure ([\w-]+)", text))
+    drawn = {name.replace("_", "-") for name in figures.FIGURES}
+    check(drawn <= named, "figures that README.md does not name:", drawn - named)
     for path in re.findall(r"\b(?:postproc|inputs|tests|app)/[\w./]*\w\.\w+", text):
         check((SOURCE / path).exists(), f"README.md names {path}, which is not there")
 

@@ -21,7 +21,7 @@ def picture(shot, values, view, colour_of, pixels=640):
     its faces.
 
     Returns an image (rows, columns, RGBA), its uppermost row first, and its extent (left, right, low, high) in the
-    surface's own length. `pixels`: of the longer side. `colour_of`: values to RGBA. """
+    surface's own length. `pixels`: of the longer side. `colour_of`: values to RGBA."""
     depth, found, corner, size = seen(shot, values, view, OVERSAMPLING * pixels)
     image = _coloured(depth, found, colour_of)
     shape = numpy.array(depth.shape)
