@@ -78,11 +78,15 @@ def run(where, settings=None):
         return outcome.run
     directory = results_of(where) if str(where).endswith(".yaml") else where
     try:
-        return Run(directory)
+        found = Run(directory)
     except FileNotFoundError:
         raise Mistake(f"{directory} holds no run.h5: give the directory of a run's results, or a deck") from None
     except (OSError, KeyError) as error:
         raise Mistake(f"{directory}/run.h5 cannot be read: {error}") from None
+    for name, values in found.series.items():
+        expect("NaN if" in found.descriptions[name] or not math.isnan(values.sum()),
+               f"{directory}/run.h5 has NaN in the series {name}, which is always defined: the file is damaged")
+    return found
 
 
 def runs_of(runs):

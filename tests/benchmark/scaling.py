@@ -7,9 +7,8 @@ Runs the deck on one rank, on several, and as that many one-rank runs at the sam
 over the repetitions:
 
     ratio       seconds a phase of one rank alone over those of the first of several ranks
-    # 
-    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side. No program scales better
-                there: cores that share memory, cache, power or a host slow each other down
+    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side.
+                No program scales better: cores that share memory, cache, power or a host slow each other down
     efficiency  ratio over capacity
 
 Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; `start` holds that of MPI. The last
