@@ -65,7 +65,7 @@ class Snapshot:
         """Returns the indices of the cells of one particle, by its name in `run.particles`."""
         if "particle" not in self.fields:
             return numpy.arange(len(self.cells))
-        number = self.particles.index(particle)
+        number = self.particles.index(particle) + 1  # from 1 in the order of the deck
         return numpy.flatnonzero([self.fields["particle"][cell[0]] == number for cell in self.cells])
 
     def scaled(self, run):

@@ -297,7 +297,7 @@ def main():
                         help="where runs are kept (default: %(default)s)")
     parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR",
                         help="of the pictures (default: %(default)s)")
-    parser.add_argument("--largest", type=int, default=3, choices=SIZES,
+    parser.add_argument("--largest", type=int, default=3, choices=SIZES[1:],
                         help="largest mesh of the four (default: %(default)s)")
     parser.add_argument("--read-only", action="store_true", help="draw what is there, run nothing")
     parser.add_argument("--no-work", action="store_true", help="leave out error against work")

@@ -51,8 +51,8 @@ Tanktread:
   Time: { scheme: bs3, fixed step: 0.01, final time: 0.02 }
   Output: { interval: 0.01 }
 """
-CHANNEL = TUBE.replace("Tube: { section: circle, radius: 1.0, length: 4.4, azimuthal elements: 8, axial elements: 6 }",
-                       "Channel: { section: circle, radius: 1.0, profile: constriction, depth: 0.2, half length: 1.0, azimuthal elements: 8, axial elements: 12 }")
+CHANNEL = TUBE.replace("radius: 0.4 }", "radius: 0.5, center: [-0.6, 0, 0] }").replace("Tube: { section: circle, radius: 1.0, length: 4.4, azimuthal elements: 8, axial elements: 6 }",
+                       "Channel: { section: circle, radius: 1.0, profile: constriction, depth: 0.6, half length: 1.0, azimuthal elements: 12, axial elements: 24 }")
 
 
 def _run(name, text):

@@ -143,6 +143,7 @@ def stuck(runs, axes=None, *, elements: int = 160):
     for run, color in zip(runs, style.RUNS * len(runs)):
         x, ca, speed = run.series["centroid_x1"], capillary_number(run), run.series["velocity_x1"]
         near = x > way[0] - 0.2
+        expect(near.any(), f"{run.directory}: its particle does not come to the constriction")
         upper.plot(x[near], numpy.full(near.sum(), ca), color=color)
         upper.plot(x[-1], ca, "o", color=color, markersize=4)
         label = f"Ca = {ca:g}, {run.value('Flow/held', 'flow rate')} held"

@@ -2,7 +2,7 @@
 
 import numpy
 
-from ..mistakes import Mistake
+from ..mistakes import Mistake, expect
 
 BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
 
@@ -147,7 +147,9 @@ class Pushed:
         angle = numpy.linspace(0, numpy.pi, self.n + 1)
         z = self.radius * numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)
         places = numpy.linspace(-self.width - self.radius, 0, 4000)
-        touch = next(x for x in places if (self.wall(z[:, 0] + x)[0] - z[:, 1]).min() < 0.005 * self.radius)
+        near = (x for x in places if (self.wall(z[:, 0] + x)[0] - z[:, 1]).min() < 0.005 * self.radius)
+        touch = next(near, None)
+        expect(touch is not None, "the particle does not touch the wall of the constriction")
         z[:, 0] += touch
         closed = numpy.argmin((self.wall(z[:, 0])[0] - z[:, 1])[1:-1]) + 1
         pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(*z.T, closed), 0.01 * self.volume

@@ -62,5 +62,7 @@ def save(figure, path):
                 figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
     except OSError as error:
         raise Mistake(f"{path} cannot be written: {error.strerror}") from None
+    except ValueError as error:
+        raise Mistake(f"the figure cannot be drawn: {error}") from None
     plt.close(figure)
     print(path)
