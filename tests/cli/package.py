@@ -3,6 +3,7 @@
 import importlib.util
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -83,6 +84,8 @@ def a_virtual_environment_imports_the_package_from_another_folder():
     there = _done(pathlib.Path.cwd() / "V/bin/python", "-c",
                   "import tanktread; print(tanktread.__file__)", cwd="/")
     check(str(pathlib.Path.cwd() / "V/lib") in there, there)
+    version = re.search(r"VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text().split("project(")[1])[1]
+    check(tanktread.__version__ == version, tanktread.__version__, version)
     check("deformation" in _done(pathlib.Path.cwd() / "V/bin/tanktread-figure", "--list", cwd="/"), "the commands")
 
 
@@ -207,6 +210,8 @@ def every_figure_is_drawn_and_takes_axes():
         figure = figures.FIGURES[name](given, **options)
         style.save(figure, f"{name}.png")
         check(pathlib.Path(f"{name}.png").read_bytes()[:4] == b"\x89PNG" and figure.axes, name)
+        if name == "vesicle":  # seconds
+            continue
         host = style.plt.figure(figsize=(12, 9))
         check(figures.FIGURES[name](given, host, **options) is host and len(host.axes) == len(figure.axes), name, "in a given figure")
         style.plt.close("all")
@@ -231,7 +236,7 @@ def the_list_has_each_figure_with_its_caption():
         check(f"{name.replace('_', '-')} {figures.caption(function)}" in words, name, words)
     check("work-precision" in words and "atlas" in words, "those of tests/benchmark")
     for name in figures.FIGURES:
-        check("positional" in _done(SOURCE / "postproc/tanktread-figure", name, "--help"), name)
+        check("positional" in figures.parser_of(name).format_help(), name)
 
 
 def hostile_files_are_one_sentence():

@@ -76,6 +76,7 @@ class Energy:
                             self.of_leaves * (leaves - self.leaves) - self.bending * self.curvature, self.bending])
 
 
+@numpy.errstate(all="ignore")  # trial shapes of the search may overflow
 def at_rest(energy, aspect):
     """The shape of least energy near a spheroid whose axis is `aspect` times its equator: section (r sin, r cos) and
     energy."""
