@@ -4,7 +4,7 @@ import numpy
 
 
 def interpolated(t, values, at, order=6):
-    """values(t) at the times `at` within t, by polynomials through `order` points."""
+    """Returns values(t) at the times `at` within t, by polynomials through `order` points."""
     result = []
     for time in at:
         start = min(max(int(numpy.searchsorted(t, time)) - order // 2, 0), max(len(t) - order, 0))

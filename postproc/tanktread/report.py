@@ -34,8 +34,8 @@ def packed(array):
 
 
 def shapes(run, field):
-    """Saved steps as grids of cells: places in 16 bits within the box of all of them, normals and the field's size in
-    8."""
+    """Returns saved steps as grids of cells: positions in 16 bits within the box of all of them, normals and the
+    field's magnitude in 8 bits."""
     shots = run.snapshots()
     if not shots:
         return None
@@ -70,12 +70,12 @@ def shapes(run, field):
 
 
 def plain(label):
-    """A label of matplotlib's as text."""
+    """Returns a label of matplotlib as plain text."""
     return label.replace("$_s$", "ₛ").replace("R$_C$", "R_C").replace("$", "")
 
 
 def curves(run):
-    """All series, those that matter first; every second, third … row of long ones."""
+    """Returns all series, the most important ones first, of long ones every second, third … row."""
     first = [name for name in FIRST if name in run.series and _varies(run.series[name])]
     names = first + sorted(name for name in run.series if name not in first and name != "time")
     step = max(1, len(run.time) // 600)

@@ -110,7 +110,7 @@ class Film:
 
 
 def shown(run):
-    """What stands below the surface."""
+    """Returns {axis label: [series]} of the two panels below the surface."""
     if not run.several:
         return DEFORMABLE if "taylor_inertia" in run.series else RIGID
     deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]

@@ -47,12 +47,12 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
 
 
 def unstable(run):
-    """Of each point, whether some mode grows; a fold belongs to both."""
+    """Returns for each point (n,) whether a mode grows there."""
     return run.series.get("unstable_modes", numpy.zeros(len(run.time))) > 0
 
 
 def draw(axes, x, y, broken, color, label=None):
-    """The curve point by point, with a broken line between two points where `broken`."""
+    """Draws a curve point by point, with a broken line between two points of which one is `broken` (n,)."""
     axes.plot([], [], color=color, label=label)
     for k in range(len(x) - 1):
         axes.plot(x[k:k + 2], y[k:k + 2], color=color, linestyle="--" if broken[k:k + 2].any() else "-")
@@ -130,7 +130,7 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
 
 
 def deck_in_time(run, directory):
-    """The deck of a run, without what replaces time."""
+    """Writes the deck of a run without the sections that replace time, and returns its path."""
     lists = {name: keys for name, keys in run.deck.items()
              if name not in ("Steady", "Continuation", "Spectrum", "Expect")}
     lists["Particle"] = {key: value for key, value in lists.get("Particle", {}).items() if key != "initial shape"}
@@ -141,7 +141,7 @@ def deck_in_time(run, directory):
 
 
 def in_time(study, deck, run, k, path, series, amplitude, length):
-    """The rate from two runs at a point; none at a fold, of a complex mode, or where a run fails."""
+    """Returns the rate from two runs in time at point k; NaN at a fold, of a complex mode, or if a run fails."""
     rate = run.series["leading_rate"][k]
     number = 1
     while f"rate_{number}" in run.series and run.series[f"rate_{number}"][k] != rate:

@@ -42,13 +42,13 @@ def channel_of(run):
 
 
 def centroid(run):
-    """Its places, shape (rows, 3)."""
+    """Returns the positions of the centroid (rows, 3), in length."""
     name = "center_x" if "center_x1" in run.series else "centroid_x"
     return numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
 
 
 def way_along(run, c):
-    """Of the centroid, along the centre line: to the nearest of its places, and on along it."""
+    """Returns the way of the centroid (rows,) along the centre line: to its nearest point, and on along its tangent."""
     places = centroid(run)
     nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
     along = numpy.gradient(c["centre"], c["s"], axis=0)[nearest]

@@ -25,7 +25,7 @@ def scale(fields):
 
 
 def view_axes(azimuth, elevation):
-    """Right, up and towards the eye, as rows; x3 points up."""
+    """Returns the directions right, up and towards the eye as rows (3, 3); x3 points up."""
     a, e = numpy.radians([azimuth, elevation])
     eye = numpy.array([numpy.cos(e) * numpy.cos(a), numpy.cos(e) * numpy.sin(a), numpy.sin(e)])
     right = numpy.array([-numpy.sin(a), numpy.cos(a), 0])
@@ -33,7 +33,7 @@ def view_axes(azimuth, elevation):
 
 
 def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640, triad=True):
-    """What the eye sees of it, with the elements that it is made of, and beside it the axes."""
+    """Draws the visible part of the surface with the edges of its elements, and the directions of the axes."""
     view = view_axes(azimuth, elevation)
     values = shot.fields[field]
     image, extent = render.picture(
@@ -50,8 +50,8 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
 
 
 def draw_cell(axis, corners):
-    """The edges of a cell, its corners as rows of right, up, towards the eye: those that meet in the foremost one
-    before what is in it."""
+    """Draws the edges of a cell from its corners (8, 3) (right, up, towards the eye); the three that meet in the
+    foremost corner lie above the particles, the others below."""
     front = corners[:, 2].argmax()
     for k in range(8):
         for other in (k | 1, k | 2, k | 4):
@@ -61,8 +61,7 @@ def draw_cell(axis, corners):
 
 
 def draw_triad(axis, view, extent):
-    """The axes as seen, lower left of the extent (left, right, low, high); one that points at the eye or away is a
-    point."""
+    """Draws the directions of the axes at the lower left of the extent (left, right, low, high)."""
     low, high = extent[[0, 2]], extent[[1, 3]]
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
@@ -103,8 +102,8 @@ def cut(grid, across, place):
 
 
 def section(shot, place, across=1):
-    """Line pieces in which the plane x_{across+1} = place (x2 by default) cuts the surface: shape (pieces, 2, 2), the
-    other two coordinates."""
+    """Returns the line pieces (pieces, 2, 2) in which the plane x_{across+1} = place cuts the surface: their ends in
+    the other two coordinates."""
     return numpy.delete(cut(shot.sampled(shot.positions, SECTION_GRID), across, place), across, axis=2)
 
 
@@ -142,7 +141,7 @@ def draw_sections(axis, runs, shots):
 
 
 def share_window(axes):
-    """All surfaces on the same scale, each in the middle of its panel."""
+    """Sets the limits of all axes so that their surfaces have one scale, each in the middle of its panel."""
     limits = numpy.array([[axis.get_xlim(), axis.get_ylim()] for axis in axes])
     middles, half = limits.mean(2), numpy.ptp(limits, axis=2).max(0) / 2
     for axis, middle in zip(axes, middles):
@@ -162,7 +161,7 @@ def field_cut(shot, field):
 
 
 def on_section(shot, field):
-    """Along the section, by angle: angle, distance from the middle, field."""
+    """Returns angle (n,), distance from the middle (n,) and field (n, k) along the section x2 = middle, by angle."""
     place = field_cut(shot, field).mean(axis=1)
     angle = numpy.arctan2(place[:, 2], place[:, 0])
     order = numpy.argsort(angle)
@@ -170,7 +169,8 @@ def on_section(shot, field):
 
 
 def section_variation(shot, field):
-    """Along the section, by the angle that makes a circle of its ellipse: angle, |d field / dl|."""
+    """Returns angle (n,) and |d field / dl| (n,) along the section x2 = middle. The angle is that of the section's
+    ellipse, stretched to a circle."""
     ends = field_cut(shot, field)
     length = numpy.linalg.norm(ends[:, 1, :3] - ends[:, 0, :3], axis=1)
     # slivers give rounding

@@ -89,7 +89,7 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
 
 
 def errors(path, meshes, output):
-    """Control points, relative error of the energy at rest and processor seconds of the deck on meshes."""
+    """Yields control points, relative error of the energy at rest and processor seconds of the deck on each mesh."""
     runs = Study(directory=output)
     for n in meshes:
         outcome = runs.run(path, {"Surface/elements per side": n})

@@ -88,8 +88,8 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 
 
 def wall(run):
-    """A point of the wall, its normal, and the direction along it that sections are drawn in: of x1, or x3 where that
-    is the normal."""
+    """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): that of x1, or of x3 if
+    x1 is the normal."""
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)
     along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]
@@ -98,15 +98,16 @@ def wall(run):
 
 
 def velocities(run):
-    """Of the centroid, or the mean of all particles: away from the wall, and along it."""
+    """Returns the velocities (rows,) away from the wall and along it, of the centroid or the mean of all particles,
+    without a unit."""
     _, normal, along = wall(run)
     velocity = numpy.array([run.series[f"velocity_x{k}"] for k in (1, 2, 3)]) / run.scale("velocity")[0]
     return normal @ velocity, along @ velocity
 
 
 def sections(axis, run, moments):
-    """Across the axis that is farthest from the normal and the direction along, through the mean of each particle
-    there."""
+    """Draws sections through the middle of the snapshots, in the plane of the normal and the direction along the
+    wall."""
     point, normal, along = wall(run)
     chosen = evenly(run.snapshots(), moments)
     colours = plt.get_cmap(style.TIME)(numpy.linspace(0.15, 0.95, len(chosen)))

@@ -76,7 +76,7 @@ def draw_times(axis, runs):
 
 
 def draw_order(axis, runs):
-    """What fourth order in the mesh size would do from the coarsest mesh on."""
+    """Draws the line of fourth order in the mesh size, from the coarsest mesh on."""
     n = numpy.array([runs[0].points, runs[-1].points])
     if n[1] > n[0]:
         axis.loglog(n, 0.3 * runs[0].largest * (n / n[0]) ** -2.0, color=style.FAINT, linestyle=(0, (4, 3)),
@@ -84,8 +84,8 @@ def draw_order(axis, runs):
 
 
 def report(runs, families):
-    """Largest errors and, for each family of several meshes, the order fitted in the mesh size (control points to the
-    power -1/2)."""
+    """Logs the largest errors and, for each family with several meshes, the order fitted in the mesh size (control
+    points to the power -1/2)."""
     for one in runs:
         log.info(f"{one.run.name}: {one.points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
               f"{one.evaluations:.0f} evaluations, {one.seconds:.2f} s")
@@ -149,7 +149,8 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
 
 
 def power():
-    """2 q, by iteration, each of which takes the error down four times."""
+    """Returns the power 2 q of the radius of an edge, by fixed-point iteration, each step of which divides the error by
+    four."""
     q = 0.5
     for _ in range(60):
         q = (numpy.pi - numpy.arcsin(q)) / (1.5 * numpy.pi)
@@ -157,12 +158,12 @@ def power():
 
 
 def sharp_edges(of_large, of_small, ratio):
-    """What no rounding has, of two radii and their ratio."""
+    """Returns the extents beside sharp edges, from those of two radii with this ratio."""
     return of_small - (of_large - of_small) / (ratio**power() - 1)
 
 
 def extents(outcome, x):
-    """Over 2 a, with the centroid at x, by splines, for steps are long; shape (3, x.size)."""
+    """Returns the extents (3, x.size) over 2 a with the centroid at x1 = x, by cubic splines."""
     expect(outcome.done, f"{outcome.directory}: {outcome.message}")
     series, a = outcome.series, outcome.run.value("Particle/radius", 1.0)
     way = series["centroid_x1"]
@@ -188,7 +189,7 @@ def of_radius(runs, deck, words, finer, radius, x):
 
 
 def curve_of(path, between):
-    """A published curve, rows of a centroid and an extent, and its points between these centroids."""
+    """Returns a published curve (n, 2), a centroid and an extent per row, and its rows between these centroids."""
     try:
         curve = numpy.loadtxt(path, delimiter=",", ndmin=2)
     except (OSError, ValueError) as error:

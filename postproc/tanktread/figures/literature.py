@@ -39,7 +39,7 @@ class Curve:
 
 
 def curves(run, folder):
-    """Those of a folder (None: none) that belong to the run's scene: a neo-Hookean sphere in simple shear, by its
+    """Returns the curves in a folder (None: none) of the run's scene: a neo-Hookean sphere in simple shear, by its
     capillary number."""
     if folder is None:
         return []

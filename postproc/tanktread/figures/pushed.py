@@ -14,13 +14,14 @@ def capillary_number(run):
 
 
 def drop_of_velocity(run):
-    """Pressure drop of the empty channel over viscosity times mean velocity."""
+    """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
     return run.series["channel_pressure_drop"][0] / (run.value("Flow/viscosity",
                                                                1.0) * run.value("Flow/mean velocity", 1.0))
 
 
 def highest(way, pressure):
-    """The pressure at the vertex of the parabola through its highest values, and where that is."""
+    """Returns the vertex of the parabola through the five values around the largest pressure: the pressure, and the
+    centroid there."""
     top = numpy.argmax(pressure)
     fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
     return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
@@ -47,14 +48,15 @@ class Pushed:
         self.loose = numpy.setdiff1d(free.ravel(), free[[0, -1], 1])  # the poles stay on the axis
 
     def wall(self, x):
-        """Its radius and two derivatives."""
+        """Returns the radius of the wall at x and its first two derivatives."""
         k, inside = numpy.pi / self.width, numpy.abs(x) < self.width
         half = self.mouth * self.depth / 2
         return (self.mouth - inside * half * (1 + numpy.cos(k * x)), inside * half * k * numpy.sin(k * x),
                 inside * half * k * k * numpy.cos(k * x))
 
     def energy(self, x, r):
-        """Gradient and matrix of each cone, of (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times its unstressed area."""
+        """Returns gradient (cones, 4) and Hessian (cones, 4, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3)
+        times the unstressed area of each cone."""
         d = numpy.stack([numpy.diff(x), numpy.diff(r)], 1)
         length = numpy.linalg.norm(d, axis=1)
         u = d / length[:, None]
@@ -72,7 +74,7 @@ class Pushed:
 
     @staticmethod
     def volumes(x, r):
-        """Of each cone, with gradient and matrix."""
+        """Returns the volume of each cone (cones,) with gradient (cones, 4) and Hessian (cones, 4, 4)."""
         h, a, b = numpy.diff(x), r[:-1], r[1:]
         square, zero = a * a + a * b + b * b, 0 * a
         da, db = h * (2 * a + b), h * (a + 2 * b)
@@ -82,17 +84,18 @@ class Pushed:
         return numpy.pi / 3 * h * square, numpy.pi / 3 * gradient, numpy.pi / 3 * matrix
 
     def channel(self, x):
-        """Its volume from the mouth to x."""
+        """Returns the volume of the channel from the mouth to x."""
         places, weights = numpy.polynomial.legendre.leggauss(20)
         at = -self.width + (x + self.width) * (places + 1) / 2
         return numpy.pi * (x + self.width) / 2 * (weights @ self.wall(at)[0]**2)
 
     def behind(self, x, r, closed):
-        """Volume of the fluid before the ring that closes the channel."""
+        """Returns the volume of the fluid behind the ring that closes the channel."""
         return self.channel(x[closed]) - self.volumes(x, r)[0][:closed].sum()
 
     def system(self, z, closed):
-        """Forces, what they do with the pressures, volumes, matrix of the forces, and those of the wall by ring."""
+        """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
+        coordinates, the volume, and gap and push of the wall at each ring."""
         x, r = z.T
         size = z.size
         gradient, matrix = numpy.zeros((3, size)), numpy.zeros((3, size, size))
@@ -118,8 +121,8 @@ class Pushed:
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], volume.sum(), gap, push
 
     def rest(self, z, pressures, closed, behind):
-        """The shape with this much fluid behind it, and the pressures inside and behind; nothing where it is not
-        found."""
+        """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
+        Newton's method; None if it is not found."""
         z, pressures, n = z.copy(), pressures.copy(), self.loose.size
         for _ in range(60):
             gradient, matrix, volume, gap, _ = self.system(z, closed)
@@ -143,7 +146,7 @@ class Pushed:
         return None
 
     def through(self):
-        """Centroids, from the first touch to the throat, and the pressure drop there."""
+        """Returns centroids (m,) from the first touch to the throat, and the pressure drops (m,) there."""
         angle = numpy.linspace(0, numpy.pi, self.n + 1)
         z = self.radius * numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)
         places = numpy.linspace(-self.width - self.radius, 0, 4000)

@@ -73,7 +73,7 @@ def draw_measured(plot):
 
 
 def draw_outlines(plot, runs, radius):
-    """The convex outlines as seen along x3, one a force."""
+    """Draws the convex outlines as seen along x3, one per force."""
     for (pn, *_), run, shade in zip(STRETCHED, runs, numpy.linspace(0.25, 1, len(runs))):
         points = numpy.asarray(run.snapshots()[-1].points)[:, :2] * radius
         around = numpy.linspace(0, 2 * numpy.pi, 361)
@@ -173,7 +173,7 @@ def let_go(deck, force, elements, modulus, viscosity):
 
 
 def constant(seconds, ratio):
-    """t_c of (ratio - 1) = (first - 1) exp(-t/t_c), by least squares over 0.4 s at even times."""
+    """Returns t_c of (ratio - 1) = (first - 1) exp(-t/t_c), by least squares over 0.4 s at even times."""
     times = numpy.linspace(0, min(0.397, seconds[-1]), 200)
     excess = numpy.interp(times, seconds, ratio) - 1
     best = numpy.geomspace(0.005, 1, 2000)

@@ -16,12 +16,12 @@ OVERSAMPLING = 2  # finer pixels along a pixel
 
 
 def picture(shot, values, view, colour_of, pixels=640):
-    """`values` (one a node of `shot`) on the surface, seen along the third row of `view` (right, up, towards the eye).
-    Of a lattice, where `shot.cell` says so, what is in the cell around the origin: particles with their images, cut at
-    its faces.
+    """Returns an image (rows, columns, RGBA) of a surface, its uppermost row first, and the extent of the image (left,
+    right, low, high) in the surface's length.
 
-    Returns an image (rows, columns, RGBA), its uppermost row first, and its extent (left, right, low, high) in the
-    surface's own length. `pixels`: of the longer side. `colour_of`: values to RGBA."""
+    `values` (n,) at the nodes of `shot` colour it; `view` (3, 3): right, up and towards the eye. Of a lattice it shows
+    what is in the cell at the origin: particles with their images, cut at its faces. `pixels`: of the longer side.
+    `colour_of`: maps values to RGBA."""
     depth, found, corner, size = seen(shot, values, view, OVERSAMPLING * pixels)
     image = _coloured(depth, found, colour_of)
     shape = numpy.array(depth.shape)
@@ -33,8 +33,9 @@ def picture(shot, values, view, colour_of, pixels=640):
 
 
 def seen(shot, values, view, pixels):
-    """Of every pixel (right, up) what is nearest to the eye: depth towards the eye in pixels, -inf beside the surface;
-    rows of value, facing and distance from an element edge; the lower left corner and the pixels a length."""
+    """Returns what is nearest to the eye in every pixel (right, up): the depth towards the eye in pixels, -inf outside
+    the surface; rows of value, cosine to the eye and distance from an element edge; the lower left corner; pixels per
+    length."""
     places, frame = shot.positions @ view.T, shot.frame @ view.T
     low, high = frame[:, :2].min(0), frame[:, :2].max(0)
     size = pixels / (high - low).max()
@@ -55,9 +56,9 @@ def seen(shot, values, view, pixels):
 
 
 def _samples(shot, places, values, lattice=None):
-    """Samples no further than STEP pixels apart, some cells at a time: rows of place (3), value, facing (cosine to the
-    eye), distance from the cell's edge. With `lattice`, places to coordinates along its vectors, those in the cell
-    around the origin; then inner sides too, whose value is not a number."""
+    """Yields samples no further than STEP pixels apart, of some cells at a time: rows of position (3), value, cosine to
+    the eye, distance from the cell's edge. With `lattice`, which maps positions to coordinates along its vectors, only
+    samples in the cell at the origin, and those of inner sides too, whose value is NaN."""
     known = numpy.column_stack([places, values]).astype(numpy.float32)  # to a ten thousandth of a pixel
     grid = shot.sampled(places, COARSE)
     if lattice is None:
@@ -85,8 +86,8 @@ def _samples(shot, places, values, lattice=None):
 
 
 def _normals(grid):
-    """At the points of grids: cosine between normal and the eye's direction, area of a facet, lengths of its sides
-    along t and along s."""
+    """Returns at the points of grids the cosine between normal and direction to the eye, the area of a facet, and the
+    lengths of its sides along t and along s."""
     t, s = numpy.gradient(grid, axis=(1, 2))
     normal = numpy.cross(s, t)
     area, length_t, length_s = (numpy.maximum(numpy.sqrt(numpy.einsum("...i,...i", x, x)),
@@ -95,12 +96,12 @@ def _normals(grid):
 
 
 def _longest(grid, axis):
-    """The longest facet of each grid along an axis, as seen."""
+    """Returns the longest facet of each grid along an axis, as seen."""
     return numpy.linalg.norm(numpy.diff(grid[..., :2], axis=axis), axis=-1).max((1, 2))
 
 
 def _deposit(sample, corner, shape, depth, found):
-    """Each pixel keeps the sample nearest to the eye."""
+    """Stores for each pixel the sample nearest to the eye."""
     column, row = numpy.clip((sample[:, :2] - corner).astype(int), 0, numpy.array(shape) - 1).T
     place = column * shape[1] + row
     order = numpy.argsort(sample[:, 2], kind="stable")  # the nearest one last, which stays
@@ -110,8 +111,8 @@ def _deposit(sample, corner, shape, depth, found):
 
 
 def _coloured(depth, found, colour_of):
-    """Colours with the rim a little darker, edges, contours; transparent beside the surface, colours multiplied by
-    their opacity."""
+    """Returns colours (columns, rows, 4), multiplied by their opacity: a darker rim, element edges and contours;
+    transparent outside the surface."""
     value, facing, edge = numpy.moveaxis(found, -1, 0)
     hit = numpy.isfinite(depth)
     image = numpy.zeros((*depth.shape, 4))

@@ -84,7 +84,8 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
 
 
 def average(strain, values, first, blocks):
-    """Mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal blocks."""
+    """Returns the mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal
+    blocks."""
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
     integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(strain) * (values[1:] + values[:-1]) / 2)])
@@ -162,7 +163,7 @@ def intrinsic(study, single, ca, one):
 
 
 def straight_line(x, y, error):
-    """Its value at 0 and the standard error of that, from the errors of y."""
+    """Returns the value at 0 of the straight line through y (n,) and its standard error, from the errors of y."""
     table = numpy.column_stack([numpy.ones_like(x), x]) / error[:, None]
     covariance = numpy.linalg.inv(table.T @ table)
     return (covariance @ table.T @ (y / error))[0], covariance[0, 0] ** 0.5
@@ -226,14 +227,16 @@ def turns(time, values, phase):
 
 
 def line(means, first):
-    """The change of a straight line over all turns from `first` on, and its standard error."""
+    """Returns the change of the straight line through the means over all turns from `first` on, and its standard
+    error."""
     number = numpy.arange(first, len(means))
     (slope, _), covariance = numpy.polyfit(number, means[first:], 1, cov=True)
     return slope * (len(number) - 1), covariance[0, 0] ** 0.5 * (len(number) - 1)
 
 
 def flow_of(run):
-    """When the flow begins to end, and from when on it is at rest; never where its history does not end so."""
+    """Returns the times at which the flow begins to end and from which it is at rest; infinity if its history does not
+    end at rest."""
     amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
     on = numpy.flatnonzero(amplitudes)
     if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):

@@ -76,7 +76,7 @@ def draw_run(upper, lower, run, deformation, color):
 
 
 def draw_particles(upper, lower, run, deformation, colors):
-    """The same of several, thin where they are many."""
+    """Draws deformation and inclination of several particles, with thin lines if they are many."""
     deforming = [name for name in run.particles if f"{name}/{deformation}" in run.series]
     if not deforming:
         raise Mistake(f"{run.directory}: none of its particles deforms")
@@ -89,8 +89,8 @@ def draw_particles(upper, lower, run, deformation, colors):
 
 
 def unbroken(t, angle):
-    """Times and angles with a gap where an axis, which has no direction, passes from one end of its range of 180
-    degrees to the other."""
+    """Returns times and angles with a NaN where an axis passes from one end of its range of 180 degrees to the
+    other."""
     passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
@@ -168,5 +168,5 @@ def refinement(runs, axes=None, *, steady: list[float] | None = None, deformatio
 
 
 def scene(run):
-    """What the mesh has no part in."""
+    """Returns the sections of the deck that do not depend on the mesh."""
     return [run.deck.get(name) for name in ("Flow", "Particle", "Membrane", "Tube")]

@@ -55,7 +55,7 @@ def duct_of(run):
 
 
 def draw_section(axis, d, levels):
-    """Contours to the very wall: the grid's own edge is hidden by the wall's polygon, beyond which nothing is shown."""
+    """Draws contours up to the wall, and returns them. The grid's edge is clipped by the wall's polygon."""
     velocity = spread(d["velocity"] / d["mean_velocity"])
     filled = axis.contourf(d["x2"], d["x3"], velocity, levels, cmap=style.FIELD)
     lines = axis.contour(d["x2"], d["x3"], velocity, levels[1:-1], colors="white", linewidths=0.5, alpha=0.7)
@@ -72,8 +72,8 @@ def draw_section(axis, d, levels):
 
 
 def spread(velocity):
-    """Values beyond the wall by extrapolation from the inside, so that the lines of contour reach the wall: one ring of
-    points at a time."""
+    """Returns the velocities with values beyond the wall, extrapolated from the inside, so that contours reach the
+    wall."""
     v = velocity.copy()
     for _ in range(2):
         padded = numpy.pad(v, 2, constant_values=numpy.nan)
@@ -132,21 +132,22 @@ def in_tube(run):
 
 
 def shots_of(run, times):
-    """The saved steps nearest to the times, each once."""
+    """Returns the saved steps nearest to the times, each once."""
     found = {shot.path: shot for shot in (run.snapshot_at(time) for time in times
                                           if time <= run.series["time"][-1] * (1 + 1e-9))}
     return list(found.values())
 
 
 def tube_section(run, d, shot, across):
-    """Of the particle in the plane x_{across+1} = centroid, and the centroid, over R_T."""
+    """Returns the section (pieces, 2, 2) of the particle in the plane x_{across+1} = centroid and the centroid (3,),
+    over R_T."""
     c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
     return section(shot, c[across], across) / d["radius"], c / d["radius"]
 
 
 def along(axis, run, d, shots, colours):
-    """Sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid along
-    x1."""
+    """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
+    along x1."""
     place = 0.0
     for shot, colour in zip(shots, colours):
         pieces, c = tube_section(run, d, shot, 1)
@@ -168,7 +169,7 @@ def along(axis, run, d, shots, colours):
 
 
 def wall_heights(outline, x2):
-    """Where the line x2 = const. meets the wall: lowest and highest x3."""
+    """Returns the lowest and highest x3 at which the line of given x2 meets the wall."""
     a, b = outline[:-1], outline[1:]
     cut = (a[:, 0] - x2) * (b[:, 0] - x2) <= 0
     share = (x2 - a[cut, 0]) / numpy.where(b[cut, 0] == a[cut, 0], 1, b[cut, 0] - a[cut, 0])
@@ -177,7 +178,7 @@ def wall_heights(outline, x2):
 
 
 def across(axis, run, d, shots, colours):
-    """Sections in the plane x1 = centroid inside of the wall."""
+    """Draws sections in the plane x1 = centroid inside the wall."""
     axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     for shot, colour in zip(shots, colours):
         pieces, _ = tube_section(run, d, shot, 0)

@@ -25,7 +25,8 @@ class Shape:
         return numpy.exp(self.bases[0] @ c)
 
     def measures(self, c):
-        """Area, volume, the integral of twice the mean curvature, and half that of its square."""
+        """Returns area, volume, the integral of twice the mean curvature, and half the integral of its square: shape
+        (4,)."""
         _, first, second = (basis @ c for basis in self.bases)
         r, sine2 = self.radius(c), 1 - COSINE**2
         slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
@@ -35,7 +36,8 @@ class Shape:
         return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
 
     def gradients(self, c):
-        """Of the measures, shape (4, size), exact to round-off."""
+        """Returns the derivatives of the measures by the coefficients, shape (4, size), exact to round-off (complex
+        step)."""
         return numpy.array([self.measures(c + 1e-30j * one).imag / 1e-30 for one in numpy.eye(self.size)]).T
 
 
@@ -78,8 +80,8 @@ class Energy:
 
 @numpy.errstate(all="ignore")  # trial shapes of the search may overflow
 def at_rest(energy, aspect):
-    """The shape of least energy near a spheroid whose axis is `aspect` times its equator: section (r sin, r cos) and
-    energy."""
+    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid whose
+    axis is `aspect` times its equator."""
     first = Shape(DEGREES[0])
     logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
     c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])

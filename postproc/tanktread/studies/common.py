@@ -7,9 +7,9 @@ from ..runs import PROGRAM, Study, quoted, text_of
 
 
 def edge(holds, low, high, factor=1.05):
-    """The largest value at which `holds` still does, by bisection of the logarithm to a factor, and what it is: `edge`,
-    or `holds to here` (high), `fails from here` (low) where there is none between. It is taken to hold below and to
-    fail above."""
+    """Returns the largest value at which `holds` is true, by bisection of the logarithm to a factor, and how the search
+    ended: `edge`, `holds to here` (high) or `fails from here` (low). `holds` is assumed true below the edge and false
+    above."""
     if not holds(low):
         return low, "fails from here"
     if holds(high):
@@ -24,7 +24,7 @@ def edge(holds, low, high, factor=1.05):
 
 
 def arguments(parser, results):
-    """The options that all studies share."""
+    """Adds the options that all studies share to a parser."""
     parser.add_argument("--program", default=PROGRAM, type=pathlib.Path, help="default: %(default)s")
     parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
                         help="of pictures, tables and, under runs/, results (default: %(default)s)")
@@ -38,7 +38,7 @@ def study(parsed, jobs=1):
 
 
 def write_table(path, head, rows):
-    """A CSV file; `rows` of numbers and words."""
+    """Writes a CSV file of rows of numbers and words."""
     path.parent.mkdir(parents=True, exist_ok=True)
     lines = [",".join(head)] + [",".join(text_of(entry).replace(",", ";") for entry in row) for row in rows]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -46,5 +46,5 @@ def write_table(path, head, rows):
 
 
 def command_of(script, *words):
-    """The command line that makes a chart again, as printed under it."""
+    """Returns the command line that makes a chart again, which is printed below it."""
     return " ".join([f"{pathlib.Path(script).parent.name}/{pathlib.Path(script).name}", *map(quoted, words)])

@@ -28,7 +28,7 @@ TIMES = 3  # that an undecided run is made, each for twice the time
 
 
 def stays(time, way, radius, speed):
-    """Of centroids along their way; None: it cannot be told."""
+    """Returns True if a centroid's way shows that it stays, None if it does not."""
     last = LAST * radius / speed
     if time[-1] - time[0] < last:
         return None

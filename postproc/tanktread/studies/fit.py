@@ -50,7 +50,7 @@ KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
 
 
 def load(path, study):
-    """The fits of all laws, not yet solved, and the file's text."""
+    """Returns the fits of all laws, not yet solved, and the content of the file."""
     text = yaml_of(path, KEYS)
     folder = pathlib.Path(path).parent
     decks = decks_of(text, path)

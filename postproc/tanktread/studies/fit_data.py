@@ -13,7 +13,7 @@ GAP = 0.1  # of an outline's length, from its last point to the first, at which 
 
 
 def numbers_of(path, least):
-    """A CSV file with `least` columns or more, below a row of names or none."""
+    """Returns a CSV file with `least` columns or more as (rows, columns), without a first row of names."""
     try:
         values = numpy.genfromtxt(path, delimiter=",", comments="#")
     except (OSError, ValueError) as error:
@@ -52,7 +52,7 @@ class Unknown:
         return float(numpy.exp(number) if self.logarithmic else number * self.unit)
 
     def error_of(self, value, error):
-        """The standard error of the value from that of the number."""
+        """Returns the standard error of the value from that of the fitted number."""
         return value * error if self.logarithmic else self.unit * error
 
 
@@ -82,11 +82,11 @@ class OutlineData:
 
     @property
     def length(self):
-        """Of its residuals: those of the points, and that of a scale with an error."""
+        """Returns the number of residuals: one per point, and one of a scale with an error."""
         return self.count + (self.places > 2 and not self.free_scale)
 
     def start(self, prediction):
-        """Its place, from the middles of both."""
+        """Returns the start of its position (2 or 3,), from the middles of data and prediction."""
         low, high = self.points.min(0), self.points.max(0)
         middle = (prediction.points.min(0) + prediction.points.max(0)) / 2
         return numpy.concatenate([middle - self.scale * (low + high) / 2, numpy.zeros(self.places - 2)])
@@ -132,8 +132,8 @@ class SeriesData:
         self.count = len(self.values)
 
     def start(self, prediction):
-        """The time of a run at which the curve begins: the last one at which the run is as near as it comes to the
-        first value."""
+        """Returns the time of the run at which the curve begins: the last one at which the run passes the first value,
+        or is nearest to it."""
         if not self.places:
             return numpy.array([])
         times, values = prediction
@@ -156,7 +156,7 @@ class SeriesData:
         return times[defined], values[defined]
 
     def predicted(self, prediction, place):
-        """What the run has at the data's times."""
+        """Returns the values of the run at the data's times."""
         times, values = prediction
         if self.times is None:
             return values[-1:]

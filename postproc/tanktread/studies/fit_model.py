@@ -32,7 +32,7 @@ class Runs:
     count = property(lambda self: len(self._found))
 
     def all(self, jobs):
-        """Predictions of many (experiment, settings)."""
+        """Returns the predictions of many (experiment, settings), in their order."""
         texts = [experiment.name + str(sorted(settings.items())) for experiment, settings in jobs]
         new = {text: job for text, job in zip(texts, jobs) if text not in self._found}
         outcomes = self.study.all([(self.decks, settings) for _, settings in new.values()])
@@ -46,7 +46,7 @@ class Runs:
         return [self._found[text] for text in texts]
 
     def unit(self, key):
-        """Of a key, where the deck has units: ", pN/µm"."""
+        """Returns the unit of a key if the deck has units: ", pN/µm"; otherwise ""."""
         return self._run.in_units(self.study.dimension(key)) if self._run else ""
 
     def _predicted(self, experiment, outcome):
@@ -70,7 +70,7 @@ class Fit:
         self.stated = all(datum.error is not None for datum in self.data)
 
     def jobs(self, numbers):
-        """(experiment, settings) of all runs at these numbers of the unknowns."""
+        """Returns (experiment, settings) of all runs at these values of the fitted numbers."""
         found = []
         for experiment in self.experiments:
             values = {one.key: one.value(x) for one, x in zip(self.unknowns, numbers)
@@ -79,7 +79,7 @@ class Fit:
         return found
 
     def predictions(self, numbers):
-        """Of all data, or None."""
+        """Returns the predictions of all data, or None if a run failed."""
         return self.flat(self.runs.all(self.jobs(numbers)))
 
     @staticmethod
@@ -87,7 +87,7 @@ class Fit:
         return None if any(one is None for one in found) else list(itertools.chain.from_iterable(found))
 
     def residuals(self, predictions, numbers, places):
-        """Weighted, of all data and of what is known beforehand."""
+        """Returns the weighted residuals of all data and of values known beforehand."""
         if predictions is None:
             return numpy.full(self.length(), FAILED)
         parts, start = [], 0
@@ -105,7 +105,7 @@ class Fit:
         return x[:len(self.unknowns)], x[len(self.unknowns):]
 
     def jacobian(self, x, step, sides=(1,)):
-        """Differences: columns of the unknowns by runs (a matrix a side), and of the places."""
+        """Returns finite differences by the unknowns, a matrix (residuals, unknowns) per side, and by the positions."""
         numbers, places = self.split(x)
         shifted = [numbers + side * step * unit for side in sides for unit in numpy.eye(len(numbers))]
         jobs = [self.jobs(one) for one in [numbers, *shifted]]
@@ -121,7 +121,8 @@ class Fit:
         return each, self.of_places(found[0], places, len(base))
 
     def of_places(self, predictions, places, rows, tiny=1e-6):
-        """Derivatives by the places of outlines, each of which moves its own residuals only: shape (rows, places)."""
+        """Returns derivatives by the positions of outlines (rows, positions). Each changes the residuals of its own
+        outline only."""
         derivative, row, column = numpy.zeros((rows, len(places))), 0, 0
         for datum, prediction in zip(self.data, predictions):
             own = places[column:column + datum.places]
@@ -133,8 +134,8 @@ class Fit:
         return derivative
 
     def begin(self):
-        """Numbers to start from, at which all runs come to their end: where they do not at the user's, one of the
-        unknowns times 3, 1/3, 10 or 1/10."""
+        """Returns values at which all runs come to their end. If they do not at the user's start, multiplies one
+        unknown after the other by 3, 1/3, 10 or 1/10."""
         start = numpy.array([one.number(one.start_value) for one in self.unknowns])
         tries = [start] + [start + shift * unit * numpy.array([one.logarithmic for one in self.unknowns])
                            for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in numpy.eye(len(start))]
@@ -145,7 +146,7 @@ class Fit:
         raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
 
     def effort(self):
-        """How many runs it takes, in words."""
+        """Returns in words how many runs the fit takes."""
         moved = sum(one.owner in (None, experiment.name) for one in self.unknowns for experiment in self.experiments)
         n = len(self.experiments)
         return f"{self.law}: {n} runs to start with, then some {moved + n} a step, for 3 to 10 steps as a rule"
@@ -183,8 +184,8 @@ class Fit:
         return self
 
     def errors(self):
-        """Covariance of the unknowns' numbers, places taken into account; `told`: which of them the data determine at
-        all."""
+        """Computes the covariance of the unknowns, with positions eliminated, and `told`: which unknowns the data
+        determine at all."""
         (up, down), of_places = self.jacobian(self.x, TELLS, (1, -1))
         up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
@@ -208,7 +209,7 @@ class Fit:
 
     @property
     def values(self):
-        """{name: (value, standard error or inf)}"""
+        """Returns {name: (value, standard error or inf)}."""
         found = {}
         for one, x, error, known in zip(self.unknowns, self.x, self.number_errors, self.determined):
             value = one.value(x)
@@ -217,7 +218,7 @@ class Fit:
 
     @property
     def squares(self):
-        """{datum's name: (chi square, points)}"""
+        """Returns {name of the datum: (chi square, points)}."""
         found, start = {}, 0
         for datum in self.data:
             found[datum.name] = float((self.residual[start:start + datum.length] ** 2).sum()), datum.length
@@ -226,7 +227,7 @@ class Fit:
 
     @property
     def missed(self):
-        """Whether the data's errors do not explain the residuals."""
+        """Returns whether the errors of the data do not explain the residuals."""
         return self.stated and self.probability < MISSED
 
     @property
@@ -237,8 +238,8 @@ class Fit:
         return self.count * numpy.log(self.square / self.count) + 2 * (parameters + 1)
 
     def runs_test(self):
-        """Wald and Wolfowitz, of the signs along all outlines and curves together: how many deviations fewer runs of
-        one sign than by chance; z."""
+        """Returns z of the runs test (Wald and Wolfowitz) of the signs along all outlines and curves: by how many
+        standard deviations the number of runs of one sign differs from chance."""
         runs = mean = variance = start = 0
         for datum in self.data:
             signs = self.residual[start:start + datum.count] > 0
@@ -252,6 +253,6 @@ class Fit:
         return float((runs - mean) / numpy.sqrt(variance)) if variance else 0.0
 
     def information(self):
-        """Of the unknowns' numbers, places taken out."""
+        """Returns the information matrix of the unknowns, with positions eliminated."""
         a, b = self.derivative[:, self.told], self.moved
         return a.T @ a - (a.T @ b) @ numpy.linalg.pinv(b.T @ b) @ (b.T @ a) if b.size else a.T @ a

@@ -12,8 +12,8 @@ from .fit_model import SERIES, Fit
 
 
 def further(fits, settings):
-    """What further experiments would tell: (settings, {unknown: error with it}, {other law: expected rise of chi
-    square}). Each has data like the first experiment's, on the best law's prediction."""
+    """Returns for each further experiment (settings, {unknown: standard error with it}, {other law: expected rise of chi
+    square}). Each has data like the first experiment's, at the prediction of the best law."""
     best, first = fits[0], fits[0].experiments[0]
     rows = []
     for key, value in [(key, value) for key, values in settings.items() for value in values]:
@@ -46,7 +46,7 @@ def _values(fit, experiment):
 
 
 def _alone(fit, candidate):
-    """A fit of the candidate only, at the values of `fit`."""
+    """Returns a fit of the candidate only, at the values of `fit`."""
     one = Fit(fit.law, fit.settings, [], [candidate], fit.runs)
     one.index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
     one.unknowns = [copy.copy(fit.unknowns[k]) for k in one.index]
@@ -86,13 +86,13 @@ def _rise(fit, candidate):
 
 
 def rounded(value, error):
-    """A value with a digit more than its error tells."""
+    """Returns a value with one digit more than its error determines."""
     digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value and error else 6
     return f"{value:.{digits}g}"
 
 
 def told(fits, rows):
-    """The report as text."""
+    """Returns the report as text."""
     lines = []
     for fit in fits:
         said = f"chi square {fit.square:.4g} for {fit.freedom} degrees of freedom"

@@ -25,7 +25,7 @@ FINE = 0.25  # pixels between samples of a ray
 
 
 def grey(path):
-    """The picture's brightness, rows from above."""
+    """Returns the picture's brightness (rows, columns), rows from above."""
     try:
         picture = optional("matplotlib.image", "tanktread-outline", "matplotlib").imread(path)
     except Mistake:
@@ -36,7 +36,7 @@ def grey(path):
 
 
 def split(picture):
-    """The brightness that best splits the picture in two classes (Otsu)."""
+    """Returns the brightness that best splits the picture in two classes (Otsu)."""
     numbers, edges = numpy.histogram(picture, 256)
     middles = (edges[1:] + edges[:-1]) / 2
     below = numpy.cumsum(numbers)
@@ -47,7 +47,7 @@ def split(picture):
 
 
 def body(picture, path):
-    """Where the largest thing is that is set off from the frame, holes filled: a mask."""
+    """Returns a mask of the largest thing that differs from the frame, holes filled."""
     smooth = scipy.ndimage.gaussian_filter(picture, 2)
     level = split(smooth)
     frame = numpy.concatenate([smooth[0], smooth[-1], smooth[:, 0], smooth[:, -1]])
@@ -62,8 +62,8 @@ def body(picture, path):
 
 
 def edge(picture, mask, points):
-    """Points (n, 2) of the edge as column and row, and the standard error of each, in pixels. An odd number of rays,
-    about two pixels apart, is averaged for a point, less the bend of the outline between them."""
+    """Returns points (n, 2) of the edge as column and row, and the standard error of a point, in pixels. An odd number
+    of rays, about two pixels apart, is averaged for a point, after the bend of the outline between them is removed."""
     row, column = scipy.ndimage.center_of_mass(mask)
     each = max(1, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
     angle = 2 * numpy.pi * numpy.arange(points * each) / (points * each)
@@ -76,7 +76,7 @@ def edge(picture, mask, points):
     off = numpy.linspace(-reach, reach, 1 + 2 * int(WINDOW / FINE))
 
     def profiles():
-        """Brightness on the windows, from 1 inside to 0 outside."""
+        """Returns the brightness on the windows, from 1 inside to 0 outside."""
         values = scipy.ndimage.map_coordinates(picture, middle + ray * (found[:, None] + off), order=3, mode="nearest")
         ends = numpy.stack([values[:, :len(off) // 5].mean(1), values[:, -len(off) // 5:].mean(1)])
         ends = scipy.ndimage.gaussian_filter1d(ends, len(angle) / 40, axis=1, mode="wrap")[:, :, None]
@@ -97,7 +97,7 @@ def edge(picture, mask, points):
 
 
 def unbent(points, variance):
-    """Points of a blurred outline, the angle around which grows from each to the next, where they were without the blur
+    """Returns the points (n, 2) of a blurred outline, in the order of their angle, moved to where they are without blur
     of this variance."""
     before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
     chord, lengths = before + after, [numpy.linalg.norm(one, axis=1) for one in (before, after, before + after)]
@@ -108,8 +108,8 @@ def unbent(points, variance):
 
 
 def averaged(angle, radius, points, each, row, column):
-    """The rays around every point by a parabola over the angle, whose value in the middle is taken; its standard error
-    from what the rays scatter."""
+    """Returns the value in the middle of a parabola through the rays around every point, and its standard error from
+    the scatter of the rays."""
     order = (numpy.arange(points)[:, None] * each + numpy.arange(each) - each // 2) % len(angle)
     x = numpy.linspace(-1, 1, each) if each > 1 else numpy.zeros(1)
     basis = numpy.vander(x, 3 if each > 4 else 1, increasing=True)

@@ -41,8 +41,8 @@ Kind = collections.namedtuple("Kind", "below above tell measures series")
 
 
 def in_shear(series, begin):
-    """`tumbles`, `both`, `treads` or None; half turns of the shape backwards, and of the membrane on it, after the
-    share `begin` of the time."""
+    """Returns `tumbles`, `both`, `treads` or None; half turns of the shape against the phase, and of the membrane on
+    it, after the share `begin` of the time."""
     begins = series["time"][0] + begin * numpy.ptp(series["time"])
     defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
     time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
@@ -57,8 +57,8 @@ def in_shear(series, begin):
 
 
 def in_capillary(series, begin):
-    """`slips` or `parachute`; by how much the cell is askew in the first third of what comes after `begin`, and in the
-    last one."""
+    """Returns `slips` or `parachute`, and by how much the cell is askew in the first and in the last third of the time
+    after `begin`."""
     time = series["time"]
     away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
     # if NaN, D is 0
@@ -104,13 +104,13 @@ class Diagram:
 
     @staticmethod
     def known(name, rows):
-        """Those of the literature, before anything is run."""
+        """Returns the rows of the literature, checked before anything is run."""
         expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
                      f"{name}: literature has rows of a value across, the lowest and the highest one along")
         return [[number(value, name) for value in row] for row in rows]
 
     def settings(self, name, keys):
-        """Those of a curve, one for each of its values across."""
+        """Returns the settings of a curve, one dict for each of its values across."""
         values = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
         lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: values}
         for key, given in lists.items():
@@ -119,7 +119,7 @@ class Diagram:
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def holds(self, name, row, value):
-        """Whether its motion is that below the border."""
+        """Returns whether the motion is the one below the border."""
         key = name, row[self.across], value
         if key not in self.made:
             self.made[key] = self.motion_at(name, row, value)
@@ -130,7 +130,7 @@ class Diagram:
         return said != self.kind.above
 
     def motion_at(self, name, row, value):
-        """Of one run: its motion, or why there is none, the two measures of it, processor seconds and directory."""
+        """Returns the motion of one run, or why there is none, its two measures, processor seconds and directory."""
         outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
         said, *measures = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
         if outcome.done:
@@ -143,7 +143,8 @@ class Diagram:
         return said, *measures, outcome.processor_seconds, outcome.directory.name
 
     def border(self, name, row, last):
-        """Looked for about the last one, and where it is not there, or there is none, in what is left of the range."""
+        """Returns the border and how the search ended. Searches about the last border first, then in the rest of the
+        range."""
         low, high, factor = self.along["from"], self.along["to"], self.along["within"]
 
         def holds(value):
@@ -183,7 +184,7 @@ class Diagram:
 
     @property
     def found(self):
-        """Whether there is anything to draw."""
+        """Returns whether there is anything to draw."""
         return any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows)
 
     def draw(self, axes=None):

@@ -10,7 +10,7 @@ from ..runs import shared
 
 
 def number(given, name):
-    """A number of a YAML file, in which 1e-2 is a word."""
+    """Returns a number of a YAML file, in which 1e-2 is a string."""
     try:
         return float(given)
     except (TypeError, ValueError):
@@ -18,20 +18,20 @@ def number(given, name):
 
 
 def whole(given, name):
-    """A whole number above 0."""
+    """Returns a whole number above 0."""
     expect(isinstance(given, int) and not isinstance(given, bool) and given > 0,
            f"{name} must be a whole number above 0, but is {given}")
     return given
 
 
 def keys_of(given, name):
-    """A list of keys of a YAML file, empty where there is none."""
+    """Returns a section of a YAML file, {} if it is absent."""
     expect(given is None or isinstance(given, dict), f"{name} must be a list of keys with values, but is {given}")
     return given or {}
 
 
 def yaml_of(path, known):
-    """A file of these lists, all of them known."""
+    """Returns the content of a YAML file with these sections only."""
     try:
         text = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
     except OSError as error:
@@ -45,7 +45,8 @@ def yaml_of(path, known):
 
 
 def decks_of(text, path):
-    """The decks that a file names, looked for beside it and where the script is started."""
+    """Returns the paths of the decks that a file names, looked for next to it, in the present directory and with the
+    program."""
     expect(text.get("deck"), f"{path} names no deck")
     names = text["deck"] if isinstance(text["deck"], list) else [text["deck"]]
     found = []
@@ -58,7 +59,7 @@ def decks_of(text, path):
 
 
 def values_of(key, given):
-    """A list, a single value, or a range."""
+    """Returns a list of values from a list, a single value or a range."""
     if isinstance(given, list):
         expect(given, f"{key} has no values")
         return given
@@ -71,7 +72,7 @@ def values_of(key, given):
 
 
 def spaced(key, given, low, high):
-    """From [0, 1] to [low, high], by the spacing that is given."""
+    """Returns the function from [0, 1] to [low, high] with the spacing that is given."""
     if given.get("spacing", "linear") == "linear":
         return lambda share: low + (high - low) * share
     expect(given["spacing"] == "logarithmic", f"{key}: the spacing is linear or logarithmic, not {given['spacing']}")

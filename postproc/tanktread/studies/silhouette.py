@@ -17,27 +17,27 @@ class Outline:
         self._curve = scipy.interpolate.CubicSpline(along, closed, bc_type="periodic")
 
     def at(self, share):
-        """Points at shares of its length, from 0 to 1."""
+        """Returns the points (n, 2) at shares of the length, from 0 to 1."""
         return self._curve(numpy.asarray(share) * self.length)
 
     def even(self, n):
-        """n points at equal distances."""
+        """Returns n points (n, 2) at equal distances."""
         return self.at(numpy.arange(n) / n)
 
     @property
     def centroid(self):
-        """Of the area that it encloses."""
+        """Returns the centroid (2,) of the enclosed area."""
         a = self.even(8 * len(self.points))
         b = numpy.roll(a, -1, axis=0)
         area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         return ((a + b) * area[:, None]).sum(0) / (3 * area.sum())
 
     def centred(self):
-        """The same about its centroid."""
+        """Returns the same outline about its centroid."""
         return Outline(self.points - self.centroid)
 
     def distances(self, points):
-        """Of points (m, 2) from the curve, along its normal, positive outside: shape (m,)."""
+        """Returns the distances (m,) of points (m, 2) from the curve along its normal, positive outside."""
         u = numpy.linspace(0, self.length, 2 * len(self.points), endpoint=False)
         known = self._curve(u)
         u = u[((points[:, None] - known) ** 2).sum(2).argmin(1)]
@@ -52,9 +52,10 @@ class Outline:
 
 
 def seen(shot, axis=1, k=8):
-    """The Outline of a snapshot's surface as seen along x_{axis+1}: the outermost points, by their direction from the
-    middle, of those where its normal is across the line of sight. `k`: lines of parameters a cell on which these points
-    are found, exactly. A shape whose outline is met twice in a direction from its middle has another one."""
+    """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: the outermost points, by their direction
+    from the middle, of those where the normal is across the line of sight. `k`: lines of parameters per cell on which
+    these points are found, exactly. Raises ValueError of a shape whose outline is met twice in a direction from its
+    middle."""
 
     def across(cells, s, t):
         tangent_s, tangent_t = (shot.evaluate(shot.points, cells, s, t, *order) for order in ((1, 0), (0, 1)))
@@ -64,8 +65,8 @@ def seen(shot, axis=1, k=8):
 
 
 def cut(shot, axis=1, place=None, k=8):
-    """The Outline of the section of a snapshot's surface by the plane x_{axis+1} = place, by default through its
-    middle."""
+    """Returns the Outline of the section of a snapshot's surface by the plane x_{axis+1} = place (default: its
+    middle)."""
     place = (shot.points[:, axis].min() + shot.points[:, axis].max()) / 2 if place is None else place
     return _outermost(numpy.delete(_zeros(shot, lambda cells, s,
                                           t: shot.evaluate(shot.points[:, axis], cells, s, t) - place, k), axis,
@@ -73,8 +74,8 @@ def cut(shot, axis=1, place=None, k=8):
 
 
 def _zeros(shot, function, k):
-    """Places of the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each parameter in every cell:
-    shape (n, 3)."""
+    """Returns the positions (n, 3) on the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each
+    parameter in every cell."""
     number = len(shot.cells)
     cell, s, t = (array.ravel() for array in numpy.meshgrid(numpy.arange(number), numpy.arange(k + 1) / k,
                                                             numpy.arange(k + 1) / k, indexing="ij"))
@@ -109,8 +110,8 @@ def _zeros(shot, function, k):
 
 
 def _outermost(points):
-    """The Outline of the outermost of points in a plane, by direction from their middle; of such that lie close
-    together one is kept."""
+    """Returns the Outline of the outermost points in a plane, by direction from their middle; of points close together
+    one is kept."""
     middle = (points.min(0) + points.max(0)) / 2
     angle, radius = numpy.arctan2(*(points - middle).T[::-1]), numpy.linalg.norm(points - middle, axis=1)
     order = numpy.argsort(angle)

@@ -37,7 +37,7 @@ KEYS = {"deck", "set", "grid", "together", "random", "record", "limit", "ranks"}
 
 
 def drawn(text):
-    """Rows of random settings."""
+    """Returns rows of random settings."""
     expect("number" in text and keys_of(text.get("keys"), "random: keys"), "random needs a number and keys")
     size, seed = whole(text["number"], "random: number"), text.get("seed", 1)
     expect(isinstance(seed, int) and seed >= 0, f"random: seed must be a whole number, 0 or above, but is {seed}")
@@ -56,7 +56,7 @@ def drawn(text):
 
 
 def combinations(text):
-    """The settings of every run that a study asks for, each once."""
+    """Returns the settings of every run that a study asks for, each once."""
     grid = {key: values_of(key, given) for key, given in keys_of(text.get("grid"), "grid").items()}
     together = {key: values_of(key, given) for key, given in keys_of(text.get("together"), "together").items()}
     expect(len({len(values) for values in together.values()}) <= 1, "the lists of `together` must be equally long")
@@ -69,7 +69,7 @@ def combinations(text):
 
 
 def columns_of(text, path):
-    """{column: (series, take, at)}"""
+    """Returns {column: (series, take, at)}."""
     record = text.get("record")
     expect(record, f"{path} records nothing: name series under `record`")
     if isinstance(record, list):
@@ -87,7 +87,7 @@ def columns_of(text, path):
 
 
 def recorded(outcome, columns):
-    """What the table has of a run, whole series as arrays; nothing of a run that did not get there."""
+    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end."""
     row = {}
     for name, (series, take, at) in columns.items():
         values = outcome.series.get(series) if outcome.done else None
@@ -138,8 +138,7 @@ class Sweep:
         progress("")
 
     def write(self, directory):
-        """table.csv, without whole series, and table.h5 with them (/<column>, rows padded with NaN); the deck beside
-        them."""
+        """Writes table.csv, without whole series, and table.h5 with them (/columns/<name>, rows padded with NaN)."""
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [name for name in self.columns if name not in whole]
@@ -174,7 +173,7 @@ class Sweep:
 
 
 def table(directory):
-    """{column or key: values} of a sweep's table.h5, and which of them vary as keys."""
+    """Returns {column or key: values} of a sweep's table.h5, and the keys that vary."""
     with h5py.File(directory / "table.h5", "r") as file:
         keys = list(file.attrs["keys"])
         found = {key: file[f"keys/{key}"] for key in keys} | {name: file[f"columns/{name}"]
