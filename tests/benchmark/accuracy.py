@@ -13,13 +13,8 @@ are printed as multiples of those that the first deck takes.
 
 import argparse
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-import tanktread
+from package import answer, expect, numpy, studies, tanktread
 from tanktread.interpolation import difference
-from tanktread.mistakes import answer, expect
-from tanktread.studies import common as studies
 
 DEMANDS = [1e-2, 1e-3, 1e-4]
 # Time/tolerance and Quadrature/tolerance

@@ -14,11 +14,7 @@ Nunan & Keller (J. Fluid Mech. 142, 1984).
 import argparse
 import pathlib
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-import tanktread
-from tanktread.mistakes import answer
+from package import answer, numpy, tanktread
 
 ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2),
           "face-centred": (4, (1 - numpy.eye(3)) / 2)}

@@ -11,18 +11,14 @@ Runs are kept under results/atlas/runs and not made again. What a map shows is h
 """
 
 import argparse
-import sys
 import textwrap
 
-import package  # noqa: F401 before the package tanktread
+from package import answer, studies, style
 import edges_of_membranes
 import edges_of_meshes
 import edges_of_shapes
 import edges_of_steps
 import edges_of_tolerances
-from tanktread.studies import common as studies
-from tanktread.figures import style
-from tanktread.mistakes import answer
 
 MAPS = {}
 for module in edges_of_steps, edges_of_membranes, edges_of_meshes, edges_of_tolerances, edges_of_shapes:

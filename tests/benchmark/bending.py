@@ -11,14 +11,7 @@ shortest, longest, D, angle).
 import argparse
 import pathlib
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.figures import literature
-from tanktread.studies import common as studies
-from tanktread.figures import style
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
+from package import answer, literature, numpy, plt, studies, style
 
 DECK = "inputs/shear_bending.yaml"
 

@@ -1,12 +1,7 @@
 """Maps of the atlas about the membrane: compression, pre-stress, bending, the form of the load."""
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.studies import common as studies
-from tanktread.figures import style
+from package import numpy, plt, style
 import waves
-from tanktread.figures.style import plt
 
 SHEAR = "inputs/shear_neo_hookean.yaml"
 PLAIN = "tests/stability/shear.yaml"  # says nothing of the mesh

@@ -1,11 +1,6 @@
 """Maps of the atlas about the surface: poles, thin bodies, tips, meshes that are carried along."""
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.figures import draw
-from tanktread.figures import style
-from tanktread.figures.style import plt
+from package import draw, numpy, plt, style
 
 
 def pole_treatment(study):

@@ -1,11 +1,7 @@
 """Maps of the atlas about the particle itself: where there is no steady shape any more."""
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
+from package import numpy, plt, style
 from tanktread.figures import pushed as stuck
-from tanktread.figures import style
-from tanktread.figures.style import plt
 
 DROP = "inputs/drop_folds.yaml"
 SHEARED = "inputs/drop_shear_folds.yaml"

@@ -2,9 +2,7 @@
 
 import math
 
-from tanktread.figures import style
-from tanktread.studies import common as studies
-from tanktread.figures.style import plt
+from package import plt, studies, style
 
 SHEAR = "inputs/shear_neo_hookean.yaml"
 SCHEMES = {  # pen of each integrator

@@ -2,9 +2,8 @@
 
 import math
 
-from tanktread.figures import style
+from package import plt, style
 from edges_of_steps import SCHEMES
-from tanktread.figures.style import plt
 
 SHEAR = "inputs/shear_neo_hookean.yaml"
 

@@ -8,15 +8,8 @@ Figures 17 and 18).
 
 import argparse
 
-import package  # noqa: F401 before the package tanktread
-import numpy
+from package import answer, draw, numpy, plt, style, tanktread
 from matplotlib.collections import LineCollection
-
-from tanktread.figures import draw
-from tanktread.figures import style
-import tanktread
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
 
 
 def main():

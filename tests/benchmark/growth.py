@@ -14,13 +14,7 @@ import pathlib
 import subprocess
 import sys
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.figures import style
-import tanktread
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
+from package import answer, numpy, plt, style, tanktread
 
 PARTS = [("evaluation s", "whole evaluation"), ("layer far s", "far sum"), ("layer near s", "near elements"),
          ("layer self s", "own elements"), ("layer setup s", "nodes and forces"), ("projection s", "sparse solves"),

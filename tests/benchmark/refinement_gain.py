@@ -13,15 +13,8 @@ does other things too.
 
 import argparse
 
-import package  # noqa: F401 before the package tanktread
-import numpy
+from package import answer, draw, numpy, plt, style, tanktread
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-from tanktread.figures import draw
-from tanktread.figures import style
-import tanktread
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
 
 COSTS = {"points": "control points", "kernel": "kernel evaluations", "seconds": "seconds"}
 

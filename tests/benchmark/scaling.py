@@ -25,9 +25,7 @@ import tempfile
 
 import yaml
 
-import package  # noqa: F401 before the package tanktread
-import tanktread
-from tanktread.mistakes import answer
+from package import answer, tanktread
 
 
 def summaries(program, deck, settings, ranks, copies):

@@ -12,13 +12,7 @@ import math
 import pathlib
 import sys
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.figures import style
-import tanktread
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
+from package import answer, numpy, plt, style, tanktread
 
 SIZES = [0, 1, 2, 3]  # 56, 218, 866, 3458 control points on the cube; 42, 146, 546, 2114 on the structured mesh
 

@@ -14,13 +14,7 @@ import argparse
 import pathlib
 import sys
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.figures import style
-import tanktread
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
+from package import answer, numpy, plt, style, tanktread
 
 DECK = "inputs/shear_neo_hookean.yaml"  # of which every scene changes what it has otherwise
 SHEAR, HYPERBOLIC = {"Flow/type": "simple shear"}, {"Flow/type": "planar hyperbolic"}

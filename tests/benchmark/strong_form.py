@@ -8,14 +8,10 @@ form stalls.
 
 import argparse
 
-import package  # noqa: F401 before the package tanktread
+from package import answer, plt, style, tanktread
 from matplotlib.collections import LineCollection
 
-from tanktread.figures import style
-import tanktread
 from tanktread.figures.draw import section
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
 
 
 def main():

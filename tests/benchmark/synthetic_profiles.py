@@ -18,13 +18,10 @@ import argparse
 import os
 import pathlib
 
-import package  # noqa: F401 before the package tanktread
-import numpy
+from package import answer, numpy, tanktread
 import scipy.interpolate
 import scipy.ndimage
 
-import tanktread
-from tanktread.mistakes import answer
 from tanktread.studies import fit_data, fit_model, outline, silhouette
 
 DECK = tanktread.SOURCE / "inputs" / "studies" / "capsule_in_tube.yaml"

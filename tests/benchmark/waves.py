@@ -1,8 +1,6 @@
 """Waves on a capsule: a field of a snapshot in spherical harmonics of the place on the unstressed sphere."""
 
-import numpy
-
-import package  # noqa: F401 before the package tanktread
+from package import numpy
 from tanktread.lagrange import by_degree, grid_table
 
 SMOOTH = 8  # the flow and its answer live in degrees up to this one

@@ -17,15 +17,8 @@ import math
 import pathlib
 import sys
 
-import package  # noqa: F401 before the package tanktread
-import numpy
+from package import answer, interpolation, numpy, plt, studies, style
 import yaml
-
-from tanktread import interpolation
-from tanktread.studies import common as studies
-from tanktread.figures import style
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
 
 
 class Scene:

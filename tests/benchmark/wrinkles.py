@@ -12,14 +12,8 @@ unstable wave, so the shortest that elements carry grows fastest, about two elem
 
 import argparse
 
-import package  # noqa: F401 before the package tanktread
-import numpy
-
-from tanktread.studies import common as studies
-from tanktread.figures import style
+from package import answer, numpy, plt, studies, style
 import waves
-from tanktread.figures.style import plt
-from tanktread.mistakes import answer
 
 DECK = "inputs/shear_neo_hookean.yaml"
 QUIET = 1e-3  # share of the load's power in waves below which there are none

@@ -14,7 +14,7 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, run
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread import figures
-from tanktread.figures import draw, render, style
+from tanktread.figures import draw, render
 from tanktread.figures.series import unbroken
 from tanktread.interpolation import difference
 

@@ -160,8 +160,7 @@ def a_diagram_over_values_that_are_not_positive_is_drawn():
 
 
 def what_drifts_over_many_turns_is_told_from_what_swings():
-    from tanktread.figures import rheology as _  # noqa: F401
-    drift = sys.modules["tanktread.figures.rheology"]
+    from tanktread.figures import suspensions as drift
     t = numpy.linspace(0, 100, 20001)
     phase = 360 * t / 2 + 10 * numpy.sin(numpy.pi * t)
     means = drift.turns(t, 1 + 0.3 * numpy.sin(2 * numpy.pi * t), phase)

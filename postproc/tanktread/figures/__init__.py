@@ -17,9 +17,9 @@ from .encounters import encounter, plane_wall  # noqa: E402
 from .errors import convergence, step  # noqa: E402
 from .red_cells import recovery, treading, tweezers  # noqa: E402
 from .register import FIGURES, caption, command, figure, parser_of  # noqa: E402
-from .rheology import drift, rheology, suspension, viscosity  # noqa: E402
 from .series import deformation, refinement  # noqa: E402
 from .surfaces import meshes, shape  # noqa: E402
+from .suspensions import drift, rheology, suspension, viscosity  # noqa: E402
 from .tubes import duct, tube, tube_motion  # noqa: E402
 
 __all__ = ["FIGURES", "caption", "command", "figure", "parser_of", *FIGURES]

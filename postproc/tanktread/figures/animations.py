@@ -6,7 +6,7 @@ from matplotlib.cm import ScalarMappable
 
 from ..mistakes import expect
 from . import style
-from .draw import VIEW, draw_surface, draw_triad, magnitude, view_axes
+from .draw import VIEW, draw_surface, draw_triad, view_axes
 from .register import figure
 from .series import unbroken
 from .style import plt

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy
 
-from ..mistakes import Mistake, expect, log
+from ..mistakes import Mistake, log
 from ..results import time_label
 from . import literature, style
 from .register import figure

@@ -9,7 +9,6 @@ from ..snapshots import DIMENSIONS
 from . import style
 from .draw import VIEW, draw_sections, draw_surface, magnitude, scale, section_variation, share_window, view_axes
 from .register import figure
-from .style import plt
 
 
 def field_of(shots, field):

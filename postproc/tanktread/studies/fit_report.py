@@ -12,8 +12,8 @@ from .fit_model import SERIES, Fit
 
 
 def further(fits, settings):
-    """Returns for each further experiment (settings, {unknown: standard error with it}, {other law: expected rise of chi
-    square}). Each has data like the first experiment's, at the prediction of the best law."""
+    """Returns for each further experiment (settings, {unknown: standard error with it}, {other law: expected rise of
+    chi square}). Each has data like the first experiment's, at the prediction of the best law."""
     best, first = fits[0], fits[0].experiments[0]
     rows = []
     for key, value in [(key, value) for key, values in settings.items() for value in values]:
