@@ -9,12 +9,10 @@ import sys
 import textwrap
 import typing
 
-import matplotlib.pyplot as plt
-
 from ..mistakes import expect
 from ..runs import run as run_of
 from ..runs import SOURCE, runs_of, settings_of
-from .style import STYLE, save
+from .style import draw, save
 
 FIGURES: dict = {}
 BENCHMARK = SOURCE / "tests/benchmark"
@@ -33,8 +31,7 @@ def figure(function):
     @functools.wraps(function)
     def drawn(given=inspect.signature(function).parameters[first].default, axes=None, **options):
         expect(given is not inspect.Parameter.empty, f"{function.__name__} needs {first}")
-        with plt.rc_context(STYLE):
-            return function(convert(given), axes, **options)
+        return draw(functools.partial(function, **options), convert(given), axes)
 
     FIGURES[function.__name__] = drawn
     return drawn

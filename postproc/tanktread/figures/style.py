@@ -46,6 +46,12 @@ def panels(axes, rows, columns, width, height, **layout):
     return axes[0].figure, axes
 
 
+def draw(function, *arguments):
+    """Returns function(*arguments), a figure, drawn in the style of this package."""
+    with plt.rc_context(STYLE):
+        return function(*arguments)
+
+
 def save(figure, path):
     """Writes a figure as PNG, PDF, SVG and so on by its name, or its animation as GIF. Makes the folder."""
     path = pathlib.Path(path)

@@ -74,21 +74,18 @@ def load(path, study):
     return fits, text
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("experiment", help="the experiment, a YAML file")
-    parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
-                        help="where results go (default: results/<experiment>)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="runs at a time (default: the number of cores)")
-    parser.add_argument("--law", nargs="+", metavar="NAME", help="fit these laws only")
-    arguments = parser.parse_args()
-    directory = arguments.output or pathlib.Path("results") / pathlib.Path(arguments.experiment).stem
-    fits, text = load(arguments.experiment, Study(directory=directory / "runs", jobs=arguments.jobs))
-    laws = arguments.law or [fit.law for fit in fits]
-    expect(set(laws) <= {fit.law for fit in fits},
-           f"there is no such law; there are: {', '.join(fit.law for fit in fits)}")
-    fits = [fit for fit in fits if fit.law in laws]
+def run(path, directory=None, jobs=None, laws=None):
+    """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
+
+    `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
+    cores). `laws`: names of the laws that are fitted (default: all)."""
+    from ..figures import style
+
+    directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
+    fits, text = load(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count()))
+    known = [fit.law for fit in fits]
+    expect(set(laws or known) <= set(known), f"there is no such law; there are: {', '.join(known)}")
+    fits = [fit for fit in fits if fit.law in (laws or known)]
     for fit in fits:
         progress(fit.effort())
         fit.solve()
@@ -98,12 +95,21 @@ def main():
     log.info(said)
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
     record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
-                        "runs": fit.runs.count,
-                        "unknown": {name: {"value": value, "error": float(error)} for name,
-                                    (value, error) in fit.values.items()}} for fit in fits}
+                        "runs": fit.runs.count, "unknown": {name: {"value": value, "error": float(error)}
+                                                            for name, (value, error) in fit.values.items()}}
+              for fit in fits}
     (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
-    from ..figures import style
+    style.save(style.draw(draw, fits), directory / "fit.png")
+    return fits
 
-    with style.plt.rc_context(style.STYLE):
-        style.save(draw(fits), directory / "fit.png")
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("experiment", help="the experiment, a YAML file")
+    parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
+                        help="where results go (default: results/<experiment>)")
+    parser.add_argument("--jobs", type=int, help="runs at a time (default: the number of cores)")
+    parser.add_argument("--law", nargs="+", metavar="NAME", help="fit these laws only")
+    arguments = parser.parse_args()
+    run(arguments.experiment, arguments.output, arguments.jobs, arguments.law)
     return 0

@@ -238,8 +238,7 @@ def main():
         if diagram.found:
             from ..figures import style
 
-            with style.plt.rc_context(style.STYLE):
-                style.save(diagram.draw(), parsed.output / "phases.png")
+            style.save(style.draw(diagram.draw), parsed.output / "phases.png")
     expect(diagram.found,
            f"no border was found, and nothing is drawn: {parsed.output / 'borders.csv'} says how each search ended")
     return 0

@@ -216,6 +216,19 @@ def plot(directory, column, key, axes=None):
     return figure
 
 
+def run(path, directory=None, jobs=None, fresh=False):
+    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`.
+
+    `directory`: of table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the
+    number of cores). `fresh`: makes every run anew."""
+    directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
+    sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
+    directory.mkdir(parents=True, exist_ok=True)
+    sweep.make()
+    sweep.write(directory)
+    return sweep
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("study", help="the study, a YAML file")
@@ -232,22 +245,17 @@ def main():
     arguments = parser.parse_args()
     directory = arguments.output or pathlib.Path("results") / pathlib.Path(arguments.study).stem
     expect(arguments.jobs > 0, "--jobs must be at least 1")
-    sweep = Sweep(arguments.study, Study(directory=directory / "runs", jobs=arguments.jobs, fresh=arguments.fresh))
     if arguments.list:
-        for row in sweep.rows:
+        for row in Sweep(arguments.study, Study()).rows:
             log.info(", ".join(f"{key}={text_of(value)}" for key, value in row.items()))
         return 0
-    directory.mkdir(parents=True, exist_ok=True)
-    sweep.make()
-    sweep.write(directory)
-    good = sum(outcome.done for outcome in sweep.outcomes)
-    if not good:
+    sweep = run(arguments.study, directory, arguments.jobs, arguments.fresh)
+    if not any(outcome.done for outcome in sweep.outcomes):
         progress(f"tanktread-sweep: none of the runs came to its end; the first one: {sweep.outcomes[0].message}\n")
         return 1
     if arguments.plot:
         name = "".join(c if c.isalnum() or c in "._-" else "_" for c in arguments.plot[0]).strip("_")
         from ..figures import style
 
-        with style.plt.rc_context(style.STYLE):
-            style.save(plot(directory, *arguments.plot), arguments.picture or directory / f"{name}.png")
+        style.save(style.draw(plot, directory, *arguments.plot), arguments.picture or directory / f"{name}.png")
     return 0
