@@ -49,7 +49,7 @@ def a_run_is_drawn():
     _command("animation", "results", "-o", "animation.gif", "--width", "240")
     with open("animation.gif", "rb") as file:
         check(file.read(6) == b"GIF89a", "animation.gif is no animation")
-    check("taylor_inertia" in _command("read", "results"), "read.py does not list the series")
+    check("taylor_inertia" in _command("read", "results"), "tanktread-read does not list the series")
     said = _command("shape", "results", "--field", "colour", code=2)
     check("colour" in said and "load" in said, said)
 
