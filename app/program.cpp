@@ -11,21 +11,21 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/plan.hpp"
 #include "app/provenance.hpp"
-#include "app/results.hpp"
-#include "app/scene.hpp"
-#include "app/series.hpp"
 #include "app/signals.hpp"
 #include "app/simulation.hpp"
 #include "base/errors.hpp"
-#include "coupling/agreement.hpp"
-#include "coupling/ranks.hpp"
-#include "coupling/solver_trial.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
-#include "output/checksum.hpp"
+#include "record/files/checksum.hpp"
+#include "record/plan.hpp"
+#include "record/results.hpp"
+#include "scene/scene.hpp"
+#include "scene/series/series.hpp"
+#include "system/agreement.hpp"
+#include "system/ranks.hpp"
+#include "system/solvers/solver_trial.hpp"
 
 namespace tanktread {
 
@@ -237,6 +237,7 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   request.quiet = arguments.quiet;
   request.deck_text = deck.effective();
+  request.provenance = provenance();
   return simulate(scene, request);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The program, for main functions that add parts of their own.
 
-#include "app/registry.hpp"
+#include "scene/registry.hpp"
 
 namespace tanktread {
 

@@ -2,8 +2,8 @@
 
 #include <csignal>
 
-#include "coupling/agreement.hpp"
 #include "motion/guarded.hpp"
+#include "system/agreement.hpp"
 
 namespace tanktread {
 

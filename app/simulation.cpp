@@ -10,26 +10,26 @@
 #include <new>
 #include <optional>
 
-#include "app/body.hpp"
-#include "app/gaps.hpp"
-#include "app/member.hpp"
-#include "app/particle_system.hpp"
-#include "app/plan.hpp"
-#include "app/plane_wall.hpp"
-#include "app/prescribed.hpp"
-#include "app/results.hpp"
+#include "app/prescribed_run.hpp"
 #include "app/signals.hpp"
 #include "app/steady.hpp"
-#include "app/tube.hpp"
-#include "app/warnings.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "coupling/agreement.hpp"
-#include "coupling/kernel_count.hpp"
 #include "motion/guarded.hpp"
 #include "motion/integrator.hpp"
-#include "output/progress.hpp"
-#include "output/state.hpp"
+#include "record/files/progress.hpp"
+#include "record/files/state.hpp"
+#include "record/plan.hpp"
+#include "record/results.hpp"
+#include "scene/body.hpp"
+#include "scene/member.hpp"
+#include "scene/particles/gaps.hpp"
+#include "scene/particles/particle_system.hpp"
+#include "scene/particles/warnings.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/tube.hpp"
+#include "system/agreement.hpp"
+#include "system/kernel_count.hpp"
 
 namespace tanktread {
 
@@ -449,10 +449,6 @@ int simulate(const Scene& scene, const RunRequest& request) {
   if (!scene.in_system() && scene.particle.motion == Motion::prescribed) return resist(scene, request);
   if (!scene.runs_in_time()) return find_steady(scene, request);
   return Run(scene, request).go();
-}
-
-std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
 }
 
 }  // namespace tanktread

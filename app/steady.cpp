@@ -12,22 +12,22 @@
 #include <optional>
 #include <utility>
 
-#include "app/branch_parameters.hpp"
-#include "app/free_motions.hpp"
-#include "app/particle_system.hpp"
-#include "app/plan.hpp"
-#include "app/results.hpp"
-#include "app/run_totals.hpp"
-#include "app/series.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "coupling/agreement.hpp"
-#include "coupling/kernel_count.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
 #include "motion/periodic.hpp"
+#include "record/plan.hpp"
+#include "record/results.hpp"
+#include "scene/branch_parameters.hpp"
+#include "scene/free_motions.hpp"
+#include "scene/particles/particle_system.hpp"
+#include "scene/series/run_totals.hpp"
+#include "scene/series/series.hpp"
+#include "system/agreement.hpp"
+#include "system/kernel_count.hpp"
 
 namespace tanktread {
 
@@ -364,13 +364,6 @@ class SteadyRun {
 };
 
 }  // namespace
-
-void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
-  if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
-  if (scene.periodic.present) to.add(period, {"period", "time", "after which the shape is back (Periodic)"});
-  const auto rigid = [](const Scene& one) { return one.particle.rigid(); };
-  if (scene.spectrum.present) motion::add_columns(modes, std::ranges::all_of(scene.alone(), rigid), to);
-}
 
 int find_steady(const Scene& scene, const RunRequest& request) {
   if (request.resume) throw UserError("--resume goes on with a run in time: Steady and Spectrum have nothing to go on with.");

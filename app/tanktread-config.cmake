@@ -1,4 +1,4 @@
-# find_package(tanktread): the rooms of the library, tanktread::base to tanktread::output, and the program, tanktread::app, which has all
+# find_package(tanktread): the rooms of the library, tanktread::base to tanktread::record, and the program, tanktread::app, which has all
 # of them.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 NO_MODULE)

@@ -1,4 +1,5 @@
-# room(NAME [USES room…] [EXTERNAL library…]): library tanktread_NAME from lib/NAME/*.cpp, which may use just the rooms and libraries named.
+# room(FOLDER [USES room…] [EXTERNAL library…]): library tanktread_NAME from the files below lib/FOLDER, which may use just the rooms and libraries
+# named. NAME is FOLDER with _ for /.
 #
 # Files *_kernel.cpp hold plain loops over arrays; there sums may be reordered and divisions turned into products. Where the program is built for
 # any processor of the family x86-64, each is compiled for several sets of instructions (base/kernel.hpp), with -fno-weak: what a header brings along,
@@ -25,10 +26,15 @@ set(common_headers <algorithm> <array> <cmath> <functional> <map> <memory> <opti
 set_property(GLOBAL PROPERTY common_headers ${common_headers})
 target_precompile_headers(headers PRIVATE ${common_headers})
 
-function(room name)
+function(room folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;EXTERNAL")
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
-  set(rooms ${arg_USES})
+  string(REPLACE / _ name ${folder})
+  string(REPLACE / _ rooms "${arg_USES}")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  get_property(folders GLOBAL PROPERTY folders)
+  foreach(other ${folders}) # rooms in subfolders stand above
+    list(FILTER sources EXCLUDE REGEX "/lib/${other}/")
+  endforeach()
   list(TRANSFORM rooms PREPEND tanktread_)
   set(externals ${arg_EXTERNAL})
   list(TRANSFORM externals PREPEND external_)
@@ -46,9 +52,10 @@ function(room name)
   target_link_libraries(tanktread_${name} ${visibility} ${rooms} Eigen3::Eigen)
   set_property(GLOBAL PROPERTY externals_of_${name} ${externals}) # for the room's unit tests
   set_property(GLOBAL APPEND PROPERTY rooms ${name})
+  set_property(GLOBAL APPEND PROPERTY folders ${folder})
 
   set(kernels ${sources})
-  list(FILTER kernels INCLUDE REGEX "/${name}/[^/]*_kernel\\.cpp$")
+  list(FILTER kernels INCLUDE REGEX "_kernel\\.cpp$")
   if(kernels)
     set_source_files_properties(${kernels} PROPERTIES COMPILE_OPTIONS "${kernel_flags}" SKIP_PRECOMPILE_HEADERS ON)
     foreach(set ${instruction_sets})

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "app/member.hpp"
-#include "app/scene.hpp"
 #include "deck/document.hpp"
 #include "motion/integrator.hpp"
+#include "scene/member.hpp"
+#include "scene/scene.hpp"
 
 namespace tanktread {
 

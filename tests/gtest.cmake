@@ -1,4 +1,4 @@
-# The headers of GoogleTest and of the rooms, compiled once for all programs, and once with those of app.
+# The headers of GoogleTest and of the rooms, compiled once for all programs, and once with scene/body.hpp.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
 find_package(Eigen3 REQUIRED NO_MODULE)
 get_property(common_headers GLOBAL PROPERTY common_headers)
@@ -8,7 +8,7 @@ foreach(name test_headers app_test_headers)
   target_link_libraries(${name} PRIVATE Eigen3::Eigen GTest::gtest)
   target_precompile_headers(${name} PRIVATE ${common_headers} <gtest/gtest.h>)
 endforeach()
-target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/app/body.hpp)
+target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/lib/scene/body.hpp)
 
 # gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
 # Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks,
@@ -20,7 +20,7 @@ function(gtest_program name)
     get_property(externals GLOBAL PROPERTY externals_of_${room})
     target_link_libraries(${name} PRIVATE tanktread_${room} ${externals})
   endforeach()
-  if("app" IN_LIST arg_ROOMS)
+  if(arg_ROOMS MATCHES "scene|record$|app")
     target_precompile_headers(${name} REUSE_FROM app_test_headers)
   else()
     target_precompile_headers(${name} REUSE_FROM test_headers)

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/prescribed.hpp"
-#include "app/scene.hpp"
 #include "deck/document.hpp"
+#include "scene/particles/prescribed.hpp"
+#include "scene/scene.hpp"
 
 namespace tanktread {
 

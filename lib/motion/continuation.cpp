@@ -8,8 +8,8 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "coupling/nonlinear.hpp"
 #include "deck/section.hpp"
+#include "system/solvers/nonlinear.hpp"
 
 namespace tanktread::motion {
 

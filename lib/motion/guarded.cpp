@@ -4,7 +4,7 @@
 #include <new>
 
 #include "base/errors.hpp"
-#include "coupling/agreement.hpp"
+#include "system/agreement.hpp"
 
 namespace tanktread::motion {
 

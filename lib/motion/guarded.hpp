@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "coupling/dynamics.hpp"
+#include "system/dynamics.hpp"
 
 namespace tanktread::motion {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "coupling/dynamics.hpp"
 #include "motion/options.hpp"
+#include "system/dynamics.hpp"
 
 namespace Teuchos {
 class ParameterList;

@@ -12,10 +12,10 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "coupling/eigenvalues.hpp"
-#include "coupling/nonlinear.hpp"
 #include "deck/section.hpp"
 #include "motion/integrator.hpp"
+#include "system/solvers/eigenvalues.hpp"
+#include "system/solvers/nonlinear.hpp"
 
 namespace tanktread::motion {
 

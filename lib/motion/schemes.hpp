@@ -5,8 +5,8 @@
 #include <cstring>
 #include <vector>
 
-#include "coupling/nonlinear.hpp"
 #include "motion/integrator.hpp"
+#include "system/solvers/nonlinear.hpp"
 
 namespace tanktread::motion {
 

@@ -8,10 +8,10 @@
 #include <Eigen/QR>
 
 #include "base/errors.hpp"
-#include "coupling/agreement.hpp"
-#include "coupling/eigenvalues.hpp"
-#include "coupling/rigid_motion.hpp"
 #include "deck/section.hpp"
+#include "system/agreement.hpp"
+#include "system/solids/rigid_motion.hpp"
+#include "system/solvers/eigenvalues.hpp"
 
 namespace tanktread::motion {
 

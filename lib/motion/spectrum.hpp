@@ -9,10 +9,10 @@
 
 #include "base/columns.hpp"
 #include "base/types.hpp"
-#include "coupling/dynamics.hpp"
-#include "coupling/eigenvalues.hpp"
-#include "coupling/options.hpp"
-#include "coupling/shape_coordinates.hpp"
+#include "system/dynamics.hpp"
+#include "system/shape_coordinates.hpp"
+#include "system/solvers/eigenvalues.hpp"
+#include "system/solvers/options.hpp"
 
 namespace tanktread::deck {
 class Section;

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "coupling/nonlinear.hpp"
 #include "deck/section.hpp"
 #include "motion/fixed_point_error.hpp"
+#include "system/solvers/nonlinear.hpp"
 
 namespace tanktread::motion {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "coupling/dynamics.hpp"
-#include "coupling/options.hpp"
-#include "coupling/rigid_motion.hpp"
+#include "system/dynamics.hpp"
+#include "system/solids/rigid_motion.hpp"
+#include "system/solvers/options.hpp"
 
 namespace tanktread::deck {
 class Section;

@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "stokes/pair_kernel.hpp"
+#include "stokes/kernels/pair_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace {

@@ -9,12 +9,12 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
-#include "stokes/far_kernel.hpp"
-#include "stokes/image_sum.hpp"
-#include "stokes/kernels.hpp"
+#include "stokes/kernels/far_kernel.hpp"
+#include "stokes/kernels/kernels.hpp"
 #include "stokes/layer_surface.hpp"
-#include "stokes/periodic_sum.hpp"
-#include "stokes/tree_sum.hpp"
+#include "stokes/medium/image_sum.hpp"
+#include "stokes/medium/periodic_sum.hpp"
+#include "stokes/sums/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {

@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "stokes/assembly_kernel.hpp"
-#include "stokes/identity_kernel.hpp"
+#include "stokes/kernels/assembly_kernel.hpp"
+#include "stokes/kernels/identity_kernel.hpp"
 #include "stokes/layer.hpp"
 
 namespace tanktread::stokes {

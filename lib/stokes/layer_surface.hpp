@@ -6,10 +6,10 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
-#include "stokes/near_field.hpp"
-#include "stokes/panels.hpp"
-#include "stokes/self_field.hpp"
-#include "stokes/tree_sum.hpp"
+#include "stokes/sums/near_field.hpp"
+#include "stokes/sums/panels.hpp"
+#include "stokes/sums/self_field.hpp"
+#include "stokes/sums/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "quadrature/gauss.hpp"
-#include "stokes/image_kernel.hpp"
+#include "stokes/kernels/image_kernel.hpp"
 #include "stokes/layer.hpp"
 
 namespace tanktread::stokes {

@@ -13,7 +13,7 @@
 
 #include "base/instruction_set.hpp"
 #include "base/register.hpp"
-#include "stokes/far_kernel.hpp"
+#include "stokes/kernels/far_kernel.hpp"
 
 namespace {
 

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "base/timing.hpp"
-#include "coupling/capsule.hpp"
-#include "coupling/ranks.hpp"
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
-#include "stokes/ambient_flow.hpp"
-#include "stokes/far_kernel.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "stokes/kernels/far_kernel.hpp"
 #include "surface/shapes.hpp"
+#include "system/capsule.hpp"
+#include "system/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 #include "tests/layers.hpp"
 

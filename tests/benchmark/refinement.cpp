@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "base/timing.hpp"
-#include "coupling/capsule.hpp"
-#include "coupling/ranks.hpp"
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
 #include "spline/refinement.hpp"
 #include "spline/transfer.hpp"
-#include "stokes/ambient_flow.hpp"
+#include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
+#include "system/capsule.hpp"
+#include "system/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {

@@ -6,13 +6,13 @@
 #include <memory>
 
 #include "base/timing.hpp"
-#include "coupling/capsule.hpp"
-#include "coupling/ranks.hpp"
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
-#include "stokes/ambient_flow.hpp"
+#include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
 #include "surface/tube_wall.hpp"
+#include "system/capsule.hpp"
+#include "system/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {

@@ -28,7 +28,7 @@ def allowed(source):
     """room -> (rooms, libraries) that it may use."""
     rooms = {}
     for line in (source / "lib/CMakeLists.txt").read_text().splitlines():
-        match = re.fullmatch(r"room\((\w+)(?: +USES +([a-z ]+?))?(?: +EXTERNAL +([A-Z0-9 ]+?))? *\)", line.strip())
+        match = re.fullmatch(r"room\(([\w/]+)(?: +USES +([a-z/ ]+?))?(?: +EXTERNAL +([A-Z0-9 ]+?))? *\)", line.strip())
         if match:
             name, uses, external = match.groups()
             libraries = set((external or "").split())
@@ -52,16 +52,21 @@ def order_errors(rooms):
             yield f"lib/CMakeLists.txt: {name} may not see {other}"
 
 
+def room_of(name, rooms):
+    """The room of a file below lib/: the innermost of its folders that has a line."""
+    return next((folder.as_posix() for folder in pathlib.PurePath(name).parents if folder.as_posix() in rooms), None)
+
+
 def include_errors(source, rooms):
-    for path in sorted((source / "lib").glob("*/*.[ch]pp")):
-        room = path.parent.name
-        if room not in rooms:
+    for path in sorted((source / "lib").rglob("*.[ch]pp")):
+        room = room_of(path.relative_to(source / "lib"), rooms)
+        if room is None:
             yield f"{path}: lib/CMakeLists.txt has no line for this room"
             continue
         uses, libraries = rooms[room]
         for header in re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.MULTILINE):
-            first = header.split("/")[0]
-            if "/" in header and first not in ("Eigen", "unsupported", "sys", "boost", "yaml-cpp") and first not in uses:
+            foreign = header.split("/")[0] in ("Eigen", "unsupported", "sys", "boost", "yaml-cpp")
+            if "/" in header and not foreign and room_of(header, rooms) not in uses:
                 yield f"{path}: {room} may not include {header}"
             owners = {owner for owner, pattern in OWNERS.items() if re.fullmatch(pattern, header)}
             if owners and not owners & libraries:
@@ -73,7 +78,7 @@ def include_errors(source, rooms):
 
 def kernel_errors(source):
     """What is compiled once for each set of instructions is in the namespace of its set, or the linker takes one of them by chance (kernels.py)."""
-    for path in sorted((source / "lib").glob("*/*_kernel.cpp")):
+    for path in sorted((source / "lib").rglob("*_kernel.cpp")):
         if not re.search(r"^(inline )?namespace (\w+::)*INSTRUCTIONS {$", path.read_text(), re.MULTILINE):
             yield f"{path}: a file *_kernel.cpp has its functions in the namespace INSTRUCTIONS (base/kernel.hpp)"
 

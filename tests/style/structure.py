@@ -124,7 +124,7 @@ def measured(source, files):
             take("function", f"{name}:{function}", lines)
         for one, members in scopes.classes:
             take("members", f"{name}:{one}", members)
-        if path.stem not in MAY_CALL and path.parent.name != "record":
+        if path.stem not in MAY_CALL and "record" not in path.parts:
             take("collectives", name, len(COLLECTIVE.findall(scopes.text)))
     for folder in {path.parent for path in files}:
         take("files", folder.relative_to(source).as_posix(), sum(path.suffix == ".cpp" for path in files if path.parent == folder))

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "stokes/duct_boundary.hpp"
+#include "stokes/flow/duct_boundary.hpp"
 #include "tests/outlines.hpp"
 
 namespace tanktread {

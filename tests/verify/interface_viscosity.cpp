@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/collocation.hpp"
 #include "membrane/symmetric_solver.hpp"
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
+#include "system/collocation.hpp"
 #include "tests/evolution.hpp"
 
 namespace tanktread {

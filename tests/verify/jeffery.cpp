@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/particle_system.hpp"
-#include "coupling/rigid_body.hpp"
 #include "deck/document.hpp"
+#include "scene/particles/particle_system.hpp"
+#include "system/solids/rigid_body.hpp"
 
 namespace tanktread {
 namespace jeffery_test {

@@ -13,7 +13,7 @@
 #include "base/types.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/space.hpp"
-#include "stokes/kernels.hpp"
+#include "stokes/kernels/kernels.hpp"
 
 namespace tanktread::verify {
 

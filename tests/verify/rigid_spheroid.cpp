@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "app/exact_body.hpp"
 #include "quadrature/gauss.hpp"
+#include "scene/exact_body.hpp"
 #include "tests/rigid.hpp"
 
 namespace tanktread {

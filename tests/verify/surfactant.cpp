@@ -6,12 +6,12 @@
 #include <Eigen/SparseCholesky>
 #include <gtest/gtest.h>
 
-#include "coupling/coupled_motion.hpp"
 #include "membrane/mass.hpp"
 #include "membrane/surfactant.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
+#include "system/coupled_motion.hpp"
 #include "tests/evolution.hpp"
 
 namespace tanktread {

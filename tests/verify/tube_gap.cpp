@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/collocation.hpp"
 #include "surface/geometry.hpp"
+#include "system/collocation.hpp"
 #include "tests/layers.hpp"
 #include "tests/verify/tube_scene.hpp"
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "coupling/collocation.hpp"
-#include "coupling/krylov.hpp"
+#include "system/collocation.hpp"
+#include "system/solvers/krylov.hpp"
 #include "tests/layers.hpp"
 #include "tests/verify/tube_scene.hpp"
 

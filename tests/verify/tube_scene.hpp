@@ -6,14 +6,14 @@
 #include <numbers>
 
 #include "base/timing.hpp"
-#include "coupling/ranks.hpp"
-#include "coupling/rigid_body.hpp"
-#include "coupling/tube.hpp"
 #include "spline/extraction.hpp"
 #include "spline/polar.hpp"
 #include "spline/t_mesh.hpp"
-#include "stokes/ambient_flow.hpp"
+#include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
+#include "system/ranks.hpp"
+#include "system/solids/rigid_body.hpp"
+#include "system/solids/tube.hpp"
 
 namespace tanktread {
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/wall.hpp"
-#include "stokes/duct_boundary.hpp"
+#include "stokes/flow/duct_boundary.hpp"
+#include "system/solids/wall.hpp"
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {

@@ -1,7 +1,7 @@
 #pragma once
 // What models of a motion have in common if nothing of them is stiff and no volume is kept.
 
-#include "coupling/dynamics.hpp"
+#include "system/dynamics.hpp"
 
 namespace tanktread::motion {
 

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "coupling/ranks.hpp"
 #include "explicit_motion.hpp"
 #include "motion/integrator.hpp"
+#include "system/ranks.hpp"
 
 namespace tanktread::motion {
 namespace {

@@ -1,4 +1,4 @@
-#include "stokes/ambient_flow.hpp"
+#include "stokes/flow/ambient_flow.hpp"
 
 #include <cmath>
 #include <limits>

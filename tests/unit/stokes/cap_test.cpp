@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "quadrature/gauss.hpp"
-#include "stokes/cap.hpp"
-#include "stokes/kernels.hpp"
+#include "stokes/flow/cap.hpp"
+#include "stokes/kernels/kernels.hpp"
 
 namespace tanktread::stokes {
 namespace {

@@ -1,4 +1,4 @@
-#include "stokes/duct_boundary.hpp"
+#include "stokes/flow/duct_boundary.hpp"
 
 #include <gtest/gtest.h>
 

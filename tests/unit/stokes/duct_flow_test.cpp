@@ -1,10 +1,10 @@
-#include "stokes/duct_flow.hpp"
+#include "stokes/flow/duct_flow.hpp"
 
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "stokes/ambient_flow.hpp"
+#include "stokes/flow/ambient_flow.hpp"
 
 namespace tanktread::stokes {
 namespace duct_flow_test {

@@ -1,4 +1,4 @@
-#include "stokes/kernels.hpp"
+#include "stokes/kernels/kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "stokes/far_kernel.hpp"
+#include "stokes/kernels/far_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace {

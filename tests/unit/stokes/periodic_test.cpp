@@ -11,10 +11,10 @@
 #include <Eigen/Geometry>
 
 #include "quadrature/gauss.hpp"
-#include "stokes/far_kernel.hpp"
-#include "stokes/kernels.hpp"
-#include "stokes/periodic_images.hpp"
-#include "stokes/periodic_sum.hpp"
+#include "stokes/kernels/far_kernel.hpp"
+#include "stokes/kernels/kernels.hpp"
+#include "stokes/medium/periodic_images.hpp"
+#include "stokes/medium/periodic_sum.hpp"
 
 namespace tanktread::stokes {
 namespace periodic_test {

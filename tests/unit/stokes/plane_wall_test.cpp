@@ -10,8 +10,8 @@
 #include "quadrature/gauss.hpp"
 #include "spline/extraction.hpp"
 #include "spline/space.hpp"
-#include "stokes/image_kernel.hpp"
-#include "stokes/image_sum.hpp"
+#include "stokes/kernels/image_kernel.hpp"
+#include "stokes/medium/image_sum.hpp"
 #include "surface/shapes.hpp"
 #include "tests/layers.hpp"
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "stokes/far_kernel.hpp"
+#include "stokes/kernels/far_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace single_precision_test {

@@ -1,4 +1,4 @@
-#include "stokes/tree_sum.hpp"
+#include "stokes/sums/tree_sum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,94 @@
+#include "app/prescribed_run.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/signals.hpp"
+#include "base/errors.hpp"
+#include "record/plan.hpp"
+#include "scene/exact_body.hpp"
+#include "scene/particles/adaptation.hpp"
+#include "scene/particles/prescribed.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/series/series.hpp"
+#include "scene/tube.hpp"
+#include "surface/geometry.hpp"
+#include "system/kernel_count.hpp"
+
+namespace tanktread {
+
+namespace {
+
+SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution& s) {
+  const auto exact = exact_body(scene);
+  return {body.rest, [&body, &s, exact](const auto& nodes) {
+            const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
+            const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
+            std::vector<output::Field> fields = {{"traction", -f}, {"pressure", pressure}};
+            if (exact) {
+              Eigen::VectorXd error(pressure.size());
+              for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = pressure[i] - exact->pressure(x.row(i).transpose());
+              fields.push_back({"pressure error", error});
+            }
+            return fields;
+          }};
+}
+
+}  // namespace
+
+int resist(const Scene& scene, const RunRequest& request) {
+  if (request.resume)
+    throw UserError("--resume and Particle/motion `prescribed` contradict each other: a steady problem has nothing to go on with.");
+  const auto start = std::chrono::steady_clock::now();
+  coupling::Ranks ranks;
+  Phases phases = started();
+  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
+  Body body = tanktread::body(scene);
+  refine_alone(scene, body, [&](const Body& on) {
+    const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
+    coupling::Resistance there = resistance_of(scene, on, ranks, phases, wall.get());
+    return rigid_solution(scene, on, there, phases, wall.get()).density;
+  });
+  const output::Entries<std::string> chosen = plan(scene, body, ranks.size());
+  if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
+  const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
+  coupling::Resistance resistance = resistance_of(scene, body, ranks, phases, around.get());
+  clock.reset();
+  stop_where_told();
+  const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
+  stop_where_told();
+  const double seconds = ranks.first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  const stokes::Evaluations kernel = coupling::of_all(resistance.kernel_evaluations(), ranks);
+  Columns row;
+  ProgressRow now{.wall_seconds = seconds};
+  now.work.solver_iterations = solution.iterations;
+  now.add_columns(scene, row);
+  PrescribedRow{solution, surface::measures(body.space, body.rest), -resistance.stresslet(solution.density, scene.particle.shape.center),
+                body.space.n_points, static_cast<double>(kernel.total())}
+      .add_columns(scene, row);
+  if (around) tube_row(*around, solution.density, solution.pressure_drop).add_columns(scene, row);
+  if (const auto wall = scene.wall.plane()) wall_row(*wall, body, body.rest).add_columns(scene, row);
+  finish(row);
+
+  clock.emplace(phases, "output");
+  Results results(scene, request, body, surface::BezierMap(body.space), ranks);
+  results.record(row);
+  motion::State state;
+  state.x = body.rest;
+  results.save({}, state, {}, results.sample(picture(scene, body, solution), state.time));
+  clock.reset();
+  Account account;
+  account.plan = chosen;
+  account.counts = {{"unknowns", 3L * body.space.n_points},
+                    {"solver_iterations", solution.iterations},
+                    {"solver_iterations_in_all", resistance.solver_iterations()},
+                    {"kernel_evaluations_far", static_cast<long>(kernel.far)},
+                    {"kernel_evaluations_near", static_cast<long>(kernel.near)},
+                    {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
+  account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
+  return results.close(account, phases);
+}
+
+}  // namespace tanktread

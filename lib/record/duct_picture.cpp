@@ -1,0 +1,143 @@
+#include "record/duct_picture.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "spline/basis.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+namespace {
+
+constexpr int places_around = 400, lines = 121;
+
+std::vector<double> outline_of(const surface::Outline& outline) {
+  std::vector<double> out;
+  const auto share = outline.shares(places_around);
+  for (int k = 0; k < outline.n_sides(); ++k) {
+    auto knots = outline.knots(k, share[static_cast<std::size_t>(k)]);
+    if (k + 1 < outline.n_sides()) knots.pop_back();
+    for (const double u : knots) {
+      const surface::Vec2 x = outline.point(k, u);
+      out.insert(out.end(), {x[0], x[1]});
+    }
+  }
+  return out;
+}
+
+std::vector<double> line(double low, double high) {
+  std::vector<double> out;
+  for (int i = 0; i < lines; ++i) out.push_back(low + (high - low) * i / (lines - 1));
+  return out;
+}
+
+/// One call for all the points inside.
+std::vector<double> velocities(const stokes::DuctFlow& flow, const std::vector<double>& x2, const std::vector<double>& x3) {
+  std::vector<double> out(x2.size() * x3.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<std::size_t> inside;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (flow.outline().inside({x2[i % x2.size()], x3[i / x2.size()]})) inside.push_back(i);
+  Net x(static_cast<Eigen::Index>(inside.size()), 3);
+  for (Eigen::Index q = 0; q < x.rows(); ++q) {
+    const std::size_t i = inside[static_cast<std::size_t>(q)];
+    x.row(q) << 0, x2[i % x2.size()], x3[i / x2.size()];
+  }
+  const Net v = flow.velocities(x);
+  for (Eigen::Index q = 0; q < x.rows(); ++q) out[inside[static_cast<std::size_t>(q)]] = v(q, 0);
+  return out;
+}
+
+}  // namespace
+
+std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow) {
+  const auto [low, high] = flow.outline().box();
+  const auto x2 = line(low[0], high[0]), x3 = line(low[1], high[1]), outline = outline_of(flow.outline());
+  const auto [place, fastest] = flow.maximum();
+  return {{"outline", "length", "places x2, x3 on the wall, closed", outline, {outline.size() / 2, 2}},
+          {"x2", "length", "columns of the grid", x2, {x2.size()}},
+          {"x3", "length", "rows of the grid", x3, {x3.size()}},
+          {"velocity", "length/time", "along x1 in the empty tube", velocities(flow, x2, x3), {x3.size(), x2.size()}},
+          {"maximum", "length, length/time", "place x2, x3 of the largest velocity, and this velocity", {place[0], place[1], fastest}, {3}},
+          {"pressure_gradient", "pressure/length", "fall of the pressure along the empty tube", {flow.pressure_gradient()}, {}},
+          {"mean_velocity", "length/time", "flow rate over area", {flow.mean_velocity()}, {}},
+          {"radius", "length", "R_T: of the circle of equal area", {flow.radius()}, {}}};
+}
+
+namespace {
+
+constexpr int places_along = 301, sections = 10;
+
+/// Places, a row each.
+std::vector<double> flat(const std::vector<Vec3>& rows) {
+  std::vector<double> out;
+  for (const Vec3& row : rows) out.insert(out.end(), row.data(), row.data() + 3);
+  return out;
+}
+
+/// Along the wall where the outline begins: the way, the tangential traction's size, and the pressure.
+struct WallLine {
+  std::vector<double> s, shear, pressure;
+};
+
+WallLine along_wall(const coupling::ChannelFlow& flow) {
+  const surface::TubeWall& wall = *flow.surface();
+  WallLine line;
+  for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e)
+    for (const double s : {0.125, 0.375, 0.625, 0.875}) {
+      if (wall.space.elements[static_cast<std::size_t>(e)].origin[1] > 0) break;
+      const spline::Site site{e, s, 0};
+      const surface::Point at = surface::point(wall.space, wall.net, site);
+      const Vec3 f = surface::value(wall.space, flow.wall_traction(), site);
+      line.s.push_back(flow.channel().coordinates(at.x)[0]);
+      line.shear.push_back((f - f.dot(at.n) * at.n).norm());
+      line.pressure.push_back(-f.dot(at.n));
+    }
+  return line;
+}
+
+}  // namespace
+
+std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
+  const surface::Channel& channel = flow.channel();
+  const auto [low, high] = channel.outline().box();
+  std::vector<double> s, factor, rate_s;
+  std::vector<Vec3> centre, lines[4];
+  for (int k = 0; k < places_along; ++k) {
+    s.push_back(channel.start() + (channel.end() - channel.start()) * k / (places_along - 1));
+    const surface::Channel::Section at = channel.section(s.back());
+    centre.push_back(at.centre);
+    factor.insert(factor.end(), {at.factor[0], at.factor[1]});
+    lines[0].push_back(at.centre + low[0] * at.factor[0] * at.across), lines[1].push_back(at.centre + high[0] * at.factor[0] * at.across);
+    lines[2].push_back(at.centre + low[1] * at.factor[1] * Vec3::UnitZ()), lines[3].push_back(at.centre + high[1] * at.factor[1] * Vec3::UnitZ());
+  }
+  Net axis(places_along, 3);
+  for (int k = 0; k < places_along; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
+  const Net v = flow.velocities(axis);
+  std::vector<double> velocity(v.data(), v.data() + v.size());
+  for (int k = 0; k < sections; ++k) rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
+  const std::vector<double> rate = flow.flow_rates_at(rate_s);
+  const WallLine wall = along_wall(flow);
+  const std::size_t n = s.size();
+  return {{"s", "length", "way along the centre line", s, {n}},
+          {"centre", "length", "places of the centre line", flat(centre), {n, 3}},
+          {"factor", "1", "of the section there, along x2 (before a bend) and x3", factor, {n, 2}},
+          {"wall", "length", "places of the wall beside the centre line: one side along x2 (before a bend), the other, then along x3",
+           [&] {
+             std::vector<double> all;
+             for (const auto& line : lines)
+               for (const double x : flat(line)) all.push_back(x);
+             return all;
+           }(),
+           {4, n, 3}},
+          {"velocity", "length/time", "of the empty channel on the centre line", velocity, {n, 3}},
+          {"section_s", "length", "where sections are", rate_s, {rate_s.size()}},
+          {"flow_rate", "length^3/time", "through these sections", rate, {rate.size()}},
+          {"wall_s", "length", "way along a line of the wall, where the outline begins", wall.s, {wall.s.size()}},
+          {"wall_shear_stress", "force/length^2", "size of the tangential traction of the empty channel there", wall.shear, {wall.s.size()}},
+          {"wall_pressure", "force/length^2", "of the empty channel there, 0 at the outlet", wall.pressure, {wall.s.size()}},
+          {"pressure_drop", "force/length^2", "between the ends of the empty channel", {flow.pressure_drop()}, {}},
+          {"extra_pressure_drop", "force/length^2", "the same over that of a straight tube of the inlet's section and as long",
+           {flow.extra_pressure_drop()}, {}}};
+}
+
+}  // namespace tanktread

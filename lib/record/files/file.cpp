@@ -1,0 +1,137 @@
+#include "record/files/file.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "base/errors.hpp"
+
+namespace tanktread::output {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view unfinished = ".part", damaged = ".damaged";
+
+bool is_result(const std::string& name) {
+  return name == "run.h5" || name == "duct.h5" || name == "channel.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
+         (name.starts_with("snapshot_") && (name.ends_with(".hdf") || name.find(std::string(".hdf").append(damaged)) != name.npos));
+}
+
+bool is_unfinished(const std::string& name) {
+  return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
+}
+
+template <class Test>
+std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (std::error_code unknown; !entry.is_directory(unknown) && test(entry.path().filename().string())) found.push_back(entry.path());
+  return found;
+}
+
+/// What is done to a directory; the system's refusal becomes a UserError.
+template <class Act>
+void in_directory(const fs::path& directory, const Act& act) try {
+  act();
+} catch (const fs::filesystem_error& error) {
+  throw UserError("the output directory " + directory.string() + " cannot be used: " + error.code().message());
+}
+
+[[noreturn]] void fail(const char* what, const fs::path& path) {
+  throw RunFailure(std::string("cannot ") + what + " " + path.string() + ": " + std::strerror(errno));
+}
+
+/// Some file systems know no fsync, of directories above all.
+bool synced(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == EROFS; }
+
+/// An existing file or directory; a pipe does not let wait.
+struct Opened {
+  explicit Opened(const fs::path& path) : number(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    if (number < 0) fail("read", path);
+  }
+  ~Opened() { ::close(number); }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+  int number;
+};
+
+}  // namespace
+
+void write_whole(const fs::path& path, std::string_view bytes, Durable durable) {
+  const fs::path beside = path.string() + std::string(unfinished);
+  std::FILE* const file = std::fopen(beside.c_str(), "wbe");
+  if (!file) fail("write", path);
+  bool done = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
+  done = done && (durable == Durable::no || synced(fileno(file)));
+  if (std::fclose(file) != 0 || !done || std::rename(beside.c_str(), path.c_str()) != 0) fail("write", path);
+}
+
+void sync(const fs::path& path) {
+  if (!synced(Opened(path).number)) fail("write", path);
+}
+
+void check_opens(const fs::path& path) {
+  const Opened file(path);
+  if (!fs::is_regular_file(path)) throw RunFailure("cannot read " + path.string() + ": it is no regular file");
+}
+
+void check_readable(const fs::path& path) {
+  check_opens(path);
+  const Opened file(path);
+  std::array<char, 1 << 16> bytes;
+  for (ssize_t n = 1; n != 0;)
+    if (n = ::read(file.number, bytes.data(), bytes.size()); n < 0 && errno != EINTR) fail("read", path);
+}
+
+fs::path set_aside(const fs::path& path) {
+  fs::path aside = path.string() + std::string(damaged);
+  for (int k = 2; fs::exists(aside); ++k) aside = path.string() + std::string(damaged) + "." + std::to_string(k);
+  if (std::rename(path.c_str(), aside.c_str()) != 0) fail("rename", path);
+  return aside;
+}
+
+void check_vacant(const fs::path& directory) {
+  std::error_code absent;
+  if (!fs::is_directory(directory, absent)) return;
+  in_directory(directory, [&] {
+    if (!files_where(directory, is_result).empty())
+      throw UserError(directory.string() + " holds a run: --resume " + directory.string() +
+                      " goes on with it, --overwrite deletes it first, --output names another directory.");
+  });
+}
+
+void start_directory(const fs::path& directory) {
+  in_directory(directory, [&] {
+    fs::create_directories(directory);
+    for (const auto& old : files_where(directory, [](const std::string& name) { return is_result(name) || is_unfinished(name); }))
+      fs::remove(old);
+  });
+}
+
+void tidy_directory(const fs::path& directory) {
+  in_directory(directory, [&] {
+    for (const auto& old : files_where(directory, is_unfinished)) fs::remove(old);
+  });
+}
+
+Occupation::Occupation(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  descriptor_ = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  close(descriptor_);
+  throw UserError("another run is writing to the directory " + directory.string());
+}
+
+Occupation::~Occupation() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+}  // namespace tanktread::output

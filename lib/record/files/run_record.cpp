@@ -1,0 +1,89 @@
+#include "record/files/run_record.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+#include "record/files/checksum.hpp"
+#include "record/files/hdf.hpp"
+
+namespace tanktread::output {
+
+RunRecord::RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance)
+    : path_(std::move(path)), deck_(std::move(deck)), provenance_(std::move(provenance)) {}
+
+RunRecord RunRecord::load(const std::filesystem::path& path) try {
+  const hdf::Id file = hdf::open(path);
+  RunRecord record(path, hdf::read_text(file, "deck"), {});
+  for (const auto& key : hdf::attribute_names(file, "provenance")) record.provenance_[key] = hdf::read_attribute(file, "provenance", key);
+  for (const auto& name : hdf::datasets(file, "series")) {
+    const std::string at = "series/" + name;
+    hdf::Shape shape;
+    record.series_.push_back(
+        {name, hdf::read_attribute(file, at, "unit"), hdf::read_attribute(file, at, "description"), hdf::read_doubles(file, at, shape), {}});
+    if (record.series_.back().values.size() != record.rows()) throw std::runtime_error("series of unequal length");
+  }
+  return record;
+} catch (const std::runtime_error& error) {
+  throw UserError("the record " + path.string() + " is missing or damaged (" + error.what() + ")");
+}
+
+void RunRecord::declare(std::string name, std::string unit, std::string description, std::string si) {
+  const auto old = std::ranges::find(series_, name, &Series::name);
+  std::vector<double> values(rows(), std::numeric_limits<double>::quiet_NaN());
+  if (old != series_.end()) {  // rows are given in the order of declaration: a series that was loaded moves behind those declared so far
+    values = std::move(old->values);
+    series_.erase(old);
+  }
+  series_.push_back({std::move(name), std::move(unit), std::move(description), std::move(values), std::move(si)});
+}
+
+void RunRecord::append(std::span<const double> row) {
+  if (row.size() != series_.size()) throw std::logic_error("a row needs one value for every series");
+  for (std::size_t i = 0; i < row.size(); ++i) series_[i].values.push_back(row[i]);
+}
+
+void RunRecord::truncate(std::size_t rows) {
+  for (Series& one : series_) one.values.resize(std::min(rows, one.values.size()));
+}
+
+void RunRecord::describe(std::string deck, std::map<std::string, std::string> provenance) {
+  deck_ = std::move(deck);
+  provenance_ = std::move(provenance);
+}
+
+const std::vector<double>& RunRecord::values(std::string_view name) const {
+  const auto it = std::ranges::find(series_, name, &Series::name);
+  if (it == series_.end()) throw std::out_of_range("no series " + std::string(name));
+  return it->values;
+}
+
+void RunRecord::write(Durable durable) const {
+  const hdf::Id file = hdf::new_file();
+  hdf::write(file, "deck", deck_);
+  hdf::write_group(file, "provenance");
+  hdf::write_group(file, "series");
+  for (const auto& [key, text] : provenance_) hdf::attribute(file, "provenance", key, text);
+  for (const Series& one : series_) {
+    const std::string name = "series/" + one.name;
+    hdf::write(file, name, one.values, {one.values.size()});
+    hdf::attribute(file, name, "unit", one.unit);
+    hdf::attribute(file, name, "description", one.description);
+    if (!one.si.empty()) hdf::attribute(file, name, "SI", one.si);
+  }
+  write_whole(path_, hdf::image(file), durable);
+}
+
+std::string RunRecord::checksum(std::size_t rows) const {
+  std::map<std::string_view, const Series*> by_name;
+  for (const Series& one : series_) by_name[one.name] = &one;
+  Checksum sum;
+  for (const auto& [name, one] : by_name) {
+    sum.add(one->name);
+    for (const double value : std::span(one->values).first(std::min(rows, one->values.size()))) sum.add(value);
+  }
+  return sum.digits();
+}
+
+}  // namespace tanktread::output

@@ -1,0 +1,84 @@
+#include "record/files/snapshot.hpp"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "deck/words.hpp"
+#include "record/files/hdf.hpp"
+
+namespace tanktread::output {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint8_t lagrange_quadrilateral = 70;  // VTK_LAGRANGE_QUADRILATERAL
+constexpr const char* points = "Points";             // the one field that stands beside the others' group
+
+void write(hid_t file, const std::string& name, const Rows& rows, std::size_t dimensions = 2) {
+  hdf::Shape shape{static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())};
+  shape.resize(dimensions);
+  hdf::write(file, name, {rows.data(), static_cast<std::size_t>(rows.size())}, shape);
+}
+
+void write(hid_t file, const Checkpoint& checkpoint) {
+  hdf::write_group(file, "checkpoint");
+  for (const auto& [name, matrix] : checkpoint.arrays) write(file, "checkpoint/arrays/" + name, matrix);
+  std::string names;  // a dataset for each of them would take longer than all of the pictures of a small mesh
+  std::vector<double> numbers;
+  for (const auto& [name, number] : checkpoint.numbers) names += name + "\n", numbers.push_back(number);
+  hdf::write(file, "checkpoint/numbers", numbers, {numbers.size()});
+  hdf::write(file, "checkpoint/names of numbers", names);
+  for (const auto& [name, text] : checkpoint.texts) hdf::write(file, "checkpoint/texts/" + name, text);
+  hdf::attribute(file, "checkpoint", "checksum", checksum(checkpoint));
+}
+
+void write(hid_t file, const LagrangeMesh& mesh) {
+  using Count = std::array<std::int64_t, 1>;
+  for (const char* group : {"VTKHDF", "VTKHDF/PointData", "VTKHDF/CellData", "VTKHDF/FieldData"}) hdf::write_group(file, group);
+  hdf::attribute(file, "VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});
+  hdf::attribute(file, "VTKHDF", "Type", "UnstructuredGrid");
+  hdf::write(file, "VTKHDF/NumberOfPoints", Count{static_cast<std::int64_t>(mesh.sites.size())});
+  hdf::write(file, "VTKHDF/NumberOfCells", Count{static_cast<std::int64_t>(mesh.offsets.size()) - 1});
+  hdf::write(file, "VTKHDF/NumberOfConnectivityIds", Count{static_cast<std::int64_t>(mesh.connectivity.size())});
+  hdf::write(file, "VTKHDF/Connectivity", mesh.connectivity);
+  hdf::write(file, "VTKHDF/Offsets", mesh.offsets);
+  hdf::write(file, "VTKHDF/Types", std::vector<std::uint8_t>(mesh.offsets.size() - 1, lagrange_quadrilateral));
+}
+
+}  // namespace
+
+std::vector<Field> picture(const Nodes& nodes, const Net& net) { return {{points, nodes.values(net)}, {"Normals", nodes.normals(net)}}; }
+
+void write_snapshot(const fs::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields,
+                    Durable durable) {
+  const hdf::Id file = hdf::new_file();
+  write(file, checkpoint);
+  write(file, mesh);
+  for (const Field& field : fields)  // ParaView shows those of one dimension as scalars
+    write(file, (field.name == points ? "VTKHDF/" : "VTKHDF/PointData/") + field.name, field.values, field.values.cols() > 1 ? 2 : 1);
+  write_whole(path, hdf::image(file), durable);
+}
+
+SnapshotSeries::SnapshotSeries(fs::path directory) : directory_(std::move(directory)) {}
+
+SnapshotSeries SnapshotSeries::resumed(fs::path directory, int step, const std::string& run) {
+  SnapshotSeries series(std::move(directory));
+  for (const Snapshot& snapshot : snapshots(series.directory_))
+    if (const auto picture = snapshot.step <= step ? pictured(snapshot.path) : std::nullopt; picture && picture->run == run)
+      series.entries_.push_back({snapshot.step, picture->time});
+  return series;
+}
+
+void SnapshotSeries::add(int step, double time) {
+  std::erase_if(entries_, [step](const Entry& entry) { return entry.step == step; });
+  entries_.push_back({step, time});
+  std::string text = "{\"file-series-version\":\"1.0\",\"files\":[";
+  for (const Entry& entry : entries_) {
+    text += &entry == entries_.data() ? "\n" : ",\n";
+    text += "{\"name\":\"" + snapshot_name(entry.step) + "\",\"time\":" + deck::real_text(entry.time) + "}";
+  }
+  write_whole(directory_ / "run.hdf.series", text + "\n]}\n");
+}
+
+}  // namespace tanktread::output

@@ -1,0 +1,54 @@
+#include "record/files/summary.hpp"
+
+#include "deck/words.hpp"
+
+namespace tanktread::output {
+namespace {
+
+std::string scalar(double value) { return deck::real_text(value); }
+std::string scalar(long value) { return std::to_string(value); }
+std::string scalar(bool value) { return value ? "true" : "false"; }
+std::string scalar(const std::string& value) { return deck::in_quotes(value); }
+std::string scalar(const std::vector<double>& values) {
+  std::vector<std::string> words;
+  for (const double value : values) words.push_back(scalar(value));
+  return "[" + deck::joined(words, ", ") + "]";
+}
+
+template <class Value>
+std::string lines(const Entries<Value>& entries) {
+  std::string text;
+  for (const auto& [name, value] : entries) text += "  " + (deck::is_plain(name) ? name : scalar(name)) + ": " + scalar(value) + "\n";
+  return text;
+}
+
+template <class Value>
+std::string map(const std::string& key, const Entries<Value>& entries) {
+  return key + ":" + (entries.empty() ? " {}\n" : "\n") + lines(entries);
+}
+
+}  // namespace
+
+std::string yaml(const Summary& summary) {
+  std::string text = "status: " + scalar(summary.status) + "\n";
+  text += map("final", summary.final) + lines(summary.final_vectors);
+  if (!summary.final_in_si.empty()) text += map("final in SI", summary.final_in_si);
+  text += summary.expect.empty() ? "expect: []\n" : "expect:\n";
+  for (const deck::Verdict& one : summary.expect) {
+    text += "  - name: " + scalar(one.name) + "\n";
+    text += "    value: " + scalar(one.value) + "\n";
+    text += "    expected: " + scalar(one.expected) + "\n";
+    text += "    error: " + scalar(one.error) + "\n";
+    text += "    passed: " + scalar(one.passed) + "\n";
+    if (!one.not_binding.empty()) text += "    not binding: " + scalar(one.not_binding) + "\n";
+  }
+  text += map("counts", summary.counts) + map("seconds", summary.seconds);
+  if (!summary.memory.empty()) text += map("memory", summary.memory);
+  text += map("plan", summary.plan) + map("numbers", summary.numbers);
+  if (!summary.modes.empty()) text += map("modes", summary.modes);
+  text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";
+  for (const std::string& one : summary.warnings) text += "  - " + scalar(one) + "\n";
+  return text;
+}
+
+}  // namespace tanktread::output

@@ -1,0 +1,288 @@
+#include "record/plan.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/formatted.hpp"
+#include "base/instruction_set.hpp"
+#include "deck/units.hpp"
+#include "membrane/strain_energy.hpp"
+#include "record/numbers.hpp"
+#include "scene/member.hpp"
+#include "scene/particles/gaps.hpp"
+#include "scene/tube.hpp"
+#include "stokes/layer_surface.hpp"
+#include "system/solids/wall.hpp"
+#include "system/solvers/frozen_operator.hpp"
+
+namespace tanktread {
+
+namespace {
+
+using Lines = output::Entries<std::string>;
+
+std::string on_ranks(int ranks) { return formatted("on %d rank%s", ranks, ranks > 1 ? "s" : ""); }
+
+std::string surface_line(const Body& body) {
+  return formatted("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
+                   body.space.description.c_str());
+}
+
+/// How the unknowns of a tube's wall are found.
+std::string wall_solver(const Scene& scene) {
+  if (!scene.in_system()) return "eliminated from the system of the traction";
+  if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
+  return std::ranges::any_of(scene.alone(), &Scene::has_velocity_system) ? "eliminated from the system of the velocity" : "solved for directly";
+}
+
+void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
+  if (scene.units) lines.emplace_back("units", scene.units->description());
+  if (!body.wall) {
+    const std::string history = scene.flow.history ? ", changing in time" : "";
+    if (const auto cell = scene.domain.cell()) {
+      constexpr const char* of[] = {"length", "area", "volume"};
+      lines.emplace_back("flow", scene.flow.type + history + ", in a lattice that repeats along " + scene.domain.periodic +
+                                     formatted(": cell of %s %.6g, near images as sources, the rest between Chebyshev nodes", of[cell->n() - 1],
+                                               cell->volume()));
+      return;
+    }
+    if (scene.wall.present) {
+      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: no wall unknowns, its images with every node");
+      return;
+    }
+    lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
+    return;
+  }
+  const surface::TubeWall& wall = *body.wall;
+  const double unknowns = 3.0 * wall.space.n_points / (wall.channel ? body.symmetry.order() : 1);
+  std::string flow = "quiescent fluid";
+  if (scene.flow.type == "simple shear") flow = scene.flow.type + ", with which the wall goes along; the duct's own flow for the pressure drop";
+  if (scene.flow.type == "duct")
+    flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
+  lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));
+  if (wall.channel)
+    lines.emplace_back("channel", formatted("section `%s`, R_T = %.6g at the inlet, s from %.6g to %.6g, %.6g wide where it is narrowest: %s",
+                                            scene.tube.section.c_str(), body.duct->radius(), wall.start, wall.end,
+                                            2 * wall.channel->smallest_radius(), wall.space.description.c_str()));
+  else
+    lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
+                                       wall.space.description.c_str()));
+  if (wall.images > 0)
+    lines.emplace_back("train", formatted("period %.6g, %d copies at either side, those beyond left out", *scene.tube.periodic_length, wall.images));
+  const bool iterates = wall.channel && coupling::Wall::iterates(scene.solvers.wall, unknowns);
+  const double megabytes = 8e-6 * unknowns * unknowns;
+  const std::string how = iterates ? "found by GMRES and clusters in each velocity"
+                                   : formatted("factored once: %.1f MB on each of %d rank%s", megabytes, ranks, ranks > 1 ? "s" : "");
+  lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene).c_str()) + how);
+}
+
+std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
+  if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
+    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns a velocity",
+                     scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
+  if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
+  return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
+                   scene.solvers.assembled(tree) && !scene.domain.present ? "assembled" : "matrix-free", 3 * n_points);
+}
+
+std::string membrane_line(const Scene& scene) {
+  const std::size_t forces = scene.membrane.forces.all.size();
+  const std::string pulled = forces > 0 ? formatted(", pulled at %d patch%s", static_cast<int>(forces), forces > 1 ? "es" : "") : "";
+  const auto own = scene.membrane.strain_energy();
+  const std::string law = own ? formatted(" with shear modulus %.6g G_s and area modulus %.6g G_s for small strains", own->shear_modulus(),
+                                          own->area_modulus())
+                              : "";
+  const std::string memory = scene.maxwell_membrane() ? formatted(", a Maxwell element that forgets within %g", *scene.membrane.relaxation_time) : "";
+  const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
+  if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
+  if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
+  if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";
+  return load + " per current area (3.6), mass matrix factored every evaluation";
+}
+
+std::string surfactant_line(const Scene& scene, int n_points) {
+  return formatted("%s equation of state, tension %.6g of that of the clean interface at the start: %d unknowns",
+                   scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1), n_points);
+}
+
+std::string mesh_line(const Scene& scene) {
+  if (!scene.adaptation.enabled) return "fixed";
+  return std::string("refined as the particle deforms") + (scene.adaptation.indicator == "error" ? ", by estimated errors (1.5)" : " (P-37)");
+}
+
+/// `pairs`: of control points, all that are in the frozen operator.
+std::string time_line(const Scene& scene, double pairs, int ranks) {
+  const bool chosen = scene.time.scheme == "auto";
+  const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
+  if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
+  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node a control point, not assembled";
+  return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
+}
+
+/// In place of the line `time`: what is sought.
+void add_steady(Lines& lines, const Scene& scene, const Body& body) {
+  if (scene.steady.present)
+    lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
+  if (scene.periodic.present) lines.emplace_back("periodic", "the shape that comes back, as the fixed point of runs over a period");
+  if (scene.continuation.present)
+    lines.emplace_back("branch", formatted("along %s to %g, ", scene.continuation.parameter.c_str(), scene.continuation.to) +
+                                     scene.continuation.method + ", each point by an iteration of its own");
+  if (const auto& second = scene.continuation.second_parameter)
+    lines.emplace_back("folds", formatted("the first one at %zu values of %s", scene.continuation.second_values->size(), second->c_str()));
+  if (!scene.spectrum.present) return;
+  const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.interface_motion() == "material" ? 3 : 1);
+  const bool dense = scene.spectrum.method == "dense";
+  lines.emplace_back("spectrum", dense ? formatted("%d unknowns at most: as many pairs of velocities for the Jacobian, all its eigenvalues", unknowns)
+                                       : formatted("%d unknowns at most: block Krylov-Schur on the shift-inverted motion", unknowns));
+}
+
+std::string symmetry_line(const Scene& scene, const Body& body) {
+  if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
+  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "none looked for in a tube" : "none found";
+  const int evaluated = static_cast<int>(body.symmetry.fundamental().size());
+  return body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less; whatever would break it is left out "
+                                                 "(Symmetry/use)",
+                                                 evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
+}
+
+/// What is solved for of a rigid particle, prescribed or free.
+std::string rigid_line(const Scene& scene, const Body& body) {
+  if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
+  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
+  return std::string("rigid and free, no membrane: six rigid motions") +
+         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") + ", solved once, are all that it can meet";
+}
+
+std::string forces_line(const Scene& scene) {
+  const ParticleOptions& particle = scene.particle;
+  if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
+  return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
+}
+
+/// The systems that are solved by iteration, and by what.
+std::string solvers_line(const Scene& scene) {
+  const coupling::SolverOptions& solvers = scene.solvers;
+  std::string line;
+  const auto add = [&](const char* system, const coupling::IterativeOptions& options) {
+    const coupling::IterativeOptions own = solvers.of(options);
+    line += (line.empty() ? "" : "; ") + std::string(system) + " by " + *own.solver;
+    if (own.preconditioner != "own") line += ", preconditioner `" + own.preconditioner + "`";
+  };
+  if (!scene.in_system()) {
+    add("traction", solvers.traction);
+    return line;
+  }
+  const bool blocks = scene.tube.present && solvers.tube != "schur";
+  if (blocks || std::ranges::any_of(scene.alone(), &Scene::has_velocity_system)) add("velocity", solvers.velocity);
+  if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
+  if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
+  if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
+  return line.empty() ? "none iterates" : line;
+}
+
+Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
+  const int n = body.space.n_points;
+  Lines lines = {{"surface", std::to_string(n) + " control points: " + body.space.description},
+                 {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * n)}};
+  add_fluid(lines, scene, body, ranks);
+  lines.emplace_back("particle", rigid_line(scene, body));
+  lines.emplace_back("forces", forces_line(scene));
+  lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
+  lines.emplace_back("solvers", solvers_line(scene));
+  lines.emplace_back("assembled", formatted("%.1f MB ", (scene.wall.present ? 144e-6 : 72e-6) * n * n) + on_ranks(ranks));
+  lines.emplace_back("kernels", instructions());
+  lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
+  if (scene.adaptation.enabled) lines.emplace_back("mesh", "refined once at the first place, where the shape, a film or the traction asks for it");
+  lines.emplace_back("symmetry", "none used");
+  return lines;
+}
+
+/// What one of several particles is; alike ones share a line.
+std::string particle_line(const Scene& one, int n_points, bool tree) {
+  if (!one.particle.rigid()) return membrane_line(one) + "; " + viscosity_line(one, n_points, tree) + "; mesh " + mesh_line(one);
+  const bool first_kind = one.solvers.rigid_bodies == "first kind", around = one.tube.present || one.domain.present;
+  const char* by_traction = around ? "its traction, by GMRES around factors of the bodies alone, in a system" : "its traction, in a factored system";
+  return formatted("rigid, %s: no membrane, no mesh that moves; %s of %d unknowns a velocity %s",
+                   one.particle.motion == Motion::free ? "free" : "moving as told",
+                   first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)");
+}
+
+std::string far_sum_line(const Scene& scene, bool tree) {
+  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node";
+  return sum + (scene.quadrature.far_in_single() ? ", terms in single precision" : "");
+}
+
+Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
+  const bool tree = stokes::sums_by_tree(all.space, scene.quadrature, scene.domain.present ? 27 : 1);
+  const double n = all.space.n_points;
+  const std::vector<Scene> alone = scene.alone();
+  Lines lines = {{"particles", formatted("%zu, in one system", alone.size())},
+                 {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
+  add_fluid(lines, scene, all, ranks);
+  lines.emplace_back("far sum", far_sum_line(scene, tree));
+  lines.emplace_back("kernels", instructions());
+  lines.emplace_back("contact", formatted(scene.contact.limiter ? "gaps between particles are held at %g R_C by forces that never pull (4.23)"
+                                                                : "a gap between particles below %g R_C ends the run; no force but the fluid's",
+                                          scene.contact.limit));
+  lines.emplace_back("volume", scene.volume.constraint + ", of each");
+  if (scene.runs_in_time())
+    lines.emplace_back("time", time_line(scene, n * n, ranks));
+  else
+    add_steady(lines, scene, all);
+  lines.emplace_back("solvers", solvers_line(scene));
+  lines.emplace_back("symmetry", "none looked for among several particles");
+  std::string last;
+  for (const Scene& one : alone) {
+    const std::string line = particle_line(one, all.space.n_points, tree);
+    if (lines.back().second == line)
+      last = " … " + one.name;
+    else
+      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name.empty() ? "particle" : one.name, line);
+  }
+  lines.back().first += last;
+  return lines;
+}
+
+}  // namespace
+
+output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
+  if (scene.has_gaps() || (scene.in_system() && scene.particle.rigid())) return plan_of_several(scene, body, ranks);
+  if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
+  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
+  const int n = body.space.n_points;
+  Lines lines = {{"surface", surface_line(body)}, {"unknowns", formatted("%d positions", 3 * n)}};
+  add_fluid(lines, scene, body, ranks);
+  lines.emplace_back("viscosity", viscosity_line(scene, n, tree));
+  lines.emplace_back("membrane", membrane_line(scene));
+  if (scene.surfactant) lines.emplace_back("surfactant", surfactant_line(scene, n));
+  lines.emplace_back("deformation", body.plane.description());
+  lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
+  lines.emplace_back("far sum", far_sum_line(scene, tree));
+  lines.emplace_back("kernels", instructions());
+  lines.emplace_back("volume", scene.volume.constraint);
+  if (scene.runs_in_time())
+    lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
+  else
+    add_steady(lines, scene, body);
+  lines.emplace_back("solvers", solvers_line(scene));
+  lines.emplace_back("mesh", mesh_line(scene));
+  lines.emplace_back("symmetry", symmetry_line(scene, body));
+  return lines;
+}
+
+output::Entries<std::string> plan(const Scene& scene, int ranks) {
+  std::vector<Member> all = members(scene);
+  check_apart(all, scene.domain.cell());
+  arrange(all);
+  const std::unique_ptr<Body> stacked = stacked_body(all);
+  if (stacked && scene.tube.present) stacked->wall = wall(scene, *stacked);
+  return plan(scene, stacked ? *stacked : *all.front().body, ranks);
+}
+
+std::string plan_text(const output::Entries<std::string>& plan) {
+  std::string text = "plan\n";
+  for (const auto& [what, how] : plan) text += formatted("  %-11s ", what.c_str()) + how + "\n";
+  return text;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,345 @@
+#include "record/results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <iterator>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include <sys/resource.h>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/expectation.hpp"
+#include "deck/units.hpp"
+#include "record/duct_picture.hpp"
+#include "record/files/checksum.hpp"
+#include "record/files/file.hpp"
+#include "record/files/progress.hpp"
+#include "record/files/state.hpp"
+#include "record/numbers.hpp"
+#include "scene/series/series.hpp"
+#include "spline/iga.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr std::chrono::seconds second(1);
+
+/// The most bytes that processes have had: of the rank with most, of all. Collective.
+output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::vector<double> all(static_cast<std::size_t>(ranks.size()), 0);
+  all[static_cast<std::size_t>(ranks.rank())] = 1024. * static_cast<double>(usage.ru_maxrss);
+  ranks.add(all);
+  return {{"largest of a rank", std::lround(std::ranges::max(all))}, {"all ranks", std::lround(std::accumulate(all.begin(), all.end(), 0.))}};
+}
+
+/// Ranks act; if one fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else. Collective.
+template <class Act>
+void together(const coupling::Ranks& ranks, bool acts, const Act& action) {
+  std::string error;
+  bool mistake = false;
+  if (acts) {
+    try {
+      action();
+    } catch (const std::exception& exception) {
+      error = exception.what();
+      mistake = dynamic_cast<const UserError*>(&exception) != nullptr;
+    }
+  }
+  if (!ranks.any(!error.empty())) return;
+  if (error.empty()) error = "another rank could not do its part";
+  if (ranks.any(mistake)) throw UserError(error);
+  throw RunFailure(error);
+}
+
+/// Of a run, unlike any other's: sixteen hexadecimal digits.
+std::string identifier() {
+  std::random_device random;
+  output::Checksum sum;
+  for (int k = 0; k < 4; ++k) sum.add(static_cast<std::uint64_t>(random()));
+  sum.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
+  return sum.digits();
+}
+
+UserError another_version(const std::filesystem::path& directory) {
+  return UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
+}
+
+Resumed stored_run(const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
+  return {output::stored_state(checkpoint), stored_totals(checkpoint), checkpoint};
+} catch (const std::out_of_range&) {
+  throw another_version(directory);
+}
+
+}  // namespace
+
+output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier) {
+  output::Entries<double> seconds;
+  for (const Phases::Phase& phase : phases.all()) seconds.emplace_back(phase.name, phase.seconds);
+  for (const auto& [name, before] : earlier) {
+    const auto same = std::ranges::find(seconds, name, &std::pair<std::string, double>::first);
+    if (same == seconds.end())
+      seconds.emplace_back(name, before);
+    else
+      same->second += before;
+  }
+  return seconds;
+}
+
+std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + ".iga"; }
+
+std::string kept_stress_free(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + "_stress_free.iga"; }
+
+std::string kept_places(const ParticleKind& kind) { return kind.name + ".csv"; }
+
+std::string kept_name(const std::string& file) { return std::filesystem::path(file).filename(); }
+
+output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks) {
+  const bool chooses = ranks.rank() == 0;
+  std::optional<output::Saved> saved;
+  together(ranks, chooses, [&] { saved = output::newest_checkpoint(directory); });
+  std::int64_t step = saved ? saved->file.step : -1;
+  ranks.first({&step, 1});
+  if (step < 0) throw UserError("--resume " + directory.string() + ": there is no checkpoint in this directory");
+  together(ranks, !chooses, [&] {
+    const std::filesystem::path path = directory / output::snapshot_name(static_cast<int>(step));
+    saved = {{path, static_cast<int>(step)}, output::read_checkpoint(path), {}};
+  });
+  return *saved;
+}
+
+void check_vacant(const RunRequest& request) {
+  const coupling::Ranks ranks;
+  std::error_code absent;
+  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output, absent), [&] {
+    const output::Occupation occupation(request.output);
+    output::check_vacant(request.output);
+  });
+}
+
+/// The first rank does.
+template <class Write>
+void Results::write(const Write& action) {
+  together(ranks_, writes_, action);
+}
+
+std::map<std::string, std::string> Results::origin() const {
+  std::map<std::string, std::string> made_by = request_.provenance;
+  made_by["ranks"] = std::to_string(ranks_.size());
+  made_by["run"] = run_;
+  return made_by;
+}
+
+Results::Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map,
+                 const coupling::Ranks& ranks)
+    : scene_(scene), request_(request), body_(&body), ranks_(ranks), columns_(columns(scene)), writes_(ranks.rank() == 0),
+      directory_(request.output) {
+  std::vector<output::Array> channel;
+  if (const auto* flow = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()); flow && !request.resume) channel = channel_picture(*flow);
+  write([&] {
+    occupation_.emplace(directory_);
+    request.resume ? output::tidy_directory(directory_) : begin();
+    if (!channel.empty()) output::write_arrays(directory_ / "channel.h5", channel);
+  });
+  remesh(body, map);
+}
+
+/// The files of a new run.
+void Results::begin() {
+  if (!request_.overwrite) output::check_vacant(directory_);
+  output::start_directory(directory_);
+  run_ = identifier();
+  for (const auto& [file, name] : scene_.files) keep(file, name);
+  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(stokes::DuctFlow(*body_->duct)));
+  record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
+  series_.emplace(directory_);
+  declare_series();
+}
+
+void Results::keep(const std::filesystem::path& file, const std::filesystem::path& name) {
+  const std::filesystem::path place = directory_ / name;
+  std::error_code error;
+  if (std::filesystem::equivalent(file, place, error)) return;
+  if (!std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing, error))
+    throw RunFailure("cannot copy " + file.string() + " to " + place.string() + ": " + error.message());
+}
+
+void Results::declare_series() {
+  for (const Column& one : columns_.all())
+    record_->declare(one.name, one.unit, one.description, scene_.units ? scene_.units->in_si(one.unit) : std::string());
+}
+
+void Results::remesh(const Body& body, const surface::BezierMap& map) {
+  body_ = &body;
+  if (writes_) nodes_.emplace(map, output::lagrange_mesh(body.space, body.unstressed));
+}
+
+std::optional<Resumed> Results::resumed() {
+  if (!request_.resume) return {};
+  const output::Saved saved = newest_checkpoint(directory_, ranks_);
+  const std::string chosen = saved.file.path.filename();
+  Resumed resumed = stored_run(saved.checkpoint, directory_);
+  last_saved_ = resumed.totals.step;
+  if (saved.file.step != last_saved_)
+    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name", last_saved_));
+  for (const Warning& warning : resumed.totals.warnings.said) warnings_.push_back(warning.sentence);
+  write([&] {
+    load_record(saved.checkpoint, chosen);
+    set_aside(saved.damaged, chosen);
+    series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_, run_));
+  });
+  if (writes_ && !request_.quiet) std::printf("  resumed     from %s\n", chosen.c_str());
+  return resumed;
+}
+
+/// The record up to a checkpoint. Throws UserError where it is not the one that the checkpoint was saved with.
+void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
+  if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
+  run_ = checkpoint.texts.at("run");
+  record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
+  const auto rows = static_cast<std::size_t>(last_saved_) + 1;
+  const auto& origin_of_record = record_->provenance();
+  if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
+    throw UserError("--resume " + directory_.string() + ": " + chosen + " and run.h5 are of different runs: remove the foreign one.");
+  if (record_->rows() < rows || record_->checksum(rows) != checkpoint.texts.at("record"))
+    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen + " are not as they were written.");
+  record_->truncate(rows);
+  record_->describe(request_.deck_text, origin());
+  declare_series();
+}
+
+/// Files that a run would have gone on from, had they been whole: they stay, under other names.
+void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen) {
+  for (const auto& [path, reason] : damaged)
+    warn(path.filename().string() + " is damaged (" + reason + ") and now is called " + output::set_aside(path).filename().string() +
+         ": the run goes on from " + chosen);
+}
+
+void Results::record(const Columns& row) {
+  if (!std::ranges::equal(row.all(), columns_.all(), {}, &Column::name, &Column::name))
+    throw std::logic_error("the columns of a row are not those that were declared");
+  write([&] {
+    record_->append(row.values());
+    if (record_->rows() == 1 || Clock::now() >= due_) write_record();
+  });
+}
+
+void Results::write_record() {
+  const auto begun = Clock::now();
+  record_->write(durable());
+  due_ = Clock::now() + std::max<Clock::duration>(second, 50 * (Clock::now() - begun));
+}
+
+/// What a shorter run has written is sooner written again than waited for.
+output::Durable Results::durable() const { return Clock::now() - start_ < second ? output::Durable::no : output::Durable::yes; }
+
+void Results::warn(const std::string& sentence) {
+  warnings_.push_back(sentence);
+  if (writes_) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
+}
+
+void Results::write_surface(const Net& surface) {
+  write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
+}
+
+Results::Sampled Results::sample(const SurfacePicture& picture, double time) {
+  Sampled sampled;
+  write([&] {
+    sampled = {time, nodes_->mesh(), output::picture(*nodes_, picture.surface)};
+    std::ranges::move(picture.fields(*nodes_), std::back_inserter(sampled.fields));
+  });
+  return sampled;
+}
+
+void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture) {
+  write([&] {
+    write_record();
+    complete(checkpoint, state, totals, picture.time);
+    output::write_snapshot(directory_ / output::snapshot_name(totals.step), checkpoint, picture.mesh, picture.fields, durable());
+    if (durable() == output::Durable::yes) output::sync(directory_);
+    series_->add(totals.step, picture.time);
+  });
+  last_saved_ = totals.step;
+}
+
+void Results::complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const {
+  output::store(state, checkpoint);
+  store(totals, checkpoint);
+  checkpoint.numbers["picture time"] = picture_time;
+  checkpoint.texts["deck"] = request_.deck_text;
+  checkpoint.texts["run"] = run_;
+  checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(totals.step) + 1);
+}
+
+int Results::close(const Account& account, const Phases& phases) {
+  memory_ = peak_memory(ranks_);
+  std::string missed;
+  write([&] { missed = finish(account, phases); });
+  if (!account.whole) missed.clear();
+  if (writes_) {
+    if (!request_.quiet) std::fputs(output::closing_table(phases, account.counts, directory_).c_str(), stdout);
+    const std::string line = account.remark + (account.remark.empty() || missed.empty() ? "" : "; ") + missed;
+    if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
+  }
+  return ranks_.any(!missed.empty()) ? 1 : 0;
+}
+
+/// Writes the summary; warns of what was missed and does not bind; returns what was missed and does, in one line.
+std::string Results::finish(const Account& account, const Phases& phases) {
+  output::Summary summary;
+  summary.status = account.status;
+  deck::SeriesTable table;
+  for (const output::Series& series : record_->series()) {
+    table[series.name] = series.values;
+    summary.final.emplace_back(series.name, series.values.back());
+    if (!series.si.empty()) summary.final_in_si.emplace_back(series.name, scene_.units->in_si(series.unit, series.values.back()));
+  }
+  deck::UndefinedSeries undefined;
+  for (const Column& one : columns_.all())
+    if (!one.undefined_if.empty()) undefined[one.name] = one.undefined_if;
+  std::string missed;
+  for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table, undefined)) {
+    summary.expect.push_back(verdict);
+    if (verdict.passed) continue;
+    const std::string found = verdict.name + ": " + verdict.reason;
+    if (verdict.not_binding.empty())
+      missed += (missed.empty() ? "missed Expect/" : "; Expect/") + found;
+    else
+      warn("Expect/" + found + "; this does not fail the run: " + verdict.not_binding);
+  }
+  for (const auto& [name, value] : account.vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
+  summary.counts = account.counts;
+  summary.seconds = with_earlier(phases, account.earlier);
+  summary.memory = memory_;
+  summary.plan = account.plan;
+  summary.numbers = numbers(scene_, *body_);
+  summary.modes = account.modes;
+  summary.warnings = warnings_;
+  output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
+  if (durable() == output::Durable::yes)
+    for (const char* name : {"summary.yaml", "run.hdf.series", "."}) output::sync(directory_ / name);
+  return missed;
+}
+
+std::vector<std::string> check_expectations(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Column& one : columns(scene).all()) names.push_back(one.name);
+  deck::check_series(scene.expect.all, names);
+  const double last = scene.continuation.present ? scene.continuation.points : 0;
+  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
+  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
+}
+
+std::string stored_deck(const std::string& directory) {
+  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
+}
+
+}  // namespace tanktread

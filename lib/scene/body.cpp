@@ -1,0 +1,131 @@
+#include "scene/body.hpp"
+
+#include <utility>
+
+#include "membrane/patch_forces.hpp"
+#include "membrane/wall_repulsion.hpp"
+#include "membrane/weight.hpp"
+#include "membrane/whole_membrane.hpp"
+#include "scene/initial_shape.hpp"
+#include "scene/member.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/tube.hpp"
+#include "spline/extraction.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread {
+
+namespace {
+
+membrane::Law law(const membrane::Options& options, double modulus) {
+  if (options.law == "Skalak") return membrane::Skalak{modulus, options.area_dilatation.value_or(1.0)};
+  if (options.law == "Evans-Skalak") return membrane::EvansSkalak{modulus, options.area_dilatation.value_or(1.0)};
+  if (options.law == "Mooney-Rivlin") return membrane::MooneyRivlin{modulus, options.neo_hookean_share.value()};
+  if (options.law == "expression") return membrane::UserLaw{modulus, options.strain_energy()};
+  if (options.law == "surface tension") return membrane::SurfaceTension{modulus};
+  return membrane::NeoHookean{modulus};
+}
+
+membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::TubeWall& wall) {
+  const double mouth = tube.radius.value();
+  std::function<double(double)> radius = [mouth](double) { return mouth; };
+  if (const auto channel = wall.channel) radius = [mouth, channel](double s) { return mouth * channel->section(s).factor[0]; };
+  return {std::move(radius), *tube.repulsion, *tube.repulsion_range};
+}
+
+}  // namespace
+
+void lay_out(const Scene& scene, spline::TMesh mesh, Body& body) {
+  body.mesh = std::move(mesh);
+  if (scene.surface.polar()) {
+    const spline::PolarMesh polar = scene.surface.polar_mesh();
+    body.space = spline::space(body.mesh, polar.poles, polar.subdivisions);
+    if (scene.adaptation.enabled && polar.poles == spline::PoleRule::bezier_transform)
+      body.plain = std::make_shared<const spline::Space>(spline::space(body.mesh, spline::PoleRule::plain));
+  } else {
+    const bool g1 = scene.surface.extraordinary_points == "g1";
+    body.space = spline::space(body.mesh, g1 ? spline::ExtraordinaryRule::g1 : spline::ExtraordinaryRule::catmull_clark);
+  }
+}
+
+bool alike(const Scene& one, const Scene& other) {
+  const surface::ParticleShape &here = one.particle.shape, &there = other.particle.shape;
+  const auto levels = [](const Scene& scene) { return scene.adaptation.enabled ? scene.adaptation.levels : 0; };
+  return here.shape == there.shape && here.shape != "file" && !here.initial && !there.initial && one.surface == other.surface &&
+         levels(one) == levels(other);
+}
+
+Body body(const Scene& scene, const Member* alike) {
+  Body b;
+  const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
+  if (alike) {
+    const Body& other = *alike->body;
+    b.mesh = other.mesh, b.space = other.space, b.plain = other.plain;
+    b.rest = surface::placed_again(other.rest, alike->scene.particle.shape, scene.particle.shape);
+  } else if (const auto& imported = scene.particle.shape.imported) {
+    b.space = imported->space;
+    b.rest = surface::imported_shape(scene.particle.shape);
+  } else if (scene.surface.polar()) {
+    const spline::PolarMesh mesh = scene.surface.polar_mesh();
+    lay_out(scene, spline::polar(mesh.azimuthal, mesh.meridional, levels), b);
+    b.rest = surface::initial_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
+  } else {
+    lay_out(scene, spline::cube(scene.surface.elements_per_side.value(), levels), b);
+    b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
+  }
+  const auto before = run_before(scene);
+  if (before && scene.adaptation.enabled) {
+    lay_out(scene, stored_mesh(b.mesh, *before), b);
+    b.rest = before->arrays.at("initial");
+  }
+  b.initial = initial_shape(scene, b, before ? &*before : nullptr);
+  const Vec3& center = scene.particle.shape.center;
+  b.unstressed = scene.particle.rigid() ? b.rest : membrane::unstressed(stress_free_shape(scene, b), center, scene.membrane.pre_inflation);
+  b.duct = duct(scene);
+  b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
+  b.plane = flow_plane(scene.flow);
+  b.radius = scene.radius();
+  b.modulus = scene.modulus();
+  b.law = law(scene.membrane, b.modulus);
+  check_fit(scene, b);
+  if (scene.wall.present) check_in_front(scene, b);
+  if (scene.name.empty()) b.wall = wall(scene, b);
+  b.symmetry = symmetry(scene, b, b.initial);
+  const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
+  b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
+  return b;
+}
+
+surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
+  const bool channel = body.wall && body.wall->channel;
+  if (scene.particle.rigid() || (body.wall && !channel) || scene.domain.present) return surface::Symmetry(body.space.n_points);
+  const Net* nets[] = {&body.unstressed, &body.rest, &x};
+  if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
+  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
+                            scene.wall.present ? scene.wall.normal : Vec3::Zero());
+}
+
+coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {
+  coupling::LoadList all;
+  if (wall && scene.tube.repulsion)
+    all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(scene.tube, *wall)));
+  if (scene.particle.rigid()) return all;
+  const membrane::Options& given = scene.membrane;
+  const membrane::WholeStiffness whole{given.global_area_dilatation * body.modulus, given.leaf_modulus * given.bending(body.modulus, body.radius),
+                                       given.leaf_difference};
+  if (whole.any()) all.push_back(std::make_shared<membrane::WholeMembrane>(body.space, body.unstressed, body.radius, whole));
+  if (const Vec3 force = scene.body_force(); !force.isZero(0)) all.push_back(std::make_shared<membrane::Weight>(body.space, force));
+  if (!given.forces.all.empty())
+    all.push_back(std::make_shared<membrane::PatchLoad>(given.forces, body.space, given.stress_free == "resting" ? body.unstressed : body.rest));
+  for (const auto& part : scene.loads) all.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
+  return all;
+}
+
+stokes::Measure load_measure(const Scene& scene) {
+  const bool reference =
+      scene.membrane.load == "weak" && scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
+  return reference ? stokes::Measure::reference : stokes::Measure::current;
+}
+
+}  // namespace tanktread

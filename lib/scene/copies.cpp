@@ -1,0 +1,196 @@
+#include "scene/copies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/Geometry>
+
+#include "base/csv.hpp"
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
+#include "scene/packing.hpp"
+#include "scene/scene.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// A copy's centre and orientation, a rotation vector in degrees.
+struct Copy {
+  Vec3 centre, orientation = Vec3::Zero();
+};
+
+Eigen::AngleAxisd rotation(const Vec3& degrees) {
+  const double angle = degrees.norm();
+  return angle > 0 ? Eigen::AngleAxisd(angle * std::numbers::pi / 180, degrees / angle) : Eigen::AngleAxisd(0, Vec3::UnitX());
+}
+
+std::vector<Copy> in_file(const std::string& file, const std::string& list) {
+  const std::string name = list + "/file \"" + file + "\"";
+  std::vector<Copy> copies;
+  for (const CsvRow& row : csv_rows(text_of_file(file, name, 100'000'000), "x1")) {
+    const std::string where = name + formatted(", line %d: ", row.line);
+    if (row.fields.size() != 3 && row.fields.size() != 6)
+      throw UserError(where + "a row holds a centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees, but this one holds " +
+                      formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
+    Copy& copy = copies.emplace_back();
+    for (std::size_t c = 0; c < row.fields.size(); ++c)
+      (c < 3 ? copy.centre : copy.orientation)[static_cast<Eigen::Index>(c % 3)] = csv_number(row.fields[c], where);
+  }
+  if (copies.empty()) throw UserError(name + " holds no row of a centre.");
+  return copies;
+}
+
+/// About the origin.
+std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
+  std::vector<Copy> copies;
+  for (int i = 0; i < counts[0]; ++i)
+    for (int j = 0; j < counts[1]; ++j)
+      for (int k = 0; k < counts[2]; ++k) copies.push_back({(Vec3(i, j, k) - (counts - Vec3::Ones()) / 2).cwiseProduct(spacing)});
+  return copies;
+}
+
+/// Places that are drawn one after the other, of which those too close to an earlier one are thrown away.
+std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
+                            const std::string& list) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
+  const Vec3 half = how.box ? Vec3(*how.box / 2) : Vec3::Constant(*how.ball);
+  std::vector<Copy> copies;
+  const long most = 20000L * number;
+  for (long trial = 0; static_cast<int>(copies.size()) < number; ++trial) {
+    if (trial == most)
+      throw UserError(formatted("%s: there is no room: %zu of %d were placed in %ld trials; give fewer, more room, or a smaller `least gap`.",
+                                list.c_str(), copies.size(), number, most));
+    Vec3 place;
+    for (int c = 0; c < 3; ++c) place[c] = (2 * uniform(random) - 1) * (half[c] - radius);
+    if (how.ball && place.norm() > *how.ball - radius) continue;
+    const PackedSphere here{origin + place, radius, how.least_gap, true};
+    const auto meets = [&](const PackedSphere& other) { return (here.centre - other.centre).norm() < least_distance(here, other, how.least_gap); };
+    if (std::ranges::any_of(taken, meets)) continue;
+    taken.push_back(here);
+    copies.push_back({place});
+  }
+  return copies;
+}
+
+int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell) {
+  if (how.number) return *how.number;
+  const double room = how.box ? how.box->prod() : how.ball ? 4 * std::numbers::pi / 3 * std::pow(*how.ball, 3) : cell->volume();
+  return std::max(1, static_cast<int>(std::lround(*how.volume_fraction * room / of_one)));
+}
+
+/// Anywhere in the cell, one over the other: `pack` is to follow.
+std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
+                          std::vector<PackedSphere>& taken) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
+  for (int k = 0; k < number; ++k) {
+    Vec3 place;
+    for (int c = 0; c < 3; ++c) place[c] = uniform(random) - 0.5;
+    taken.push_back({origin + cell.vectors() * place, radius, how.least_gap, false});
+  }
+  return std::vector<Copy>(static_cast<std::size_t>(number));
+}
+
+std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::PeriodicCell>& cell, std::vector<PackedSphere>& taken) {
+  const CopiesOptions& how = kind.copies;
+  const surface::ParticleShape& shape = kind.particle.shape;
+  const std::string list = "Particles/" + kind.name + "/copies";
+  const double radius = shape.circumscribed_radius();
+  if (!how.present) {
+    taken.push_back({shape.center, radius, 0, true});
+    return {};
+  }
+  how.check(list, cell && cell->n() == 3);
+  if (how.random()) {
+    const int number = count(how, 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3), cell);
+    if (how.in_cell()) return in_cell(how, number, radius, shape.center, *cell, taken);
+    return at_random(how, number, radius, shape.center, taken, list);
+  }
+  const std::vector<Copy> copies = how.file ? in_file(*how.file, list) : on_lattice(*how.lattice, *how.spacing);
+  for (const Copy& copy : copies) taken.push_back({shape.center + copy.centre, radius, 0, true});
+  return copies;
+}
+
+}  // namespace
+
+void CopiesOptions::declare(deck::Section& section) {
+  section.key("file", file, deck::Choice{},
+              "comma-separated values: a copy a row, its centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees; the first row "
+              "may name the columns; looked for where the program is started and beside the deck");
+  section.key("lattice", lattice, deck::at_least(1), "1", "how many along x1, x2 and x3, about the particle's centre");
+  section.key("spacing", spacing, deck::positive(), "length", "of the lattice, between centres");
+  section.key("number", number, deck::at_least(1), "1",
+              "how many at random in `box` or `ball`; in a Domain of three directions without these in all of its cell, across its faces, as hard "
+              "spheres in thermal equilibrium");
+  section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1",
+              "of `box` or `ball`, in place of their number, where spheres go up to 0.3; of the cell, where they go up to 0.55");
+  section.key("box", box, deck::positive(), "length", "side lengths of the box about the particle's centre that they lie in");
+  section.key("ball", ball, deck::positive(), "length", "radius of the ball about the particle's centre that they lie in");
+  section.key("least gap", least_gap, deck::not_negative(), "R",
+              "between the spheres around two particles at random, over the radius R of the larger one");
+  section.key("seed", seed, deck::at_least(0), "1", "of the random places: the same seed gives the same places");
+}
+
+void CopiesOptions::check(const std::string& list, bool cell) const {
+  const int ways = file.has_value() + lattice.has_value() + random();
+  if (ways != 1) throw UserError(list + " must have one of `file`, `lattice`, and `number` or `volume fraction`.");
+  if (number && volume_fraction) throw UserError(list + "/number and " + list + "/volume fraction contradict each other.");
+  if (lattice && !spacing) throw UserError(list + "/spacing is missing: the distance of centres along x1, x2 and x3.");
+  if (spacing && !lattice) throw UserError(list + "/spacing belongs to a `lattice`.");
+  if (lattice && !lattice->isApprox(lattice->array().round().matrix(), 0)) throw UserError(list + "/lattice must be three whole numbers.");
+  if (!random() && (box || ball)) throw UserError(list + "/box and ball are for places at random.");
+  if (in_cell() && !cell)
+    throw UserError(list + " needs a `box` or a `ball` for places at random; without, they are in the cell of a Domain of three directions.");
+  if (box && ball) throw UserError(list + "/box and " + list + "/ball contradict each other.");
+}
+
+namespace {
+
+/// Of all kinds; those in the cell packed together.
+std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds, const std::optional<stokes::PeriodicCell>& cell) {
+  std::vector<std::vector<Copy>> all;
+  std::vector<PackedSphere> taken;
+  for (const ParticleKind& kind : kinds) all.push_back(places(kind, cell, taken));
+  const auto in_cell = std::ranges::find_if(kinds, [](const ParticleKind& kind) { return kind.copies.present && kind.copies.in_cell(); });
+  if (in_cell == kinds.end()) return all;
+  if (!pack(taken, *cell, static_cast<std::uint64_t>(in_cell->copies.seed))) {
+    double volume = 0;
+    for (const PackedSphere& one : taken) volume += 4 * std::numbers::pi / 3 * std::pow(one.radius, 3);
+    throw UserError(formatted("Particles/%s/copies: there is no room: the spheres around the particles fill %.3g of the cell, and they cannot be put "
+                              "clear of each other; give fewer, a larger cell, or a smaller `least gap`.",
+                              in_cell->name.c_str(), volume / cell->volume()));
+  }
+  auto sphere = taken.begin();
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    if (!kinds[k].copies.present) ++sphere;
+    for (Copy& copy : all[k]) copy.centre = (sphere++)->centre - kinds[k].particle.shape.center;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain) {
+  std::vector<ParticleKind> all;
+  const std::vector<std::vector<Copy>> of_kinds = all_places(kinds, domain.cell());
+  for (std::size_t number = 0; number < kinds.size(); ++number) {
+    const ParticleKind& kind = kinds[number];
+    const std::vector<Copy>& copies = of_kinds[number];
+    if (!kind.copies.present) all.push_back(kind);
+    for (std::size_t k = 0; k < copies.size(); ++k) {
+      ParticleKind& one = all.emplace_back(kind);
+      one.name += formatted(" %zu", k + 1);
+      one.copies = {};
+      surface::ParticleShape& shape = one.particle.shape;
+      shape.center += copies[k].centre;
+      const Eigen::AngleAxisd turned(rotation(copies[k].orientation) * rotation(shape.orientation));
+      shape.orientation = turned.angle() * 180 / std::numbers::pi * turned.axis();
+    }
+  }
+  return all;
+}
+
+}  // namespace tanktread

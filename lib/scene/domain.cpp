@@ -1,0 +1,91 @@
+#include "scene/domain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/section.hpp"
+#include "scene/series/diagnostics.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+
+namespace tanktread {
+
+void DomainOptions::declare(deck::Section& section) {
+  section.key("periodic", periodic, deck::Choice{"x1 x2 x3", "x1 x2", "x1 x3", "x2 x3", "x1", "x2", "x3"},
+              "directions in which the scene repeats; of three the mean velocity over the cell, particles included, is that of the flow, and a net "
+              "force is balanced by a uniform pressure gradient");
+  section.key("side lengths", side_lengths, deck::any(), "length", "of a box along x1, x2, x3; of a direction that does not repeat it says nothing");
+  section.key("lattice vectors", lattice_vectors, deck::any(), "length",
+              "of any other cell at time zero: nine numbers, the vector of x1, that of x2, that of x3. The flow carries them along");
+}
+
+int DomainOptions::directions() const { return static_cast<int>(std::ranges::count(periodic, 'x')); }
+
+/// Columns, those that repeat first.
+Mat3 DomainOptions::vectors() const {
+  Mat3 vectors = Mat3::Zero();
+  int n = 0;
+  for (int d = 0; d < 3; ++d) {
+    if (periodic.find(static_cast<char>('1' + d)) == std::string::npos) continue;
+    vectors.col(n++) = side_lengths ? Vec3((*side_lengths)[d] * Vec3::Unit(d)) : Vec3(lattice_vectors.value().row(d).transpose());
+  }
+  return vectors;
+}
+
+void DomainOptions::check(const stokes::FlowOptions& flow) const {
+  if (side_lengths.has_value() == lattice_vectors.has_value())
+    throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
+                                 : "Domain needs Domain/side lengths or Domain/lattice vectors.");
+  if (flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()))
+    throw UserError("Domain and Flow/type `" + flow.type + "` contradict each other: a lattice can follow no flow but one whose gradient is the same "
+                    "everywhere.");
+  if (flow.history) throw UserError("Domain and Flow/history contradict each other: a lattice can follow no flow but one that stays as it is.");
+  const Mat3 all = vectors();
+  const auto columns = all.leftCols(directions());
+  double product = 1;
+  for (int d = 0; d < directions(); ++d) {
+    if (side_lengths && !(columns.col(d).sum() > 0)) throw UserError("Domain/side lengths must be positive in the directions of Domain/periodic.");
+    product *= columns.col(d).squaredNorm();
+  }
+  const double volume = std::sqrt(std::max(0., (columns.transpose() * columns).determinant()));
+  if (!(volume > 1e-6 * std::sqrt(product)))
+    throw UserError(formatted("Domain/lattice vectors must span a cell, but those given have no volume: it is %.3g.", volume));
+}
+
+std::optional<stokes::PeriodicCell> DomainOptions::cell() const {
+  if (!present) return {};
+  return stokes::PeriodicCell(vectors(), directions());
+}
+
+void DomainRow::set_stress(const Scene& scene, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
+                           const Vec3& force) {
+  const Mat3 gradient = stokes::AmbientFlow(scene.flow).gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  volume_fraction = volume / of.volume();
+  stress = stresslet / of.volume();
+  const Vec3 normal = (plane * stress * plane.transpose()).diagonal();
+  normal_stress_differences << normal[0] - normal[2], normal[2] - normal[1];
+  pressure_gradient = force / of.volume();
+  if (strain.isZero(0)) return;
+  relative_viscosity = 1 + stress.cwiseProduct(strain).sum() / (2 * scene.flow.viscosity * strain.squaredNorm());
+}
+
+void DomainRow::add_columns(const Scene& scene, Columns& to) const {
+  if (!to.when(scene.domain.present)) return;
+  to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3", {"cell_", "length", "vector and component # of the cell that repeats, at "
+         "this time; across directions that do not repeat unit vectors"});
+  if (!to.when(scene.domain.directions() == 3)) return;
+  to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles over that of the cell"});
+  to.add(components(stress), "11 22 33 12 13 23", {"particle_stress_", "force/length^2", "what the particles add to the mean stress (6.9), without "
+         "its trace, component #"});
+  to.add(pressure_gradient, "x1 x2 x3", {"pressure_gradient_", "force/length^3", "uniform one that balances the force of the particles on the fluid, "
+         "component #"});
+  if (!to.when(strains(scene))) return;
+  to.add(relative_viscosity, {"relative_viscosity", "1", "effective viscosity over mu (6.10)"});
+  to.add(normal_stress_differences, "1 2", {"normal_stress_difference_", "force/length^2", "number # of the particle stress, 11 - 33 and 33 - 22 "
+         "where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane"});
+}
+
+}  // namespace tanktread

@@ -1,0 +1,122 @@
+#include "scene/initial_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/document.hpp"
+#include "deck/words.hpp"
+#include "spline/iga.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+#include "surface/stress_free.hpp"
+
+namespace tanktread {
+
+namespace {
+
+const std::string key = "Particle/initial shape/";
+
+/// The image of a surface about a middle: to the bit the same one where the map is the identity.
+Net image(const Net& net, const Vec3& middle, const Mat3& map) {
+  return net + (net.rowwise() - middle.transpose()) * (map - Mat3::Identity()).transpose();
+}
+
+bool same_space(const spline::Space& one, const spline::Space& other) {
+  const auto same = [](const spline::Element& a, const spline::Element& b) {
+    return a.points == b.points && a.degree == b.degree && (*a.extraction - *b.extraction).cwiseAbs().maxCoeff() < 1e-6;  // digits of a file
+  };
+  return one.n_points == other.n_points && std::ranges::equal(one.elements, other.elements, same);
+}
+
+/// `path`: of the key that names the file.
+Net net_of_file(const spline::Space& space, const std::string& name, const std::string& path) {
+  const spline::SplineSurface surface = spline::read_iga(name);
+  if (!same_space(surface.space, space))
+    throw UserError(path + formatted(": %s holds another spline space of %d control points; it must be the particle's, of %d.", name.c_str(),
+                                    surface.space.n_points, space.n_points));
+  return surface.net;
+}
+
+/// Whatever the particle is made of may change from run to run, but not its mesh; nor, where that was adapted, the resting shape on it.
+void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
+  Scene before;
+  deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
+  deck.declare(before);
+  const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
+  if (!(before.surface == scene.surface)) refuse("Surface");
+  const motion::AdaptationOptions &then = before.adaptation, &now = scene.adaptation;
+  if (then.enabled != now.enabled || (now.enabled && then.levels != now.levels)) refuse("Adaptation/enabled and Adaptation/levels");
+  if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
+}
+
+/// The control points of a run; behind them, a drop with surfactant has what is on it.
+Net shape_of(const output::Checkpoint& run) {
+  const Eigen::MatrixXd& x = run.arrays.at("x");
+  const auto alone = run.arrays.find("unstressed");
+  return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
+}
+
+/// One of the modes that a run has found, as a displacement of its control points.
+Net mode_of_run(const output::Checkpoint& run, int number) {
+  const auto found = run.arrays.find("mode " + std::to_string(number));
+  if (found == run.arrays.end())
+    throw UserError(key + formatted("mode must be one of the modes of the run's Spectrum, and there is no mode %d.", number));
+  return found->second;
+}
+
+}  // namespace
+
+std::optional<output::Checkpoint> run_before(const Scene& scene) try {
+  const auto& initial = scene.particle.shape.initial;
+  if (!initial || !initial->run) return {};
+  const std::string name = deck::shortened(*initial->run, 80);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(*initial->run, error);
+  if (error) throw UserError(key + "run: cannot read " + name + ": " + error.message());
+  output::Checkpoint run;
+  if (std::filesystem::is_directory(status)) {
+    auto saved = output::newest_checkpoint(*initial->run);
+    if (!saved) throw UserError(key + "run: there is no checkpoint in " + name + ".");
+    run = std::move(saved->checkpoint);
+  } else {
+    run = output::read_checkpoint(*initial->run);
+  }
+  check_surface(scene, run, name);
+  return run;
+} catch (const std::runtime_error& error) {
+  if (dynamic_cast<const UserError*>(&error)) throw;
+  throw UserError(key + "run: " + error.what());
+}
+
+Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before) {
+  const surface::ParticleShape& shape = scene.particle.shape;
+  if (!shape.initial) return body.rest;
+  const surface::InitialShape& initial = *shape.initial;
+  const bool own = initial.volume == "own";
+  if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
+  Net x = before ? shape_of(*before) : net_of_file(body.space, initial.file.value(), key + "file");
+  if (x.rows() != body.space.n_points)
+    throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
+                                    body.space.n_points));
+  if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode);
+  const surface::Measures measures = surface::measures(body.space, x);
+  const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);
+  return image(x, measures.centroid, scale * Mat3::Identity());
+}
+
+Net stress_free_shape(const Scene& scene, const Body& body) {
+  const membrane::Options& membrane = scene.membrane;
+  if (membrane.stress_free == "resting") return body.rest;
+  if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
+  if (scene.particle.shape.imported)
+    throw UserError("Membrane/stress-free shape must be `resting` or `file` where Particle/shape is `file`: nothing is known of an axis of it.");
+  const surface::LeastSquaresFit fit(body.space);
+  const Net sphere = scene.surface.polar() ? surface::unit_sphere(scene.surface.polar_mesh(), body.space, scene.surface.axis())
+                                           : surface::unit_sphere(body.mesh, fit);
+  return surface::stress_free_spheroid(fit, sphere, scene.particle.shape, membrane.reduced_volume.value_or(1));
+}
+
+}  // namespace tanktread

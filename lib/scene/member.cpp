@@ -1,0 +1,204 @@
+#include "scene/member.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "base/errors.hpp"
+#include "scene/exact_body.hpp"
+#include "scene/tube.hpp"
+
+namespace tanktread {
+
+namespace {
+
+membrane::Material material(const Scene& scene, const Body& body) {
+  if (scene.particle.rigid()) return {body.law, {}, {}};
+  return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed", scene.membrane.spontaneous_curvature.value_or(0)},
+          scene.kelvin_voigt_membrane() ? scene.membrane.viscosity() : membrane::SurfaceViscosity{}, scene.membrane.area_order};
+}
+
+Eigen::MatrixXd numbers_of(const auto& values) {
+  Eigen::MatrixXd numbers(values.size(), 1);
+  for (std::size_t k = 0; k < values.size(); ++k) numbers(static_cast<Eigen::Index>(k)) = values[k];
+  return numbers;
+}
+
+/// Whether they are the same in all that values and derivatives of a field are made of; equal extraction matrices are one (spline::share_extraction).
+bool same(const spline::Space& a, const spline::Space& b) {
+  return a.n_points == b.n_points && std::ranges::equal(a.elements, b.elements, [](const spline::Element& one, const spline::Element& other) {
+    return one.degree == other.degree && one.points == other.points && one.extraction == other.extraction;
+  });
+}
+
+/// Whether they differ by a translation, to the round-off of their places.
+bool translated(const Net& a, const Net& b) {
+  const Net change = b - a;
+  return (change.rowwise() - change.row(0)).cwiseAbs().maxCoeff() < 1e-14 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
+}
+
+/// For the measures of the body of member p: what an equal one before it has, or its own.
+void share_or_make(std::vector<Member>& members, std::size_t p) {
+  Member& member = members[p];
+  const Body& body = *member.body;
+  const membrane::Material own = material(member.scene, body);
+  const std::span<const Member> before(members.data(), p);
+  const auto in_space = std::ranges::find_if(before, [&](const Member& other) { return same(other.body->space, body.space); });
+  member.geometry = in_space == before.end() ? std::make_shared<const surface::Geometry>(body.space) : in_space->geometry;
+  const auto equal = std::ranges::find_if(before, [&](const Member& other) {
+    return other.geometry == member.geometry && other.membrane->materials().all.front() == own &&
+           translated(other.body->unstressed, body.unstressed);
+  });
+  member.membrane = equal == before.end() ? std::make_shared<const membrane::Membrane>(body.space, body.unstressed, membrane::Materials{{own}, {}})
+                                          : equal->membrane;
+}
+
+}  // namespace
+
+coupling::Rigid rigid(const Scene& scene, const Body& body) {
+  const ParticleOptions& particle = scene.particle;
+  const auto given = [](const std::optional<Vec3>& vector) { return vector.value_or(Vec3::Zero()); };
+  return {particle.motion == Motion::prescribed, prescribed_motion(scene),
+          given(particle.force) + body.volume * scene.body_force(), given(particle.torque)};
+}
+
+std::vector<Member> members(const Scene& scene) {
+  std::vector<Member> all;
+  for (Scene& one : scene.alone()) {
+    const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
+    auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal));
+    Member& member = all.emplace_back();
+    member.name = one.name;
+    member.scene = std::move(one);
+    member.body = std::move(its_body);
+  }
+  if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
+    only.wall = wall(all.front().scene, only);
+    only.symmetry = surface::Symmetry(only.space.n_points);  // none is looked for in a tube
+  }
+  return all;
+}
+
+void follow(Member& member) {
+  if (member.scene.adaptation.enabled) member.followed = spline::Locator(member.body->nested())(member.place);
+}
+
+void arrange(std::vector<Member>& members) {
+  std::vector<spline::Space*> spaces;
+  for (const Member& member : members) spaces.push_back(&member.body->space);
+  spline::share_extraction(spaces);
+  const std::vector<spline::Block> blocks = spline::blocks(std::vector<const spline::Space*>(spaces.begin(), spaces.end()));
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    Member& member = members[p];
+    member.block = blocks[p];
+    if (members.size() == 1) continue;  // the system's are its own
+    Body& body = *member.body;
+    body.symmetry = surface::Symmetry(body.space.n_points);  // of one particle alone it is none of the scene's
+    share_or_make(members, p);
+  }
+}
+
+std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
+  if (members.size() == 1) return {};
+  auto all = std::make_unique<Body>();
+  std::vector<const spline::Space*> spaces;
+  for (const Member& member : members) spaces.push_back(&member.body->space);
+  all->space = spline::stacked(spaces);
+  const Body& first = *members.front().body;
+  all->flow = first.flow, all->duct = first.duct, all->plane = first.plane, all->law = first.law, all->modulus = first.modulus;
+  all->radius = 0;
+  for (Net Body::* const net : {&Body::rest, &Body::initial, &Body::unstressed}) {
+    ((*all).*net).resize(all->space.n_points, 3);
+    for (const Member& member : members) member.block.rows((*all).*net) = (*member.body).*net;
+  }
+  for (const Member& member : members) {
+    all->radius = std::max(all->radius, member.body->radius);
+    all->volume += member.body->volume;
+    all->refit_error = std::max(all->refit_error, member.body->refit_error);
+  }
+  all->symmetry = surface::Symmetry(all->space.n_points);
+  return all;
+}
+
+std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+                                           std::unique_ptr<coupling::Tube> tube) {
+  const Scene& scene = members.front().scene;
+  coupling::CapsuleParameters parameters;
+  parameters.viscosity = scene.flow.viscosity;
+  parameters.particles.clear();
+  for (const Member& member : members) {
+    const Scene& own = member.scene;
+    const Body& body = *member.body;
+    coupling::Particle& particle = parameters.particles.emplace_back();
+    particle.space = &body.space;
+    particle.viscosity_ratio = own.particle.viscosity_ratio;
+    particle.material = material(own, body);
+    particle.loads = loads(own, body, all.wall.get());
+    particle.radius = body.radius;
+    if (own.particle.rigid()) particle.rigid = rigid(own, body);
+    particle.interface_motion = own.interface_motion();
+    const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
+    particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);
+    particle.kept_volume = body.volume;
+    particle.measure = load_measure(own);
+  }
+  const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
+  for (coupling::Particle& one : parameters.particles)  // a measure in common costs less, and the areas of a rigid body do not change
+    if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
+  parameters.strong_load = scene.load_is_strong();
+  parameters.volume = scene.volume;
+  parameters.solvers = scene.solvers;
+  parameters.quadrature = scene.quadrature;
+  parameters.symmetry = all.symmetry;
+  parameters.cell = scene.domain.cell();
+  parameters.wall = scene.wall.plane();
+  return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
+}
+
+std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v) {
+  std::vector<RecordedParticle> all;
+  for (const Member& member : members)
+    if (!member.scene.series.empty()) all.push_back({member.body->space, member.own(x), member.own(v)});
+  return all;
+}
+
+void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
+  for (const Member& member : members) {
+    const Body& body = *member.body;
+    checkpoint.arrays[member.label("unstressed")] = body.unstressed;
+    checkpoint.arrays[member.label("initial")] = body.rest;
+    checkpoint.numbers[member.label("initial volume")] = body.volume;
+    checkpoint.numbers[member.label("refit error")] = body.refit_error;
+    if (member.scene.surfactant) checkpoint.numbers[member.label("initial area")] = body.initial_area;
+    if (!member.scene.adaptation.enabled) continue;
+    checkpoint.arrays[member.label("mesh edges")] = numbers_of(body.mesh.edges);
+    checkpoint.arrays[member.label("mesh spacing")] = numbers_of(body.mesh.spacing);
+  }
+}
+
+spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix) {
+  const Eigen::MatrixXd &spacing = checkpoint.arrays.at(prefix + "mesh spacing"), &bits = checkpoint.arrays.at(prefix + "mesh edges");
+  if (static_cast<size_t>(bits.size()) != mesh.edges.size())
+    throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run goes on from a mesh that is refined.");
+  for (Eigen::Index i = 0; i < bits.size(); ++i) mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
+  for (Eigen::Index i = 0; i < spacing.size(); ++i) mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
+  return mesh;
+}
+
+bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members) {
+  bool another = false;
+  for (Member& member : members) {
+    member.body->volume = checkpoint.numbers.at(member.label("initial volume"));
+    if (member.scene.surfactant) member.body->initial_area = checkpoint.numbers.at(member.label("initial area"));
+    if (!checkpoint.arrays.contains(member.label("mesh edges"))) continue;
+    another = true;
+    lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);
+    member.body->unstressed = checkpoint.arrays.at(member.label("unstressed"));
+    member.body->rest = checkpoint.arrays.at(member.label("initial"));
+    member.body->refit_error = checkpoint.numbers.at(member.label("refit error"));
+  }
+  return another;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,264 @@
+#include "scene/particles/adaptation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "scene/particles/gaps.hpp"
+#include "system/agreement.hpp"
+#include "motion/adaptation.hpp"
+#include "spline/refinement.hpp"
+#include "spline/locate.hpp"
+#include "spline/transfer.hpp"
+#include "surface/geometry.hpp"
+#include "surface/metrics.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// The particle that is looked at, and the state of all.
+struct Subject {
+  const Scene& scene;
+  const Body& body;
+  const spline::Block& block;
+  const motion::State& state;
+  Net x;  ///< its own shape
+  std::span<const double> films;
+};
+
+/// The body and the state carried over by `move`, which gives a net of this particle on the new space.
+template <class Move>
+Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
+  Adapted result{std::move(target), of.state};
+  result.body->rest = move(of.body.rest);
+  result.body->unstressed = move(of.body.unstressed);
+  const auto exchange = [&](Net& all) {
+    if (all.size() == 0) return;
+    const Net own = move(of.block.rows(all));
+    const Eigen::Index before = of.block.first_point, after = all.rows() - before - of.block.n_points;
+    Net changed(before + own.rows() + after, 3);
+    changed << all.topRows(before), own, all.bottomRows(after);
+    all = std::move(changed);
+  };
+  exchange(result.state.x);
+  for (Net& slope : result.state.history) exchange(slope);
+  for (motion::Place& place : result.state.places) exchange(place.x);
+  exchange(result.state.direction);
+  std::vector<Net> pairs = of.state.secants.pairs();
+  for (Net& net : pairs) exchange(net);
+  result.state.secants = coupling::Secants(std::move(pairs));
+  exchange(result.state.frozen);
+  return result;
+}
+
+/// `moved`: by how much the surfaces have been.
+void settle(Adapted& result, double moved, double radius) {
+  result.change = moved / radius;
+  result.body->refit_error += result.change;
+}
+
+std::unique_ptr<Body> on_mesh(const Subject& of, spline::TMesh mesh) {
+  auto target = std::make_unique<Body>(of.body);
+  lay_out(of.scene, std::move(mesh), *target);
+  return target;
+}
+
+/// A symmetric particle keeps a symmetric mesh: marks stand for all their images.
+spline::RepairRules rules(const Body& body) {
+  spline::RepairRules result;
+  for (const surface::Image& image : body.symmetry.images())
+    if (auto map = spline::lattice_map(body.mesh, body.space, image.element, image.signs.prod() < 0)) result.images.push_back(std::move(*map));
+  return result;
+}
+
+Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
+  auto target = on_mesh(of, std::move(mesh));
+  const spline::Transfer transfer(of.body.nested(), target->nested());
+  const double residual = std::max(transfer(of.body.unstressed).residual, transfer(of.x).residual);
+  Adapted result = carried(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
+  settle(result, residual, of.body.radius);
+  return result;
+}
+
+/// What the indicator says about the present mesh.
+struct Findings {
+  std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
+  std::vector<spline::Merge> merges;
+};
+
+/// The first rank's marks or merges, on all ranks.
+template <class Item>
+std::vector<Item> agreed(const std::vector<Item>& mine) {
+  std::vector<double> numbers;
+  for (const Item& item : mine)
+    for (const int number : {item.element, static_cast<int>(item.s), static_cast<int>(item.t)}) numbers.push_back(number);
+  numbers.resize(static_cast<size_t>(coupling::of_first(static_cast<double>(numbers.size()))));
+  coupling::take_first(numbers);
+  std::vector<Item> items;
+  for (size_t k = 0; k < numbers.size(); k += 3)
+    items.push_back({static_cast<int>(numbers[k]), static_cast<decltype(Item::s)>(numbers[k + 1]), static_cast<decltype(Item::t)>(numbers[k + 2])});
+  return items;
+}
+
+/// Of each element along s and t.
+template <class Indicator>
+std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& found) {
+  std::vector<std::array<double, 2>> lengths;
+  for (const Indicator& one : found) {
+    if constexpr (requires { one.along; }) lengths.push_back({one.along[0].length, one.along[1].length});
+    else lengths.push_back({one[0].length, one[1].length});
+  }
+  return lengths;
+}
+
+/// Of elements(mesh), from those of the space.
+std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
+  std::vector<double> widths;
+  if (films.empty()) return widths;
+  const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
+  widths.assign(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, std::numeric_limits<double>::infinity());
+  for (size_t e = 0; e < films.size(); ++e) widths[static_cast<size_t>(tile[e])] = std::min(widths[static_cast<size_t>(tile[e])], films[e]);
+  return widths;
+}
+
+Findings findings(const Subject& particle, const surface::FieldAt& traction) {
+  const auto& [scene, body, block, state, x, films] = particle;
+  const motion::AdaptationOptions& options = scene.adaptation;
+  const std::vector<double> widths = widths_of_mesh(body, films);
+  const auto of = [&](auto indicator) {
+    const std::vector<std::array<double, 2>> lengths = lengths_of(indicator);
+    std::vector<spline::Merge> merges = motion::merges(indicator, options);
+    if (!widths.empty()) motion::keep_films(lengths, widths, options, merges);
+    return Findings{[found = std::move(indicator), lengths, widths](const motion::AdaptationOptions& limits) {
+                      std::vector<spline::Mark> marks = motion::marks(found, limits);
+                      if (!widths.empty()) motion::add_films(lengths, widths, limits, marks);
+                      return agreed(marks);
+                    },
+                    agreed(merges)};
+  };
+  if (options.indicator == "error")
+    return of(surface::resolution(body.mesh, body.nested(), body.unstressed, x, options.load_tolerance ? traction : surface::FieldAt()));
+  surface::MetricFields fields;
+  if (options.reference_traction_variation) fields.traction = traction;
+  if (options.reference_velocity_variation && !state.history.empty())
+    fields.velocity = surface::field_of_net(body.nested(), block.rows(state.history.front()));
+  return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
+}
+
+/// Takes out the marks of elements of the T-mesh with a side at a pole, where these stay degenerate, and under the paper's rule, which cuts none of
+/// them. What they are cut by then comes from their neighbours.
+void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
+  if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
+  const spline::Tiling tiling = spline::elements(body.mesh);
+  const auto degenerate = [&](const spline::Mark& mark) {
+    return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);
+  };
+  std::erase_if(marks, degenerate);
+}
+
+/// Cuts all that is marked; where that gives more points than allowed, what is marked with limits twice, four times, ... as large.
+Adapted refined(const Subject& of, const Findings& found) {
+  const auto& [scene, body, block, state, x, films] = of;
+  const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
+  const size_t before = spline::anchors(body.mesh).size();
+  Adapted result;
+  std::optional<spline::RepairRules> keeping;
+  for (double factor = 1; factor <= 64; factor *= 2) {
+    auto marks = found.marks(scene.adaptation.coarser(factor));
+    leave_poles(scene, body, marks);
+    if (marks.empty()) break;
+    if (!keeping) keeping = rules(body);
+    spline::Refinement refinement = spline::refine(body.mesh, marks, *keeping);
+    const int refused = factor == 1 ? refinement.refused : result.refused;
+    const bool fits = static_cast<int>(spline::anchors(refinement.mesh).size() - before) <= room;
+    const bool full = result.full || !fits;
+    if (fits && refinement.mesh.edges != body.mesh.edges) result = on_finer_mesh(of, std::move(refinement.mesh));
+    result.refused = refused;
+    result.full = full;
+    if (fits) break;
+  }
+  return result;
+}
+
+/// Elements of the T-mesh in which some Bezier element's defect is above the tolerance.
+std::vector<bool> elements_over(const Body& body, const std::vector<double>& defect, double tolerance) {
+  const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
+  std::vector<bool> over(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, false);
+  for (size_t e = 0; e < defect.size(); ++e)
+    if (defect[e] > tolerance) over[static_cast<size_t>(tile[e])] = true;
+  return over;
+}
+
+/// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
+Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
+  const auto& [scene, body, block, state, x, films] = of;
+  for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
+    spline::Coarsening coarsening = spline::coarsen(body.mesh, merges, rules(body));
+    auto target = on_mesh(of, std::move(coarsening.mesh));
+    if (target->space.n_points >= body.space.n_points) return {};
+    const spline::Projection projection(body.nested(), target->nested());
+    std::vector<double> defect(body.nested().elements.size(), 0.0);
+    for (const Net* net : {&body.unstressed, &x}) {
+      const std::vector<double> found = projection(*net).defect;
+      for (size_t e = 0; e < defect.size(); ++e) defect[e] = std::max(defect[e], found[e]);
+    }
+    coupling::take_first(defect);
+    const double change = *std::max_element(defect.begin(), defect.end());
+    if (change <= scene.adaptation.coarsening_tolerance) {
+      Adapted result = carried(of, std::move(target), [&](const Net& field) { return projection(field).net; });
+      result.finer = false;
+      settle(result, change, body.radius);
+      return result;
+    }
+    const std::vector<bool> spoilt = elements_over(body, defect, scene.adaptation.coarsening_tolerance);
+    std::erase_if(merges, [&](const spline::Merge& merge) { return spoilt[static_cast<size_t>(merge.element)]; });
+  }
+  return {};
+}
+
+}  // namespace
+
+Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+                bool per_unstressed_area, std::span<const double> films) {
+  const Subject particle{scene, body, block, state, block.rows(state.x), films};
+  const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
+                                                        : surface::field_of_net(body.nested(), load);
+  const Findings found = findings(particle, traction);
+  Adapted finer = refined(particle, found);
+  if (finer.body || !scene.adaptation.coarsen) return finer;
+  Adapted coarser = coarsened(particle, found.merges);
+  coarser.refused = finer.refused;
+  coarser.full = finer.full;
+  return coarser;
+}
+
+void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
+  if (!scene.adaptation.enabled) return;
+  constexpr int most = 10;
+  for (int k = 0; k < most; ++k) {
+    Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
+    if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
+    if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];  // where the wall of a straight tube is
+    std::vector<Member> only(1);
+    only[0].scene = scene;
+    only[0].body = std::make_unique<Body>(std::move(body));
+    only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
+    std::vector<double> widths;
+    if (only[0].body->wall || scene.wall.present) widths = films(only, 0, x, {}, only[0].body->wall.get());
+    motion::State state;
+    state.x = only[0].body->rest;
+    Adapted change = adapted(scene, *only[0].body, only[0].block, state, load, false, widths);
+    body = std::move(*only[0].body);
+    if (!change.body || !change.finer) return;
+    body = std::move(*change.body);
+    body.rest = surface::fitted_again(body.space, body.rest, scene.particle.shape);
+    body.initial = body.unstressed = body.rest;
+    body.symmetry = surface::Symmetry(body.space.n_points);
+  }
+}
+
+}  // namespace tanktread

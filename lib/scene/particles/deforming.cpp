@@ -1,0 +1,421 @@
+// Capsules and drops in the time loop, on meshes that may change.
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "scene/free_motions.hpp"
+#include "scene/member.hpp"
+#include "scene/particles/adaptation.hpp"
+#include "scene/particles/gaps.hpp"
+#include "scene/particles/limiter.hpp"
+#include "scene/particles/particle_system.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/series/snapshot_fields.hpp"
+#include "scene/series/surface_fields.hpp"
+#include "scene/tube.hpp"
+#include "spline/locate.hpp"
+#include "surface/geometry.hpp"
+#include "surface/patch.hpp"
+#include "surface/shapes.hpp"
+#include "surface/transport.hpp"
+#include "system/power_balance.hpp"
+
+namespace tanktread {
+
+namespace {
+
+class Deforming : public ParticleSystem {
+ public:
+  Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)) {
+    check_apart(members_, scene.domain.cell());
+    set_up();
+    for (Member& member : members_) {
+      const Body& body = *member.body;
+      member.followed = site_ahead(body.nested(), body.rest, geometry(member).measures(body.rest).centroid, body.plane);
+      member.place = spline::place(body.nested(), member.followed);
+      follow(member);
+    }
+  }
+
+  coupling::Dynamics& dynamics() override { return fields_->dynamics(); }
+  const coupling::Capsule* capsule() const override { return capsule_.get(); }
+  coupling::CoupledMotion* fields() override { return fields_->motion(); }
+  const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
+  Net start() const override { return fields_->start(body().initial); }
+  const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
+
+  bool resume(Resumed& resumed) override {
+    const bool another_mesh = restore(resumed.checkpoint, members_);
+    const Net x = resumed.state.x.topRows(n_points());
+    const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
+    if (another_mesh || another_symmetry) settle(x);
+    if (resumed.state.frozen.size() > 0) dynamics().freeze(resumed.state.frozen);
+    capsule_->work() = resumed.totals.work;
+    for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle.at(p);
+    hold_by(resumed.totals.contacts);
+    return another_mesh;
+  }
+
+  void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
+  void forget_recycled() override { capsule_->forget_recycled(); }
+
+  bool hold_apart(motion::State& state, double step) override {
+    if (!scene_.contact.limiter) return true;
+    const auto clock = phases_.time("contact");
+    capsule_->at(state.time, state.time - step);
+    const double least = scene_.least_radius();
+    Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
+                    scene_.rate());
+    motion::State own = fields_->of_shape(state);
+    const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts_);
+    if (holds && own.x != fields_->shape(state.x)) {
+      state.x = fields_->with_shape(state.x, own.x);
+      state.history = {fields_->empty() ? own.history.front() : dynamics().velocity(state.x)};
+      state.places.clear();
+    }
+    if (first && contacts_.impulse > 0)
+      remarks_.push_back({"limiter", formatted("at time %.4g Contact/limiter begins to hold particles apart, for the film between them is thinner "
+                                               "than Contact/limit, %g R_C = %.4g",
+                                               state.time, scene_.contact.limit, scene_.contact.limit * least)});
+    return holds;
+  }
+
+  coupling::Contacts contacts() const override { return contacts_; }
+
+  void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, press(); }
+
+  /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
+  bool adapt(motion::State& state, RunTotals& totals) override {
+    before_.clear();
+    if (holds_centre_) {
+      motion::State own = fields_->of_shape(state);
+      hold_centre(capsule_->flow(), capsule_->geometry(), members_.front().scene.particle.shape.center, own);
+      fields_->put_back(own, state);
+    }
+    const auto due = [&](const Member& member) {
+      return member.scene.adaptation.enabled && totals.step % member.scene.adaptation.interval == 0;
+    };
+    if (std::ranges::none_of(members_, due)) return false;
+    const auto clock = phases_.time("adaptation");
+    fields_->set_state(state.x);
+    motion::State own = fields_->of_shape(state);
+    placed_ = capsule_->rigid_at(own.x);
+    std::vector<Net> loads;
+    for (const Member& member : members_) loads.push_back(member.own(capsule_->load(own.x)));
+    for (std::size_t p = 0; p < members_.size(); ++p)
+      if (due(members_[p])) adapt(p, loads[p], own, totals);
+    if (before_.empty()) return false;
+    const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
+    settle(own.x);
+    capsule_->restore_volume(own.x);
+    if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
+    press();
+    std::vector<const Body*> bodies(members_.size(), nullptr);
+    for (const auto& [p, body] : before_) bodies[p] = body.get();
+    state = fields_->transferred(*fields, state, std::move(own), bodies);
+    if (state.frozen.size() > 0) dynamics().freeze(state.frozen);
+    return true;
+  }
+
+  void undo_adapt(const Net& x) override {
+    if (before_.empty()) return;
+    for (auto& [p, body] : before_) members_[p].body = std::move(body);
+    before_.clear();
+    settle(x.topRows(n_points()));
+  }
+
+  std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
+  coupling::Work work() const override { return capsule_->work(); }
+
+  std::vector<PhaseAngle> phase_angle() const override {
+    std::vector<PhaseAngle> all;
+    for (const Member& member : members_) all.push_back(member.phase_angle);
+    return all;
+  }
+
+  stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
+
+  Columns row(const motion::State& whole_state, ProgressRow progress) override {
+    const motion::State& state = fields_->of_shape(whole_state);
+    fields_->set_state(whole_state.x, scene_.time.tolerance);
+    const Net v = material_velocity(state);
+    progress.time = state.time, progress.work = capsule_->work();
+    std::vector<Columns> columns(members_.size());
+    std::vector<std::unique_ptr<ParticleRow>> rows;
+    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, state, whole_state.x, columns[p]));
+    add_treading(state.x, v, rows);
+    const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
+    Together whole;
+    Columns row, of_particles;
+    for (std::size_t p = 0; p < members_.size(); ++p) {
+      ParticleRow& now = *rows[p];
+      if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, progress.step.step, now);
+      now.add_columns(members_[p].scene, columns[p]);
+      if (!recorded.empty()) add_series(members_[p].scene, state.time, recorded[p], columns[p]);
+      finish(columns[p]);
+      of_particles.append(columns[p], members_[p].column({}));
+      whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
+      whole.velocity += now.velocity / static_cast<double>(members_.size());
+    }
+    for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
+    progress.add_columns(scene_, row);
+    whole.add_columns(scene_, row);
+    if (body().wall) {
+      check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
+      tube_row(*capsule_, state.x).add_columns(scene_, row);
+    }
+    if (const auto& cell = capsule_->cell()) {
+      DomainRow now{.cell = cell->vectors()};
+      if (cell->n() == 3)
+        now.set_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(state.x));
+      now.add_columns(scene_, row);
+    }
+    if (scene_.has_gaps()) smallest_gap(members_, state.x, ranks_, capsule_->cell()).add_columns(row);
+    if (scene_.wall.present) wall_row(*scene_.wall.plane(), members_, state.x).add_columns(scene_, row);
+    if (scene_.output.power_balance) powers(state).add_columns(row);
+    if (scene_.has_gaps() && scene_.contact.limiter) contacts_.add_columns(row);
+    add_series(scene_, state.time, recorded, row);
+    finish(row);
+    row.append(of_particles);
+    return row;
+  }
+
+  SurfacePicture picture(const motion::State& whole_state) override {
+    const motion::State& state = pictured_ = fields_->of_shape(whole_state);
+    fields_->set_state(whole_state.x);
+    const Net load = capsule_->load(state.x);
+    const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
+    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
+              std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
+              fields_->add_to(nodes, state.x, fields);
+              if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, state.x)});
+              return fields;
+            }};
+  }
+
+ private:
+  const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
+  const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
+
+  /// Control points of all particles on their present meshes.
+  Eigen::Index n_points() const {
+    return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
+  }
+
+  coupling::Powers powers(const motion::State& state) {
+    const auto clock = phases_.time("power balance");
+    if (!power_)
+      power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
+    coupling::Powers powers = (*power_)(state.x, state.history.front());
+    if (!fields_->empty()) powers.forces += fields_->power(capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.front());
+    return powers;
+  }
+
+  /// The contacts' forces act from now on.
+  void press() {
+    capsule_->press(contacts_.all.empty() ? Net() : coupling::work(capsule_->particles(), contacts_, body().space.n_points));
+  }
+
+  /// That of the forces of a contact at the centroids, beside those of its particles about these.
+  Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
+    const auto centroid = [&](std::size_t k) {
+      const Member& member = members_[contact.particle[k]];
+      return surface::measures(member.body->space, member.own(x)).centroid;
+    };
+    const Vec3 apart = centroid(1) + contact.beyond - centroid(0), force = contact.force * contact.normal;
+    return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
+  }
+
+  /// Everything that belongs to the present meshes. The wall of a tube stays what it was.
+  void set_up() {
+    const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
+    arrange(members_);
+    all_ = stacked_body(members_);
+    if (all_ && scene_.tube.present) all_->wall = before ? before->wall : wall(scene_, *all_);
+    std::unique_ptr<coupling::Tube> around;
+    if (capsule_ && capsule_->tube() && !capsule_->tube()->fixed())
+      around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
+    else
+      around = tube(scene_, body(), phases_);
+    power_.reset(), fields_.reset(), capsule_.reset();
+    capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
+    fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
+  }
+
+  /// Returns the velocity of the fluids on the surface. In a tube, whose response depends on it, the slope is evaluated if it errs by more than
+  /// the tolerance.
+  Net material_velocity(const motion::State& state) {
+    const Net& slope = state.history.front();
+    const double rate = capsule_->flow().amplitude() * scene_.rate();
+    const bool accurate = state.slope_error <= scene_.time.tolerance * std::abs(rate);
+    if (body().wall && !(accurate && capsule_->adopt(state.x, slope))) return capsule_->fluid_velocity(state.x, slope);
+    return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
+  }
+
+  /// Of all particles.
+  Vec3 force_on_fluid(const Net& x) {
+    Vec3 force = Vec3::Zero();
+    for (std::size_t p = 0; p < members_.size(); ++p)
+      force += members_[p].scene.particle.rigid() ? capsule_->rigid_about(x, scene_.time.tolerance).force(p)
+                                                  : Vec3(members_[p].body->volume * members_[p].scene.body_force() +
+                                                         members_[p].scene.membrane.forces.total());
+    return force;
+  }
+
+  /// Returns what the row of particle p is made of, but for its tank-treading. Adds the columns of its fields.
+  std::unique_ptr<ParticleRow> particle_row(std::size_t p, const motion::State& state, const Net& y, Columns& to) {
+    const Member& member = members_[p];
+    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, state));
+    const Net x = member.own(state.x), slope = member.own(state.history.front());
+    DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
+    now.volume_error = capsule_->volume_error(now.measures.volume, p);
+    now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
+    now.energy += capsule_->load_energy(state.x, p);
+    if (member.scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
+    now.intrinsic_viscosity = intrinsic_viscosity(*member.body, scene_.flow.viscosity, now);
+    fields_->add_to(p, y, now, to);
+    return std::make_unique<DeformingRow>(now);
+  }
+
+  /// Velocity and tank-treading of those that deform, where the fluids move by v. Each particle is one rank's.
+  void add_treading(const Net& x, const Net& v, const std::vector<std::unique_ptr<ParticleRow>>& rows) const {
+    constexpr std::size_t n = 5;
+    std::vector<double> found(n * rows.size(), 0.);
+    for (const int k : ranks_.share(static_cast<int>(rows.size()))) {
+      const Member& member = members_[k];
+      if (member.scene.particle.rigid()) continue;
+      ParticleRow& now = *rows[k];
+      tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(x), member.own(v), now);
+      std::ranges::copy(std::array<double, n>{now.velocity[0], now.velocity[1], now.velocity[2], now.treading.velocity, now.treading.frequency},
+                        &found[n * k]);
+    }
+    ranks_.add(found);
+    for (std::size_t p = 0; p < rows.size(); ++p) {
+      const double* of = &found[n * p];
+      if (!members_[p].scene.particle.rigid()) rows[p]->velocity = {of[0], of[1], of[2]}, rows[p]->treading = {of[3], of[4]};
+    }
+  }
+
+  /// The angle that the material of particle p has turned by.
+  void advance_phase(std::size_t p, const Net& x, double step, ParticleRow& now) {
+    Member& member = members_[p];
+    const Body& body = *member.body;
+    std::optional<double> angle;
+    if (!capsule_->particles()[p].slides())
+      angle = angle_in(body.plane, surface::value(body.nested(), member.own(x), member.followed) - now.centre);
+    member.phase_angle.advance(step, now.treading.frequency, angle);
+    now.phase = member.phase_angle.degrees;
+  }
+
+  RigidRow rigid_row(std::size_t p, const motion::State& state) {
+    const Member& member = members_[p];
+    const coupling::RigidParticles& rigid = capsule_->rigid_about(state.x, scene_.time.tolerance);
+    RigidRow now = tanktread::rigid_row(member.scene, *member.body, geometry(member), member.own(state.x), rigid.motion(p),
+                                        Eigen::Quaterniond(rigid.turn(p)), capsule_->stresslet(state.x, state.history.front(), p), ranks_);
+    now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
+    return now;
+  }
+
+  /// Another mesh for particle p, if its present one asks for it.
+  void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
+    Member& member = members_[p];
+    std::vector<double> widths;
+    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), {}, &tube->wall());
+    else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
+    Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths);
+    remark_on(member, change, state.time);
+    if (!change.body) return;
+    const int more = change.body->space.n_points - member.block.n_points;
+    carry_contacts(p, change.body->nested());
+    before_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
+    state = std::move(change.state);
+    member.block.n_points += more;
+    if (placed_ && placed_->holds(p)) fit_again(p, state.x);
+    for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
+    (change.finer ? totals.refinements : totals.coarsenings) += 1;
+  }
+
+  /// Contacts of particle p to the same places of another mesh.
+  void carry_contacts(std::size_t p, const spline::Space& to) {
+    if (contacts_.all.empty()) return;
+    const spline::Locator locator(to);
+    for (coupling::Contact& contact : contacts_.all)
+      for (std::size_t k = 0; k < 2; ++k)
+        if (contact.particle[k] == p) {
+          auto& [element, s, t] = contact.site[k];
+          s = std::clamp(s, 0., 1.), t = std::clamp(t, 0., 1.);
+          contact.site[k] = locator(spline::place(members_[p].body->nested(), contact.site[k]));
+        }
+  }
+
+  /// The shape of a rigid body is known: on another mesh it is fitted again, and goes where it was.
+  void fit_again(std::size_t p, Net& x) {
+    const Member& member = members_[p];
+    Body& body = *member.body;
+    body.rest = surface::fitted_again(body.space, body.rest, member.scene.particle.shape);
+    body.initial = body.unstressed = body.rest;
+    const Vec3 centre = surface::measures(body.space, body.rest).centroid;
+    member.block.rows(x) =
+        ((body.rest.rowwise() - centre.transpose()) * placed_->turn(p).transpose()).rowwise() + placed_->centre(p).transpose();
+  }
+
+  /// Goes on with the members' present bodies, in the shape x.
+  void settle(const Net& x) {
+    if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
+    if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
+    set_up();
+    capsule_->work() = work_;
+    for (Member& member : members_) follow(member);
+  }
+
+  /// What a change of the mesh lacks.
+  void remark_on(const Member& member, const Adapted& change, double time) {
+    const motion::AdaptationOptions& options = member.scene.adaptation;
+    const auto remark = [&](bool lacks, const std::string& kind, const std::string& sentence) {
+      if (lacks) remarks_.push_back({member.label(kind), member.label(formatted("at time %.4g ", time) + sentence)});
+    };
+    remark(change.refused > 0, "levels",
+         formatted("elements above the limits of Adaptation stay whole: they have been halved as often as Adaptation/levels = %d allows",
+                   options.levels));
+    remark(change.full, "number of points",
+         formatted("elements above the limits of Adaptation stay whole: Adaptation/largest number of points = %d leaves no room for all "
+                   "their cuts",
+                   options.largest_number_of_points));
+    remark(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
+         formatted(
+             "refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
+             change.change));
+  }
+
+  const Scene& scene_;
+  coupling::Ranks& ranks_;
+  Phases& phases_;
+  std::vector<Member> members_;
+  std::unique_ptr<Body> all_;  // several particles
+  std::unique_ptr<coupling::Capsule> capsule_;
+  std::unique_ptr<SurfaceFields> fields_;
+  motion::State pictured_;  // shapes of the latest snapshot, which its fields refer to
+  std::optional<coupling::PowerBalance> power_;  // made when first asked for
+  coupling::Work work_;                     // of systems on earlier meshes
+  stokes::Evaluations kernel_evaluations_;  // the same
+  std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had
+  std::optional<coupling::RigidParticles> placed_;  // before the mesh changes
+  std::vector<Warning> remarks_;
+  coupling::Contacts contacts_;  // that hold particles apart
+  bool holds_centre_ = members_.size() == 1 && holds_centre(members_.front().scene);
+};
+
+}  // namespace
+
+std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return std::make_unique<Deforming>(scene, ranks, phases);
+}
+
+}  // namespace tanktread

@@ -1,0 +1,147 @@
+// The free rigid body in the time loop.
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "scene/member.hpp"
+#include "scene/particles/adaptation.hpp"
+#include "scene/particles/particle_system.hpp"
+#include "scene/particles/prescribed.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/tube.hpp"
+#include "surface/geometry.hpp"
+#include "system/solids/rigid_body.hpp"
+
+namespace tanktread {
+
+namespace {
+
+class Free : public ParticleSystem {
+ public:
+  Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
+      : scene_(scene), ranks_(ranks), body_(refined(scene, ranks, phases)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
+        resistance_(resistance_of(scene, body_, ranks, phases, tube_.get())), free_(driven(scene, body_, resistance_)) {}
+
+  coupling::Dynamics& dynamics() override { return *free_; }
+  const Body& body() const override { return body_; }
+  Net start() const override { return coupling::placed(free_->centre()); }
+  /// Counts go on as if the set-up had been done once.
+  bool resume(Resumed& resumed) override {
+    const coupling::Work again = work();
+    before_ = resumed.totals.work;
+    before_.assemblies -= again.assemblies;
+    before_.solves -= again.solves;
+    before_.solver_iterations -= again.solver_iterations;
+    phase_angle_ = resumed.totals.phase_angle.at(0);
+    free_->start_from({resumed.checkpoint.arrays.at("start place"), resumed.checkpoint.arrays.at("start unknowns")});
+    return false;
+  }
+  void store(output::Checkpoint& checkpoint) const override {
+    checkpoint.arrays["unstressed"] = body_.unstressed;
+    checkpoint.arrays["initial"] = body_.rest;
+    const coupling::LoneRigidBody::Start start = free_->start();
+    checkpoint.arrays["start place"] = start.place;
+    checkpoint.arrays["start unknowns"] = start.unknowns;
+  }
+  void forget_recycled() override { free_->forget_recycled(); }
+  bool adapt(motion::State&, RunTotals&) override { return false; }
+  const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
+  stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
+
+  coupling::Work work() const override {
+    coupling::Work work = before_;
+    work.evaluations += free_->evaluations();
+    work.assemblies += 1;
+    work.solves += tube_ || scene_.wall.present ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
+    work.solver_iterations += iterations();
+    return work;
+  }
+
+  std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
+
+  Columns row(const motion::State& state, ProgressRow progress) override {
+    const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
+    RigidRow now = rigid_row(scene_, body_, geometry_, free_->surface(state.x), free_->motion(state.x), turn, free_->stresslet(state.x), ranks_);
+    now.centre = coupling::centre_of(state.x);
+    Columns row;
+    if (tube_) {
+      const double pressure_drop = free_->pressure_drop(state.x);
+      tube_row(*tube_, free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
+    }
+    if (const auto wall = scene_.wall.plane()) wall_row(*wall, body_, free_->surface(state.x)).add_columns(scene_, row);
+    turn_to(state.x, progress.step.step, now);
+    now.add_columns(scene_, row);
+    progress.time = state.time, progress.work = work();
+    progress.add_columns(scene_, row);
+    finish(row);
+    return row;
+  }
+
+  SurfacePicture picture(const motion::State& state) override {
+    const Net x = free_->surface(state.x), f = free_->force_density(state.x),
+              v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
+    return {x, [f, v](const output::Nodes& nodes) {
+              return std::vector<output::Field>{{"traction", nodes.values(-f)}, {"velocity", nodes.values(v)}};
+            }};
+  }
+
+ private:
+  static Body refined(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+    Body body = tanktread::body(scene);
+    refine_alone(scene, body, [&](const Body& on) {
+      const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
+      coupling::Resistance resistance = resistance_of(scene, on, ranks, phases, wall.get());
+      const auto free = driven(scene, on, resistance);
+      return free->force_density(coupling::placed(free->centre()));
+    });
+    return body;
+  }
+
+  /// The body where its resistance is that.
+  static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::Resistance& resistance) {
+    const Vec3& centre = scene.particle.shape.center;
+    if (scene.tube.present || scene.wall.present)
+      return std::make_unique<coupling::FreeBodyInTube>(resistance, centre, body.radius, body.flow, scene.flow.viscosity, scene.solvers,
+                                                        rigid(scene, body));
+    return std::make_unique<coupling::FreeBody>(resistance, centre, body.radius, body.flow, rigid(scene, body));
+  }
+
+  /// Tank-treading and phase of a body that turns as one: (6.6) is its angular velocity about the normal of the plane.
+  void turn_to(const Net& place, double step, RigidRow& now) {
+    const FlowPlane& plane = body_.plane;
+    const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
+    const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);
+    now.treading.velocity = surface::tank_treading(geometry_.bezier(), plane.turned(x), plane.turned(v), nullptr, centre, moves).velocity;
+    now.treading.frequency = plane.components(now.angular_velocity)[1];
+    phase_angle_.advance(step, now.treading.frequency, angle_in(plane, coupling::rotation_of(place) * plane.axes.row(0).transpose()));
+    now.phase = phase_angle_.degrees;
+  }
+
+  long iterations() const {
+    const auto* in_tube = dynamic_cast<const coupling::FreeBodyInTube*>(free_.get());
+    return resistance_.solver_iterations() + (in_tube ? in_tube->solver_iterations() : 0);
+  }
+
+  const Scene& scene_;
+  const coupling::Ranks& ranks_;
+  Body body_;
+  surface::Geometry geometry_;
+  std::unique_ptr<coupling::Tube> tube_;
+  coupling::Resistance resistance_;
+  std::unique_ptr<coupling::LoneRigidBody> free_;
+  PhaseAngle phase_angle_;
+  coupling::Work before_;  // of earlier parts of a resumed run
+};
+
+}  // namespace
+
+std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return std::make_unique<Free>(scene, ranks, phases);
+}
+
+std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
+}
+
+}  // namespace tanktread

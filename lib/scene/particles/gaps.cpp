@@ -1,0 +1,278 @@
+#include "scene/particles/gaps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "surface/closest_points.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double accuracy = 1e-7;  // over R_C
+
+/// The patches of a particle in the shape x, by the map that it shares with its equals where there is one.
+surface::Patches patches_of(const Member& member, const Net& x) {
+  if (member.geometry) return {member.geometry->bezier(), x};
+  return {surface::BezierMap(member.body->space), x};
+}
+
+/// A particle's surface as closest_points takes it.
+struct Placed {
+  surface::Patches patches;
+  surface::ElementBoxes boxes;
+
+  Placed(const Member& member, const Net& x) : patches(patches_of(member, x)), boxes(patches) {}
+};
+
+struct Pair {
+  double bound;  ///< the gap is at least this
+  std::size_t first, second;
+  Vec3 beyond;  ///< of the second one
+};
+
+/// Lattice vectors to move particle q by so that it may be close to p; of p itself without the one there and back, of unbounded space 0.
+std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optional<stokes::PeriodicCell>& cell) {
+  if (!cell) return same ? std::vector<Vec3>() : std::vector<Vec3>{Vec3::Zero()};
+  std::vector<Vec3> all = cell->around({2, 2, 2});
+  const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
+  if (same) all.resize(all.size() / 2);  // those after the middle are those before it turned about
+  for (Vec3& image : all) image -= apart;
+  return all;
+}
+
+/// All particles, and the pairs of them that can be as near as `reach` and as the nearest, those first that can be nearest.
+class Pairs {
+ public:
+  Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell,
+        double reach = std::numeric_limits<double>::infinity())
+      : members_(members), x_(x) {
+    for (std::size_t p = 0; p < members.size(); ++p) {
+      placed_.push_back(std::make_unique<Placed>(members[p], x[p]));
+      radius_ = std::max(radius_, members[p].body->radius);
+    }
+    each(cell, [&](const Pair& pair) { reach = std::min(reach, pair.bound + size(pair.first) + size(pair.second)); });
+    each(cell, [&](const Pair& pair) {
+      if (pair.bound <= reach) all_.push_back(pair);
+    });
+    std::ranges::stable_sort(all_, {}, &Pair::bound);
+  }
+
+  const std::vector<Pair>& all() const { return all_; }
+
+  /// Of one pair, if it is nearer than `reach`.
+  surface::ClosestPoints closest(const Pair& pair, double reach) const {
+    const auto& [bound, p, q, beyond] = pair;
+    std::unique_ptr<Placed> moved;
+    if (!beyond.isZero(0)) moved = std::make_unique<Placed>(members_[q], x_[q].rowwise() + beyond.transpose());
+    return surface::closest_points(placed_[p]->boxes, moved ? moved->boxes : placed_[q]->boxes, accuracy * radius_, reach);
+  }
+
+ private:
+  const surface::ElementBoxes::Box& box(std::size_t p) const { return placed_[p]->boxes.boxes()[0]; }
+  double size(std::size_t p) const { return (box(p).high - box(p).low).matrix().norm(); }
+
+  template <class Act>
+  void each(const std::optional<stokes::PeriodicCell>& cell, const Act& act) const {
+    for (std::size_t p = 0; p < members_.size(); ++p)
+      for (std::size_t q = 0; q <= p; ++q)
+        for (const Vec3& beyond : images(x_[q], x_[p], q == p, cell)) {
+          surface::ElementBoxes::Box moved = box(p);
+          moved.low += beyond.array(), moved.high += beyond.array();
+          act(Pair{distance(box(q), moved), q, p, beyond});
+        }
+  }
+
+  const std::vector<Member>& members_;
+  const std::vector<Net>& x_;
+  std::vector<std::unique_ptr<Placed>> placed_;
+  std::vector<Pair> all_;
+  double radius_ = 0;  // the largest
+};
+
+/// The nearest of all pairs of which `mine` is true.
+template <class Mine>
+Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell, const Mine& mine) {
+  const Pairs pairs(members, x, cell);
+  Nearest found;
+  for (std::size_t k = 0; k < pairs.all().size() && pairs.all()[k].bound < found.gap; ++k) {
+    if (!mine(k)) continue;
+    const Pair& pair = pairs.all()[k];
+    const surface::ClosestPoints closest = pairs.closest(pair, found.gap);
+    if (closest.gap >= found.gap) continue;
+    found = {closest.gap, static_cast<int>(pair.first) + 1, static_cast<int>(pair.second) + 1, (closest.first + closest.second) / 2};
+  }
+  return found;
+}
+
+std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
+  std::vector<Net> own;
+  for (const Member& member : members) own.push_back(member.own(x));
+  return own;
+}
+
+/// Widths of films of which a plane wall is the other side, where they are smaller.
+void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
+  for (int e = 0; e < surface.size(); ++e)
+    for (int k = 0; k < 9; ++k) {
+      const double height = wall.height(surface::place(surface[e], k % 3 / 2., k / 3 / 2.));
+      if (height <= reach) widths[e] = std::min(widths[e], std::max(height, 0.));
+    }
+}
+
+/// Returns the net q, if it is not the net p itself, and its images in a lattice whose boxes are not farther than `reach` from that of p.
+std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
+  std::vector<Net> found;
+  if (!cell) {
+    if (!same) found.push_back(q);
+    return found;
+  }
+  const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
+  const Eigen::Array3d low = p.colwise().minCoeff(), high = p.colwise().maxCoeff();
+  for (const Vec3& lattice_vector : cell->around({2, 2, 2})) {
+    if (same && lattice_vector.isZero(0)) continue;
+    const Net image = q.rowwise() + (lattice_vector - apart).transpose();
+    const Eigen::Array3d from = image.colwise().minCoeff(), to = image.colwise().maxCoeff();
+    if ((from - high).max(low - to).max(0).matrix().norm() <= reach) found.push_back(image);
+  }
+  return found;
+}
+
+/// Whether a point that is not on a surface is inside: its solid angle there is 4 pi, outside 0.
+bool encloses(const surface::Patches& patches, const Vec3& point) {
+  constexpr int n = 8;
+  double angle = 0;
+  for (int e = 0; e < patches.size(); ++e)
+    for (int k = 0; k < n * n; ++k) {
+      const surface::Jet at = surface::jet(patches[e], (k % n + 0.5) / n, (k / n + 0.5) / n);
+      const Vec3 r = at.x - point;
+      angle += r.dot(at.s.cross(at.t)) / (n * n * std::pow(r.norm(), 3));
+    }
+  return angle > 2 * std::numbers::pi;
+}
+
+/// Throws where one particle is inside of another, which their gap does not tell.
+void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
+    const Eigen::RowVector3d low = x[p].colwise().minCoeff(), high = x[p].colwise().maxCoeff();
+    for (std::size_t q = 0; q < members.size(); ++q) {
+      const Vec3 inner = surface::value(members[q].body->space, x[q], {0, 0.5, 0.5});
+      if (p == q || (inner.transpose().array() < low.array()).any() || (inner.transpose().array() > high.array()).any()) continue;
+      if (encloses(outer, inner))
+        throw UserError("Particles/" + members[q].name + " is inside of Particles/" + members[p].name + " at the start.");
+    }
+  }
+}
+
+}  // namespace
+
+void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell) {
+  if (members.size() == 1 && !cell) return;
+  std::vector<Net> x;
+  for (const Member& member : members) x.push_back(member.body->initial);
+  const Nearest found = nearest(members, x, cell, [](std::size_t) { return true; });
+  if (found.gap > 10 * accuracy * members.front().body->radius) return check_not_nested(members, x);
+  const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
+  if (found.first == found.second)
+    throw UserError("Domain is smaller than " + name(found.first) +
+                    formatted(", which overlaps its own image about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+  throw UserError(name(found.first) + " and " + name(found.second) +
+                  formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+}
+
+void Nearest::add_columns(Columns& to) const {
+  to.add(gap, {"smallest_gap", "length", "smallest distance between two of several particles, or images of them in a lattice"});
+  to.add(first, {"first_of_gap", "1", "number of the first of these two, from 1 in the order of the deck"});
+  to.add(second, {"second_of_gap", "1", "number of the second one"});
+  to.add(place, "x1 x2 x3", {"gap_", "length", "place between their nearest points, component #"});
+}
+
+Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks,
+                     const std::optional<stokes::PeriodicCell>& cell) {
+  const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
+  const Nearest of_rank = nearest(members, own_nets(members, x), cell, mine);
+  const std::array<double, 6> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
+                                   of_rank.place[0], of_rank.place[1], of_rank.place[2]};
+  Nearest found;
+  for (const auto& [gap, first, second, x1, x2, x3] : gathered(ranks, here))
+    if (gap < found.gap) found = {gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}};
+  return found;
+}
+
+Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact) {
+  const auto element = [&](std::size_t k, const Vec3& beyond) {
+    const Member& member = members[contact.particle[k]];
+    return surface::ElementPoints(member.body->space, member.own(x).rowwise() + beyond.transpose(), contact.site[k].element);
+  };
+  const surface::ElementPoints first = element(0, Vec3::Zero()), second = element(1, contact.beyond);
+  const surface::ClosestPoints found = surface::nearest_points(first.patch(), second.patch(), {Vec3::Zero(), Vec3::Zero(), 0, contact.site});
+  contact.site = found.sites;
+  const auto normal = [](const surface::ElementPoints& of, const spline::Site& at) {
+    const surface::Jet jet = surface::jet(of.patch(), at.s, at.t);
+    return Vec3(jet.s.cross(jet.t).normalized());
+  };
+  contact.normal = (normal(first, contact.site[0]) - normal(second, contact.site[1])).normalized();
+  return {contact, found.gap};
+}
+
+std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
+                                 const std::optional<stokes::PeriodicCell>& cell) {
+  constexpr int n = 7;  // whether they are closer, and the sites
+  const std::vector<Net> own = own_nets(members, x);
+  const Pairs pairs(members, own, cell, reach);
+  const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
+  std::vector<double> sites(n * close, 0.);
+  for (const int k : ranks.share(static_cast<int>(close))) {
+    const surface::ClosestPoints found = pairs.closest(pairs.all()[static_cast<std::size_t>(k)], reach);
+    if (found.gap >= reach) continue;
+    const auto& [a, b] = found.sites;
+    std::ranges::copy(std::array<double, n>{1, double(a.element), a.s, a.t, double(b.element), b.s, b.t}, sites.begin() + n * k);
+  }
+  ranks.add(sites);
+  std::vector<Approach> all;
+  for (std::size_t k = 0; k < close; ++k) {
+    const double* of = &sites[n * k];
+    const Pair& pair = pairs.all()[k];
+    if (of[0] == 0) continue;
+    all.push_back(approach(members, x, {{pair.first, pair.second}, {spline::Site{int(of[1]), of[2], of[3]}, spline::Site{int(of[4]), of[5], of[6]}},
+                                        pair.beyond}));
+  }
+  return all;
+}
+
+std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell,
+                          const surface::TubeWall* wall) {
+  const Body& body = *members[p].body;
+  const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
+  const motion::AdaptationOptions& options = members[p].scene.adaptation;
+  double longest = 0;  // the diagonal of the largest element
+  for (int e = 0; e < own.size(); ++e)
+    longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
+  const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;
+  std::vector<surface::Patches> placed;
+  for (std::size_t q = 0; q < members.size(); ++q)
+    for (const Net& other : neighbours(members[p].own(x), members[q].own(x), q == p, reach, cell))
+      placed.emplace_back(surface::BezierMap(members[q].body->space), other);
+  if (wall) placed.emplace_back(surface::BezierMap(wall->space), wall->net);
+  std::vector<const surface::Patches*> others;
+  for (const surface::Patches& other : placed) others.push_back(&other);
+  std::vector<double> widths = surface::film_widths(own, others, reach);
+  if (const auto plane = members[p].scene.wall.plane()) narrow(own, *plane, reach, widths);
+  return widths;
+}
+
+std::string touching(const Scene& scene, int first, int second) {
+  const auto name = [&](int number) {
+    return scene.particles.empty() ? "Particle" : "Particles/" + scene.particles[static_cast<std::size_t>(number) - 1].name;
+  };
+  return name(first) + (first == second ? " touches its image" : " and " + name(second) + " touch");
+}
+
+}  // namespace tanktread

@@ -1,0 +1,153 @@
+#include "scene/particles/limiter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "scene/particles/gaps.hpp"
+#include "spline/basis.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double tolerance = 1e-6;  // of gaps at contacts, over the limit
+constexpr int most_rounds = 40;
+constexpr double slack = ContactOptions::slack;
+
+bool of_same_pair(const coupling::Contact& a, const coupling::Contact& b) { return a.particle == b.particle && a.beyond.isApprox(b.beyond, 1e-6); }
+
+Vec3 place(const std::vector<Member>& members, const Net& x, const coupling::Contact& contact) {
+  const Member& member = members[contact.particle[0]];
+  return surface::value(member.body->space, member.own(x), contact.site[0]);
+}
+
+}  // namespace
+
+bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contacts) {
+  const Net start = state.x;
+  step_ = step, held_.clear(), base_ = {};
+  load_ = contacts.all.empty() ? Net() : coupling::work(capsule_.particles(), contacts, start.rows());
+  for (const coupling::Contact& one : contacts.all) {
+    const Approach now = approach(members_, start, one);
+    held_.push_back(held(now, target(now)));
+  }
+  Net x = start;
+  bool holds = find(x);
+  for (int round = 0; holds && error() > tolerance; ++round) {
+    holds = round < most_rounds && respond(state) && (x = moved(start)).allFinite() && find(x);
+  }
+  if (!holds || (held_.empty() && contacts.all.empty())) {
+    capsule_.press(load_);
+    return holds;
+  }
+  contacts = with_forces(x, contacts.impulse);
+  state.x = x;
+  capsule_.press(contacts.all.empty() ? Net() : coupling::work(capsule_.particles(), contacts, x.rows()));
+  state.history = {capsule_.velocity(x)};
+  state.places.clear();
+  return state.history.front().allFinite();
+}
+
+Limiter::Held Limiter::held(const Approach& found, double target) const {
+  const double force = found.contact.force / unit_;
+  return {found.contact, found.gap, target, force, force, {}, {}};
+}
+
+/// Contacts at x: gaps of those that are known, and others below the limit beside them. Whether all are above half of it.
+bool Limiter::find(const Net& x) {
+  for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
+  for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
+    if (!(found.gap >= limit_ / 2)) return false;
+    if (Held* const known = beside(found.contact, x)) {
+      if (known->response.size() > 0 || found.gap >= known->gap) continue;
+      found.contact.force = known->contact.force;
+      *known = held(found, known->target);
+    } else if (found.gap < (1 - slack / 10) * limit_) {
+      held_.push_back(held(found, target(found)));
+    }
+  }
+  return true;
+}
+
+/// The contact of the same pair that is less than half an element away, if there is one.
+Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
+  const Body& body = *members_[contact.particle[0]].body;
+  const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));
+  const Vec3 here = place(members_, x, contact);
+  const auto found = std::ranges::find_if(held_, [&](const Held& one) {
+    return of_same_pair(one.contact, contact) && (place(members_, x, one.contact) - here).norm() < element / 2;
+  });
+  return found == held_.end() ? nullptr : &*found;
+}
+
+/// What the gap is to be: the limit, or, where the pair has a contact elsewhere and it is a little less, on the way there.
+double Limiter::target(const Approach& found) const {
+  const bool first = std::ranges::none_of(held_, [&](const Held& one) { return of_same_pair(one.contact, found.contact); });
+  if (first || found.gap > limit_) return limit_;
+  return std::max((1 - slack) * limit_, found.gap + std::min(1., rate_ * step_) * (limit_ - found.gap));
+}
+
+/// Of gaps, over the limit.
+double Limiter::error() const {
+  double most = 0;
+  for (const Held& one : held_) most = std::max(most, (one.force > 0 ? std::abs(one.gap - one.target) : one.target - one.gap) / limit_);
+  return most;
+}
+
+/// What a unit of force does in the step, of contacts of which it is not known yet. Whether that can be had.
+bool Limiter::respond(const motion::State& state) {
+  const Net& start = state.x;
+  const bool stiff = state.frozen.size() > 0;
+  for (Held& one : held_) {
+    if (one.response.size() > 0) continue;
+    if (base_.size() == 0) {
+      capsule_.press(load_);
+      base_ = capsule_.velocity(start);
+      if (stiff && base_.allFinite()) capsule_.linearise(start);
+    }
+    one.work = Net::Zero(start.rows(), 3);
+    coupling::add_work(capsule_.particles(), one.contact, unit_, one.work);
+    capsule_.press(load_.size() > 0 ? Net(load_ + one.work) : one.work);
+    const Net rate = capsule_.velocity(start) - base_;
+    if (!rate.allFinite()) return false;
+    one.response = step_ * (stiff ? capsule_.solve(step_, rate, 1e-6, {}) : rate);
+  }
+  return true;
+}
+
+/// Finds the forces, and where they take the particles.
+Net Limiter::moved(const Net& start) {
+  const auto n = static_cast<Eigen::Index>(held_.size());
+  Eigen::MatrixXd a(n, n);
+  Eigen::VectorXd gaps(n), forces(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Held& one = held_[static_cast<std::size_t>(k)];
+    gaps[k] = one.gap - one.target, forces[k] = one.force;
+    for (Eigen::Index j = 0; j < n; ++j) a(k, j) = one.work.cwiseProduct(held_[static_cast<std::size_t>(j)].response).sum() / unit_;
+  }
+  forces = coupling::complementary(a, gaps - a * forces);
+  Net x = start;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Held& one = held_[static_cast<std::size_t>(k)];
+    one.force = forces[k];
+    x += (one.force - one.before) * one.response;
+  }
+  if (x.allFinite()) capsule_.restore_volume(x);
+  return x;
+}
+
+/// Those that hold at x, at their nearest places there.
+coupling::Contacts Limiter::with_forces(const Net& x, double impulse) const {
+  coupling::Contacts contacts{{}, impulse};
+  for (const Held& one : held_) {
+    if (!(one.force > 0)) continue;
+    contacts.all.push_back(approach(members_, x, one.contact).contact);
+    contacts.all.back().force = one.force * unit_;
+  }
+  contacts.impulse += step_ * contacts.force();
+  return contacts;
+}
+
+}  // namespace tanktread

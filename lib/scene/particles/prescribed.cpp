@@ -1,0 +1,83 @@
+#include "scene/particles/prescribed.hpp"
+
+#include <cmath>
+#include <functional>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "surface/geometry.hpp"
+#include "system/solids/rigid_body.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// What the integrals of a density lack of the forces on the fluid: three components of the force, three of the torque; then the work of the density
+/// on the velocity that is left between collocation points.
+Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {
+  std::vector<Net> z;
+  for (int k = 0; k < 6; ++k) z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), coupling::unit_motion(k), centre)));
+  z.push_back(f);
+  return body.residual_work(u, f, z);
+}
+
+double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
+
+}  // namespace
+
+void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
+  add_size(measures, to);
+  add_stresslet(stresslet, to);
+  add_points(n_points, to);
+  add_drag(solution.force, solution.torque, to);
+  const auto exact = exact_body(scene);
+  if (to.when(exact && exact->force().norm() > 0)) {
+    to.add(solution.error, {"drag_error", "1", "|F - F_exact|/|F_exact|, where the exact force is known and not zero"});
+    to.add(solution.integral_error, {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"});
+  }
+  if (to.when(exact && exact->torque().norm() > 0))
+    to.add(solution.torque_error, {"torque_error", "1", "|T - T_exact|/|T_exact|, where the exact torque is known and not zero"});
+  if (to.when(exact && exact->presses()))
+    to.add(solution.surface.pressure, {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n (6.3), where that is known"});
+  if (to.when(exact.has_value()))
+    to.add(solution.surface.normal, {"normal_l2_error", "1", "L2 norm of n_h - n over that of n (6.3), where that is known"});
+  to.add(kernel_evaluations, {"kernel_evaluations", "1", "of the layer operator, all rules together"});
+}
+
+coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube) {
+  return {body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube, scene.wall.plane()};
+}
+
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
+  const Vec3& centre = scene.particle.shape.center;
+  const coupling::RigidMotion motion = prescribed_motion(scene);
+  const auto relative_velocity = [&](const Net& x) -> Net { return coupling::rigid_velocity(x, motion, centre) - body.flow.velocities(x); };
+
+  RigidSolution s;
+  s.density = resistance.force_density(resistance.interpolated(relative_velocity));
+  s.iterations = resistance.last_iterations();
+  s.integral = s.force = -resistance.force(s.density);
+  s.torque = -resistance.torque(s.density, centre);
+  double drop_lacking = 0;
+  if (scene.reciprocal_forces()) {
+    const Eigen::VectorXd lacking = reciprocal_correction(resistance, relative_velocity, s.density, centre);
+    s.force -= lacking.head<3>();
+    s.torque -= lacking.segment<3>(3);
+    const double work_of_motion = lacking.head<3>().dot(motion.velocity) + lacking.segment<3>(3).dot(motion.angular_velocity);
+    drop_lacking = resistance.lacking_pressure(body.flow, s.density, work_of_motion - lacking[6]);
+  }
+  if (tube) {
+    s.pressure_drop = resistance.pressure_drop(s.density) + drop_lacking;
+    return s;
+  }
+  if (const auto exact = exact_body(scene)) {
+    const auto clock = phases.time("diagnostics");
+    s.error = relative(s.force, exact->force());
+    s.integral_error = relative(s.integral, exact->force());
+    s.torque_error = relative(s.torque, exact->torque());
+    s.surface = surface_errors(body.space, body.rest, s.density, *exact);
+  }
+  return s;
+}
+
+}  // namespace tanktread

@@ -1,0 +1,148 @@
+#include "scene/particles/warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/formatted.hpp"
+#include "scene/series/diagnostics.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double grown = 5;         // e-folds of waves since the start: they show soon
+constexpr int limited_steps = 10;   // in a row: fewer are the start
+constexpr double folding = 0.05;    // jacobian_ratio; even elements have 0.5 and more, those at a plain pole 0.1
+constexpr double slenderness = 10;  // aspect_ratio
+constexpr double lost_volume = 1e-3;
+constexpr double stiff_area = 3e4;  // of the whole membrane, over what else resists: steps become many
+
+
+/// Shortest wave that elements of size h carry.
+double wave_number(double h) { return std::numbers::pi / h; }
+
+/// Mean viscosity of what is on either side.
+double mean_viscosity(const Scene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
+
+/// What to do about elements that are too coarse.
+std::string finer_mesh(const Scene& scene) {
+  return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
+}
+
+/// Over all ranks.
+surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
+  const std::array<double, 7> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
+                                  mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element)};
+  surface::Quality result;
+  for (const auto& [jacobian, folded, x1, x2, x3, aspect, stretched] : gathered(ranks, own))
+    result = surface::worse(result, {jacobian, static_cast<int>(folded), {x1, x2, x3}, aspect, static_cast<int>(stretched)});
+  return result;
+}
+
+}  // namespace
+
+double stiffness(const Scene& scene, double h) {
+  const double k = wave_number(h), g = scene.modulus(), mu = mean_viscosity(scene);
+  const double in_plane = std::max(1 + scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
+  return std::max(in_plane, scene.bending_modulus() * k * k * k / (4 * mu));
+}
+
+bool Warnings::fresh(const Warning& warning) {
+  if (std::ranges::find(memory_.said, warning.kind, &Warning::kind) != memory_.said.end()) return false;
+  memory_.said.push_back(warning);
+  return true;
+}
+
+std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
+  std::vector<std::string> sentences;
+  const auto add = [&](const char* kind, const std::string& sentence) {
+    const Warning warning{kind, formatted("at time %.4g ", signs.time) + sentence};
+    if (!sentence.empty() && fresh(warning)) sentences.push_back(warning.sentence);
+  };
+  add("choice", choice());
+  add("compression", compression(signs));
+  add("stiffness", stiffness(signs));
+  add("fold", fold(signs));
+  add("stretch", stretch(signs));
+  add("gap", gap(signs));
+  add("volume", volume(signs));
+  return sentences;
+}
+
+std::string Warnings::choice() const {
+  if (scene_.elastic() && scene_.membrane.load == "strong")
+    return "the load is taken in the strong form, which feeds the shape's errors until steps vanish: set Membrane/load to weak";
+  if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == "fixed")
+    return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
+           "adaptive";
+  if (const double k = scene_.membrane.global_area_dilatation;
+      k > stiff_area && k * scene_.modulus() > stiff_area * scene_.bending_modulus() / (scene_.radius() * scene_.radius()))
+    return "the whole area resists so much that steps become many: a Membrane/global area dilatation of 1e4 keeps it nearly as well";
+  return {};
+}
+
+/// A flat membrane under the tension -T with bending modulus B: waves of number k grow at (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B).
+/// Six tenths of that are what a capsule shows, and the flow carries waves out of the compressed part at its own rate.
+std::string Warnings::compression(const StepFindings& signs) {
+  if (!scene_.elastic()) return {};
+  const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
+  const double bending = scene_.bending_modulus();
+  const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
+  const bool resolved = fastest < mesh / 2;  // a wave that the mesh carries is no failure of the method
+  const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));
+  memory_.waves = std::max(0.0, memory_.waves + (growth - scene_.rate()) * signs.step);
+  if (memory_.waves < grown) return {};
+  const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
+  return formatted(
+      "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; "
+      "set Membrane/bending modulus%s or Membrane/pre-inflation",
+      100 * signs.compressed_area, signs.smallest_tension, resistance, bending > 0 ? " higher" : "");
+}
+
+std::string Warnings::stiffness(const StepFindings& signs) {
+  const bool fixed = scene_.time.fixed_step.has_value(), explicit_scheme = scene_.time.scheme == "bs3";
+  const bool iterated = scene_.time.scheme == "crank-nicolson" && scene_.time.nonlinear_solver == "plain";
+  if (!scene_.elastic() || !(explicit_scheme || iterated)) return {};
+  const double limit = explicit_scheme ? 2.51 : 2, reached = signs.step * tanktread::stiffness(scene_, signs.element);
+  memory_.limited = reached > 0.8 * limit ? memory_.limited + 1 : 0;
+  if (!(fixed && reached > limit) && memory_.limited < limited_steps) return {};
+  const char* what = explicit_scheme ? "explicit step" : "sub-iterated step";
+  return formatted("the %s times the membrane's stiffness is %.2g, where about %.2g is the limit: %s; set Time/scheme to auto", what,
+                   reached, limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
+}
+
+std::string Warnings::fold(const StepFindings& signs) const {
+  if (signs.jacobian_ratio > folding) return {};
+  const std::string cure = scene_.membrane.load == "strong" && scene_.elastic()           ? "set Membrane/load to weak"
+                           : scene_.interface_motion() == "material" && !scene_.elastic() ? "set Interface/motion to relaxed"
+                                                                                         : finer_mesh(scene_);
+  const bool drawn = !scene_.elastic() && strains(scene_);
+  return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure +
+         (drawn ? "; or there is no steady shape: above a critical capillary number the flow draws the drop out until it breaks" : "");
+}
+
+std::string Warnings::stretch(const StepFindings& signs) const {
+  if (signs.aspect_ratio < slenderness) return {};
+  return formatted("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
+         (scene_.elastic() || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
+}
+
+std::string Warnings::gap(const StepFindings& signs) const {
+  if (!signs.gap || *signs.gap > signs.element / 2) return {};
+  return formatted("the gap to the wall (%.2g) is less than half an element (%.2g): ", *signs.gap, signs.element) +
+         (scene_.tube.present ? "set finer meshes of particle and tube" : finer_mesh(scene_)) + ", or Adaptation/enabled";
+}
+
+std::string Warnings::volume(const StepFindings& signs) const {
+  if (scene_.particle.rigid() || std::abs(signs.volume_error) < lost_volume) return {};
+  return formatted("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
+}
+
+surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks) {
+  const surface::Quality quality = worst(surface::quality(map, x, ranks.share(map.n_elements())), ranks);
+  surface::require_sound(quality);
+  return quality;
+}
+
+}  // namespace tanktread

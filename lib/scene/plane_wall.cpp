@@ -1,0 +1,58 @@
+#include "scene/plane_wall.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "scene/series/diagnostics.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// The place of a surface that is nearest to the wall, or farthest behind it.
+Vec3 nearest(const stokes::PlaneWall& wall, const spline::Space& space, const Net& x) {
+  const Net own = (x.rowwise() - wall.point().transpose()) * wall.axes().transpose();
+  const surface::BezierMap map(space);
+  return wall.point() + wall.axes().transpose() * surface::lowest(surface::Patches(map, own), 2);
+}
+
+WallRow row_of(const stokes::PlaneWall& wall, const spline::Space& space, const Net& x, int number) {
+  const Vec3 place = nearest(wall, space, x);
+  return {wall.height(place), number, place};
+}
+
+}  // namespace
+
+void check_in_front(const Scene& scene, const Body& body) {
+  const stokes::PlaneWall wall = *scene.wall.plane();
+  const Vec3 place = nearest(wall, body.space, body.initial);
+  const double gap = wall.height(place), least = scene.wall.contact_gap * scene.radius();
+  if (gap >= least) return;
+  const std::string name = scene.name.empty() ? "The particle" : "Particles/" + scene.name;
+  const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);
+  if (gap <= 0) throw UserError(name + " crosses the wall at the start:" + where + formatted("it reaches %.4g behind it.", -gap));
+  throw UserError(name + " starts too close to the wall:" + where +
+                  formatted("the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g.", gap, scene.wall.contact_gap, least));
+}
+
+void WallRow::add_columns(const Scene& scene, Columns& to) const {
+  if (!to.when(scene.wall.present)) return;
+  constexpr const char* wall = "; beside a plane wall";
+  add_gap(gap, to);
+  to.add(place, "x1 x2 x3", {"nearest_to_wall_", "length", "place of a particle's surface that is nearest to the plane wall, component #", {}, wall});
+  if (scene.has_gaps())
+    to.add(particle, {"particle_at_wall", "1", "number of the particle that is nearest to it, from 1 in the order of the deck", {}, wall});
+}
+
+WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x) {
+  WallRow nearest;
+  for (std::size_t p = 0; p < members.size(); ++p)
+    if (const WallRow one = row_of(wall, members[p].body->space, members[p].own(x), static_cast<int>(p) + 1); one.gap < nearest.gap) nearest = one;
+  return nearest;
+}
+
+WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x) { return row_of(wall, body.space, x, 1); }
+
+}  // namespace tanktread

@@ -1,0 +1,330 @@
+#include "scene/series/diagnostics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+
+#include "base/errors.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "spline/bernstein.hpp"
+#include "surface/geometry.hpp"
+#include "surface/patch.hpp"
+#include "surface/transport.hpp"
+
+namespace tanktread {
+
+double angle_in(const FlowPlane& plane, const Vec3& y) {
+  const Vec3 at = plane.components(y);
+  return std::atan2(-at[2], at[0]) * 180 / std::numbers::pi;
+}
+
+namespace {
+
+constexpr const char* axes_of_space = "x1 x2 x3";
+
+void add_energy(double energy, Columns& to) {
+  to.add(energy, {"energy", "force length", "stored in the membrane, in the springs of a Maxwell element (3.23) too; of a drop with surfactant the "
+         "free energy of its surface (3.21)"});
+}
+
+void add_velocity(const Vec3& velocity, Columns& to) {
+  to.add(velocity, axes_of_space, {"velocity_", "length/time", "of the centroid (6.4), or of the centre of a rigid body, component #; of several "
+         "particles the mean"});
+}
+
+void add_centroid(const Vec3& centroid, Columns& to) {
+  to.add(centroid, axes_of_space, {"centroid_", "length", "centroid (P-42), component #; x1 in a tube is what the frame has travelled"});
+}
+
+/// How far along the plane's first direction a place lies, seen from another: the cosine of the angle between.
+double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
+
+/// The site of one element nearest to being ahead, by Newton's method from a start.
+spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
+  const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };  // a pole has no way out
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
+    const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
+    const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // a pole, where one of them may be exactly zero
+    site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
+    site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
+  }
+  return site;
+}
+
+/// Rate x R_C, or the mean velocity in a tube; of a fluid at rest R_C per unit of time.
+double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
+
+/// One number a rank, of which only this rank's is known yet.
+std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
+  std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
+  all[static_cast<size_t>(ranks.rank())] = mine;
+  return all;
+}
+
+/// Of the ranks that have blocks.
+double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
+  double result = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);
+  return result;
+}
+
+double sum(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.); }
+
+/// The elements of this rank: whole blocks.
+std::vector<int> own_elements(const surface::Geometry& geometry, const coupling::Ranks& ranks) {
+  return surface::elements_of(ranks.share(geometry.n_blocks()), geometry.bezier().n_elements());
+}
+
+}  // namespace
+
+void ParticleRow::add_moving(const Scene& one, Columns& to) const {
+  to.add(shape.inclination, {"inclination", "degree", "angle of the long axis of inertia with the first direction of the plane of the flow (x1), "
+         "towards the second (x3)", "the two semi-axes in the plane of the flow (any two if the flow is not planar) differ by less than 1e-6 R_C"});
+  add_stresslet(stresslet, to);
+  to.add(shape.lengths, axes_of_space, {"length_", "length", "extent along #"});
+  add_points(n_points, to);
+  add_velocity(velocity, to);
+  if (to.when(strains(one)))
+    to.add(intrinsic_viscosity, {"intrinsic_viscosity", "1", "S:E/(2 mu V E:E) with the stresslet S (6.7) and the rate of strain E of the flow: 5/2 "
+           "of a rigid sphere"});
+}
+
+void ParticleRow::add_turning(const Scene& one, Columns& to) const {
+  to.add(axes.lengths, "1 2 3", {"axis_", "length", "semi-axis # of the ellipsoid with the same second moments (6.1), the longest one first"});
+  to.add(axes.longest_defined ? Vec3(axes.directions.col(0)) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), axes_of_space, {"axis_1_",
+         "1", "direction of the longest semi-axis, component #; the first nonzero component is positive", "the two longest semi-axes differ by less "
+         "than 1e-6 R_C"});
+  to.add(treading.velocity, {"tank_treading_velocity", "length/time", "mean tangential velocity relative to the centroid on the curve that the plane "
+         "of the flow through it cuts out (6.5); positive where the side of larger x3 moves along x1, clockwise with x1 to the right and x3 up"});
+  to.add(treading.frequency, {"tank_treading_frequency", "1/time", "mean angular velocity of the material points of that curve about the centroid "
+         "(6.6), in radians over time and of the same sense: 2 pi over the period of a steady motion; of a rigid body its angular velocity"});
+  to.add(phase, {"phase", "degree", "angle about the centroid, in the plane of the flow and of the same sense, of the material point that starts at "
+         "the angle 0, on the side of x1, counted on past whole turns; of a drop whose mesh slides the integral of tank_treading_frequency"});
+  if (!to.when(one.tube.present)) return;
+  const auto off_axis = centre.tail<2>(), moves = velocity.tail<2>();
+  to.add(off_axis.dot(moves) > 0 ? -moves.norm() : moves.norm(), {"migration_velocity", "length/time", "speed of the centroid in the x2 x3 plane, "
+         "positive towards the axis of the tube", {}, "; in a tube"});
+}
+
+void DeformingRow::add_columns(const Scene& one, Columns& to) const {
+  to.add(shape.taylor_inertia, {"taylor_inertia", "1", "Taylor parameter (6.2) of the ellipsoid with the same second moments, in the plane of the "
+         "flow"});
+  to.add(shape.taylor_surface, {"taylor_surface", "1", "Taylor parameter (6.2) of the longest and shortest distance from the centroid, in the plane "
+         "of the flow"});
+  add_moving(one, to);
+  add_size(measures, to);
+  to.add(volume_error, {"volume_error", "1", "V/V0 - 1"});
+  if (to.when(one.adaptation.enabled))
+    to.add(refit_error, {"refit_error", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over "
+           "R_C"});
+  add_energy(energy, to);
+  if (to.when(one.viscous_membrane()))
+    to.add(dissipation, {"membrane_dissipation", "force length/time", "power that the membrane's viscosity turns into heat (3.10), (3.25)"});
+  to.add(tension.smallest, {"smallest_tension", "1", "smallest principal tension over G_s, of a drop over sigma"});
+  to.add(tension.compressed_area, {"compressed_area", "1", "share of the area with a negative principal tension"});
+  if (to.when(one.membrane.law != "surface tension"))
+    to.add(tension.area_change, {"local_area_change", "1", "largest change of area of a place of the membrane, over its area unstressed"});
+  to.add(normal_velocity, {"normal_velocity", "1", "largest |v.n| over rate x R_C (in a tube over the mean velocity; there and in parabolic flow in "
+         "the particle's frame): zero when the shape is steady"});
+  to.add(shape_velocity, {"shape_velocity", "1", "what smooth changes of shape have of it, root mean square (6.8): `Time/steady tolerance` is held "
+         "against this"});
+  add_centroid(centre, to);
+  add_turning(one, to);
+}
+
+void RigidRow::add_columns(const Scene& one, Columns& to) const {
+  add_moving(one, to);
+  to.add(angular_velocity, axes_of_space, {"angular_velocity_", "1/time", "of the rigid body, component #"});
+  to.add(quaternion, "0 1 2 3", {"quaternion_", "1", "turn from the initial place, component #, of which 0 is the scalar part"});
+  if (to.when(one.time.steady_tolerance.has_value()))
+    to.add(shape_velocity, {"shape_velocity", "1", "how fast the body turns, as the shape velocity (6.8) of what deforms: `Time/steady tolerance` is "
+           "held against it"});
+  if (one.in_system()) {
+    add_size(measures, to);
+    add_centroid(centre, to);
+    add_drag(drag, torque, to);
+  } else {
+    to.add(centre, axes_of_space, {"center_", "length", "centre of the rigid body, component #"});
+    add_turning(one, to);
+  }
+}
+
+void Together::add_columns(const Scene& scene, Columns& to) const {
+  if (!scene.has_gaps()) return;
+  const bool only = scene.particles.empty();  // whose own columns have the same names
+  if (!only || scene.particle.rigid()) add_energy(energy, to);
+  if (only) return;
+  add_stresslet(stresslet, to);
+  add_points(n_points, to);
+  add_velocity(velocity, to);
+}
+
+void add_points(int n_points, Columns& to) { to.add(n_points, {"n_control_points", "1", "control points of the surface"}); }
+
+void add_size(const surface::Measures& measures, Columns& to) {
+  to.add(measures.volume, {"volume", "length^3", "enclosed volume (P-43)"});
+  to.add(measures.area, {"area", "length^2", "area of the surface"});
+}
+
+void add_stresslet(const Mat3& stresslet, Columns& to) {
+  to.add(components(stresslet), "11 22 33 12 13 23", {"stresslet_", "force length", "particle stresslet (6.7), component #"});
+}
+
+void add_drag(const Vec3& drag, const Vec3& torque, Columns& to) {
+  to.add(drag, axes_of_space, {"drag_", "force", "force on the particle, component #"});
+  to.add(torque, axes_of_space, {"torque_", "force length", "torque on the particle about its centre, component #"});
+}
+
+void add_gap(double to_wall, Columns& to) {
+  to.add(to_wall, {"gap", "length", "smallest distance between particle and wall", {}, "; in a tube, beside a plane wall"});
+}
+
+Eigen::Vector<double, 6> components(const Mat3& tensor) {
+  return Eigen::Vector<double, 6>{{tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)}};
+}
+
+bool strains(const Scene& scene) {
+  if (scene.tube.present) return false;
+  const stokes::AmbientFlow flow(scene.flow);
+  const Mat3 gradient = flow.gradient(Vec3::Zero());
+  return flow.affine() && (gradient + gradient.transpose()).norm() > 1e-10 * gradient.norm();
+}
+
+spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane) {
+  constexpr int intervals = 4;
+  spline::Site best;
+  double most = -2;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const surface::ElementPoints element(space, x, e);
+    const auto of = [&](const spline::Site& site) { return ahead(plane, surface::place(element.patch(), site.s, site.t) - from); };
+    spline::Site start;
+    double nearest = -2;
+    for (int k = 0; k < intervals * intervals; ++k) {
+      const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
+      if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
+    }
+    if (nearest < 0.5) continue;  // no element of a closed surface is seen at so wide an angle
+    for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
+      if (const double here = of(site); here > most + 1e-12) best = site, most = here;
+  }
+  return best;
+}
+
+double intrinsic_viscosity(const Body& body, double viscosity, const ParticleRow& now) {
+  if (!body.flow.affine()) return 0;
+  const Mat3 gradient = body.flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
+  return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
+}
+
+RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
+                   const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks) {
+  RigidRow now;
+  now.n_points = body.space.n_points;
+  now.measures = geometry.measures(x);
+  now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
+  now.axes = surface::principal_axes(now.measures);
+  now.stresslet = stresslet;
+  now.centre = now.measures.centroid;
+  now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
+  now.quaternion << turn.w(), turn.vec();
+  now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
+  if (!scene.time.steady_tolerance) return now;
+  std::vector<int> elements(static_cast<std::size_t>(geometry.bezier().n_elements()));
+  std::iota(elements.begin(), elements.end(), 0);
+  const Net v = coupling::rigid_velocity(x, motion, now.centre);
+  const std::vector<double> sums = surface::shape_velocity_sums(geometry.bezier(), x, v, body.radius, elements);
+  now.shape_velocity = surface::shape_velocity(sums, scene.tube.present) / unit_speed(scene, body);
+  return now;
+}
+
+surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& of_flow, const Net& x, surface::Measures measures,
+                                 const coupling::Ranks& ranks) {
+  FlowPlane plane = of_flow;
+  bool plane_defined = true;
+  if (!plane.holds_flow) {
+    const surface::PrincipalAxes axes = surface::principal_axes(measures);
+    plane = plane_normal_to(axes.directions.col(1));
+    plane_defined = axes.longest_defined && axes.shortest_defined;
+  }
+  const std::vector<int> own = own_elements(geometry, ranks);
+  std::array<surface::Range, surface::Geometry::n_extremes> extremes = geometry.extremes(x, measures.centroid, own);
+  if (!plane.fixed()) {
+    extremes[0] = surface::section_distances(surface::Patches(geometry.bezier(), plane.turned(x), own), plane.components(measures.centroid));
+    measures.second_moments = plane.axes * measures.second_moments * plane.axes.transpose();
+  }
+  std::array<double, 2 * surface::Geometry::n_extremes> ends;
+  for (size_t k = 0; k < extremes.size(); ++k) ends[2 * k] = extremes[k].smallest, ends[2 * k + 1] = extremes[k].largest;
+  for (const auto& of_rank : gathered(ranks, ends))
+    for (size_t k = 0; k < extremes.size(); ++k) extremes[k] = wider(extremes[k], {of_rank[2 * k], of_rank[2 * k + 1]});
+  surface::Deformation result = surface::Geometry::deformation(measures, extremes);
+  if (!plane_defined) result.inclination = std::numeric_limits<double>::quiet_NaN();
+  return result;
+}
+
+DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
+                           const Net& slope, const coupling::Ranks& ranks) {
+  const std::vector<int> blocks = ranks.share(geometry.n_blocks());
+  const std::vector<int> elements = own_elements(geometry, ranks);
+  const std::vector<int>& sites = body.symmetry.fundamental();  // the others are images of these
+  std::vector<int> own;
+  for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
+  const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);
+  std::vector<double> moments = geometry.block_moments(x, blocks);
+  std::vector<double> energy = surface::block_sums(membrane.element_energies(x, elements));
+  std::vector<double> area = surface::block_sums(tensions.area), compressed = surface::block_sums(tensions.compressed);
+  std::vector<double> smallest = slots(ranks, elements.empty() ? 0 : tensions.smallest);
+  std::vector<double> change = slots(ranks, tensions.area_change);
+  std::vector<double> fastest = slots(ranks, normal_velocity(scene, body, geometry, x, slope, own));
+  std::vector<double> shape = surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements);
+  ranks.add_all({moments, energy, area, compressed, smallest, change, fastest, shape});
+  DeformingRow now;
+  now.n_points = body.space.n_points;
+  now.measures = surface::Geometry::measures(x, moments);
+  now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
+  now.axes = surface::principal_axes(now.measures);
+  now.refit_error = body.refit_error;
+  now.energy = sum(energy);
+  now.tension = {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area), std::ranges::max(change)};
+  now.normal_velocity = std::ranges::max(fastest);
+  now.shape_velocity = surface::shape_velocity(shape, scene.tube.present) / unit_speed(scene, body);
+  now.centre = now.measures.centroid;
+  return now;
+}
+
+void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now) {
+  const FlowPlane& plane = body.plane;
+  now.velocity = surface::centroid_velocity(geometry.bezier(), x, v);
+  const bool elastic = scene.membrane.law != "surface tension";
+  now.treading = surface::tank_treading(geometry.bezier(), plane.turned(x), plane.turned(v), elastic ? &body.unstressed : nullptr,
+                                        plane.components(now.centre), plane.components(now.velocity));
+}
+
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
+                       std::span<const int> sites) {
+  double largest = 0;
+  Vec3 frame = Vec3::Zero();
+  if (!body.flow.affine() || scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), x, slope)[0];
+  const surface::BezierMap& map = geometry.bezier();
+  constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
+  double points[most], velocities[most];
+  for (const int i : sites) {
+    const auto& [element, s, t] = body.space.collocation[static_cast<size_t>(i)].front();
+    map.points(element, x, points);
+    map.points(element, slope, velocities);
+    const surface::Jet at = surface::jet({map.degree(element), points}, s, t);
+    const Vec3 v = surface::place({map.degree(element), velocities}, s, t) - frame;
+    largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));
+  }
+  return largest / unit_speed(scene, body);
+}
+
+}  // namespace tanktread

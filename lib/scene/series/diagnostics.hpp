@@ -1,0 +1,116 @@
+#pragma once
+// Measurements on a particle, and its columns in the record.
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "base/columns.hpp"
+#include "membrane/membrane.hpp"
+#include "scene/body.hpp"
+#include "surface/geometry.hpp"
+#include "surface/transport.hpp"
+
+namespace tanktread {
+
+/// What every rank has, in their order. Collective.
+template <std::size_t n>
+std::vector<std::array<double, n>> gathered(const coupling::Ranks& ranks, const std::array<double, n>& mine) {
+  std::vector<double> all(n * static_cast<std::size_t>(ranks.size()), 0.);
+  std::ranges::copy(mine, all.begin() + static_cast<std::ptrdiff_t>(n) * ranks.rank());
+  ranks.add(all);
+  std::vector<std::array<double, n>> values(all.size() / n);
+  for (std::size_t k = 0; k < all.size(); ++k) values[k / n][k % n] = all[k];
+  return values;
+}
+
+/// Data of a moving particle for one row. Vectors are in the axes of space; units as the columns state.
+struct ParticleRow {
+  int n_points = 0;
+  surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
+  surface::Deformation shape{0, 0, 0, Vec3::Zero()};
+  surface::PrincipalAxes axes;
+  surface::Treading treading;
+  Mat3 stresslet = Mat3::Zero();
+  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero();
+  double energy = 0, intrinsic_viscosity = 0, phase = 0;
+
+  virtual ~ParticleRow() = default;
+  /// Adds the columns of this particle, whose scene is `one`.
+  virtual void add_columns(const Scene& one, Columns& to) const = 0;
+
+ protected:
+  void add_moving(const Scene& one, Columns& to) const;   ///< of every moving particle
+  void add_turning(const Scene& one, Columns& to) const;  ///< semi-axes, tank-treading and migration
+};
+
+struct DeformingRow : ParticleRow {
+  double volume_error = 0, refit_error = 0, dissipation = 0, normal_velocity = 0, shape_velocity = 0;
+  membrane::TensionSummary tension;
+  void add_columns(const Scene& one, Columns& to) const override;
+};
+
+struct RigidRow : ParticleRow {
+  Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< the scalar part first
+  double shape_velocity = 0;                             ///< where Time/steady tolerance asks for it
+  void add_columns(const Scene& one, Columns& to) const override;
+};
+
+/// Sums over all particles; their mean velocity.
+struct Together {
+  int n_points = 0;
+  double energy = 0;
+  Mat3 stresslet = Mat3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  void add_columns(const Scene& scene, Columns& to) const;
+};
+
+/// Columns that several kinds of rows have.
+void add_points(int n_points, Columns& to);
+void add_size(const surface::Measures& measures, Columns& to);
+void add_stresslet(const Mat3& stresslet, Columns& to);
+void add_drag(const Vec3& drag, const Vec3& torque, Columns& to);
+void add_gap(double to_wall, Columns& to);
+
+/// Returns components 11, 22, 33, 12, 13, 23 of a symmetric tensor.
+Eigen::Vector<double, 6> components(const Mat3& tensor);
+
+/// Returns true if the unbounded flow has one rate of strain, which is not zero, so that `intrinsic_viscosity` is defined.
+bool strains(const Scene& scene);
+
+/// Returns what the shape x and the slope of a capsule or drop determine. Collective.
+DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
+                           const Net& slope, const coupling::Ranks& ranks);
+
+/// Sets the velocity of the centroid, and tank-treading, of a surface x whose material moves by v.
+void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
+
+/// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane is that of the longest and the shortest
+/// semi-axis; if one of these is not distinct from the middle one, the inclination is NaN. Ranks share the elements. Collective.
+surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
+                                 const coupling::Ranks& ranks);
+
+/// S:E/(2 mu V E:E) of the row's stresslet S, E the symmetric part of the flow's gradient; 0 of a flow that is not affine.
+double intrinsic_viscosity(const Body& body, double viscosity, const ParticleRow& now);
+
+/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`, but for drag and torque. Collective.
+RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
+                   const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
+
+/// Angle of y in the plane, in degrees from its first direction in the sense of tank-treading, in (-180, 180].
+double angle_in(const FlowPlane& plane, const Vec3& y);
+
+/// The site of the surface that is seen from `from` in the first direction of the plane.
+spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
+
+/// Largest |v.n| over these collocation sites, over rate x R_C: zero when the shape is steady. In a tube of the velocity relative to the centroid's
+/// along the tube, over the mean velocity.
+double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
+                       std::span<const int> sites);
+
+}  // namespace tanktread

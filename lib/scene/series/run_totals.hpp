@@ -1,0 +1,67 @@
+#pragma once
+// Where a run stands beside its state, and how a checkpoint keeps it.
+
+#include <optional>
+#include <vector>
+
+#include "record/files/checkpoint.hpp"
+#include "record/files/summary.hpp"
+#include "scene/particles/warnings.hpp"
+#include "stokes/kernels/kernels.hpp"
+#include "system/capsule.hpp"
+#include "system/contact.hpp"
+
+namespace tanktread {
+
+/// The phase of a material point: its angle, counted on past whole turns, and the angular velocity that the surface was left with.
+struct PhaseAngle {
+  double degrees = 0, rate = 0;
+
+  /// A step on, in which the mean angular velocity of the surface became `now`: to the `angle` at which the point is, whole turns counted on, or
+  /// where no point is followed by the mean.
+  void advance(double step, double now, std::optional<double> angle);
+};
+
+/// What a run has done since its beginning, earlier parts of a resumed one included.
+struct RunTotals {
+  int step = 0;  ///< steps so far; `run.h5` holds step + 1 rows
+  double wall_seconds = 0;
+  coupling::Work work;
+  int refinements = 0, coarsenings = 0;
+  stokes::Evaluations kernel;       ///< of all ranks
+  Warnings::Memory warnings;
+  std::vector<PhaseAngle> phase_angle;     ///< of each particle
+  coupling::Contacts contacts;             ///< that hold particles apart
+  output::Entries<double> seconds;  ///< of the first rank, by phase
+};
+
+/// Calls act(name, whose, what it is, count) for every count, which checkpoints and the summary hold by these names.
+template <class Some, class Act>
+void each_count(Some& totals, const Act& act) {
+  constexpr const char *moving = "capsule, drop, free body", *all = "all";
+  act("steps", moving, "steps", totals.step);
+  act("refinements", moving, "changes of the mesh that cut elements", totals.refinements);
+  act("coarsenings", moving, "changes of the mesh that merged elements", totals.coarsenings);
+  act("evaluations", moving, "velocity evaluations (4.2)", totals.work.evaluations);
+  act("assemblies", moving, "assemblies of the frozen layer operator (4.3)", totals.work.assemblies);
+  act("tangents", moving, "tangents of the membrane", totals.work.tangents);
+  act("linear_solves", moving, "linear solves of the implicit step; of a free body for its motion", totals.work.solves);
+  act("solver_iterations", all, "iterations of these; of a prescribed body of the solve for the traction", totals.work.solver_iterations);
+  act("velocity_iterations", moving, "iterations of the systems that velocities come from", totals.work.velocity_iterations);
+  act("velocity_solves", moving, "solves of these systems", totals.work.velocity_solves);
+  act("most_velocity_iterations", moving, "iterations of one of them, at most", totals.work.most_velocity_iterations);
+  act("kernel_evaluations_far", all, "evaluations of the kernels G and T (2.1), of all ranks: by far rules", totals.kernel.far);
+  act("kernel_evaluations_near", all, "by near rules", totals.kernel.near);
+  act("kernel_evaluations_self", all, "on the element of the target", totals.kernel.self);
+}
+
+/// Every count by its name, for the summary.
+output::Entries<long> counts(const RunTotals& totals);
+
+/// Adds all of `totals` to the checkpoint.
+void store(const RunTotals& totals, output::Checkpoint& checkpoint);
+
+/// The same. Throws std::out_of_range where the checkpoint lacks a part of it.
+RunTotals stored_totals(const output::Checkpoint& checkpoint);
+
+}  // namespace tanktread

@@ -1,0 +1,144 @@
+#include "scene/series/series.hpp"
+
+#include <sstream>
+#include <unordered_map>
+
+#include "scene/particles/gaps.hpp"
+#include "scene/particles/prescribed.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/series/diagnostics.hpp"
+#include "scene/series/surface_fields.hpp"
+#include "scene/tube.hpp"
+#include "system/contact.hpp"
+#include "system/power_balance.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// The order of columns in a row and in the manual, those with components by what precedes these.
+constexpr const char* order =
+    "time time_step taylor_inertia taylor_surface inclination volume volume_error refit_error area energy membrane_dissipation smallest_tension "
+    "compressed_area local_area_change flow_power force_power fluid_dissipation power_residual stresslet_ length_ normal_velocity shape_velocity "
+    "n_control_points step_error rejected_steps iterations evaluations assemblies solver_iterations velocity_iterations wall_seconds centroid_ "
+    "center_ velocity_ angular_velocity_ quaternion_ axis_ axis_1_ tank_treading_velocity tank_treading_frequency phase intrinsic_viscosity "
+    "migration_velocity disturbed_pressure_drop gap flow_rate channel_pressure_drop channel_extra_pressure_drop nearest_to_wall_ particle_at_wall "
+    "smallest_gap first_of_gap second_of_gap gap_ contact_force contact_impulse volume_fraction cell_1_ cell_2_ cell_3_ particle_stress_ "
+    "relative_viscosity normal_stress_difference_ pressure_gradient_ disturbance_flux force_imbalance cap_velocity pressure_drop_by_flux "
+    "pressure_drop_by_force drag_ torque_ drag_error drag_error_of_traction torque_error pressure_l2_error normal_l2_error surfactant_mass "
+    "smallest_concentration largest_concentration parameter fold second_parameter period leading_rate unstable_modes rate_ frequency_ "
+    "kernel_evaluations";
+
+std::size_t rank(const std::string& name) {
+  static const auto ranks = [] {
+    std::unordered_map<std::string, std::size_t> all;
+    std::istringstream names(order);
+    for (std::string one; names >> one;) all.emplace(one, all.size());
+    return all;
+  }();
+  auto at = ranks.find(name);
+  if (at == ranks.end()) at = ranks.find(name.substr(0, name.rfind('_') + 1));
+  return at == ranks.end() ? ranks.size() : at->second;
+}
+
+/// Adds the columns of registered series of one kind, with their values, or without arguments for their names.
+template <class Series, class... Of>
+void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
+  for (const SeriesParts::Chosen& part : scene.series) {
+    const auto made = part.make();
+    const Series* const series = std::get_if<Series>(&made);
+    if (!series) continue;
+    if constexpr (sizeof...(of) > 0) part.add_columns((*series)(of...), to);
+    else part.add_columns(to);
+  }
+}
+
+}  // namespace
+
+void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to) {
+  add_series_of<ParticleSeries>(scene, to, time, particle);
+}
+
+void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to) {
+  add_series_of<RunSeries>(scene, to, time, particles);
+}
+
+void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
+  const bool prescribed = !scene.in_system() && scene.particle.motion == Motion::prescribed;
+  to.add(time, {"time", "time", "simulated time; 0 of a steady problem"});
+  to.add(wall_seconds, {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"});
+  if (scene.in_system() || prescribed || scene.tube.present || scene.wall.present)
+    to.add(static_cast<double>(work.solver_iterations), {"solver_iterations", "1", "iterations of the linear solver so far"});
+  if (prescribed) return;
+  to.add(step.step, {"time_step", "time", "size of the step that ended here"});
+  to.add(step.error, {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"});
+  to.add(step.rejected, {"rejected_steps", "1", "attempts given up in this step"});
+  to.add(static_cast<double>(evaluations.value_or(work.evaluations)), {"evaluations", "1", "velocity evaluations so far"});
+  if (!scene.in_system()) return;
+  to.add(step.iterations, {"iterations", "1", "nonlinear iterations or sub-iterations in this step"});
+  to.add(static_cast<double>(work.assemblies), {"assemblies", "1", "assemblies of the frozen layer operator so far"});
+  to.add(static_cast<double>(work.velocity_iterations), {"velocity_iterations", "1", "iterations of the systems that velocities come from so far "
+         "(viscosity ratio other than 1)"});
+}
+
+Columns run_columns(const Scene& scene, bool every) {
+  Columns all(every);
+  ProgressRow().add_columns(scene, all);
+  TubeRow().add_columns(scene, all);
+  WallRow().add_columns(scene, all);
+  if (!scene.in_system()) {
+    scene.particle.motion == Motion::free ? RigidRow().add_columns(scene, all) : PrescribedRow().add_columns(scene, all);
+  } else {
+    Together().add_columns(scene, all);
+    if (all.when(scene.output.power_balance)) coupling::Powers().add_columns(all);
+  }
+  if (scene.has_gaps()) {
+    Nearest().add_columns(all);
+    DomainRow().add_columns(scene, all);
+    if (all.when(scene.contact.limiter)) coupling::Contacts().add_columns(all);
+  }
+  add_series_of<RunSeries>(scene, all);
+  put_in_order(all);
+  return all;
+}
+
+Columns particle_columns(const Scene& one, bool every) {
+  Columns all(every);
+  if (one.particle.rigid()) {
+    RigidRow().add_columns(one, all);
+  } else {
+    DeformingRow().add_columns(one, all);
+    if (all.when(one.surfactant.has_value())) SurfactantRow().add_columns(all);
+    for (const auto& part : one.loads) part.add_columns(all);
+    for (const auto& part : one.fields) part.add_columns(all);
+  }
+  add_series_of<ParticleSeries>(one, all);
+  put_in_order(all);
+  return all;
+}
+
+Columns columns(const Scene& scene) {
+  Columns all = run_columns(scene);
+  if (!scene.in_system()) return all;
+  for (const Scene& one : scene.alone()) all.append(particle_columns(one), one.name.empty() ? "" : one.name + "/");
+  SteadyRow found;
+  found.modes.resize(static_cast<std::size_t>(scene.spectrum.number));
+  found.add_columns(scene, all);
+  return all;
+}
+
+void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
+  if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
+  if (scene.periodic.present) to.add(period, {"period", "time", "after which the shape is back (Periodic)"});
+  const auto rigid = [](const Scene& one) { return one.particle.rigid(); };
+  if (scene.spectrum.present) motion::add_columns(modes, std::ranges::all_of(scene.alone(), rigid), to);
+}
+
+void put_in_order(Columns& columns) { columns.sort(rank); }
+
+void finish(Columns& row) {
+  put_in_order(row);
+  row.check();
+}
+
+}  // namespace tanktread

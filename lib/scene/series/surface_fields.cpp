@@ -1,0 +1,159 @@
+#include "scene/series/surface_fields.hpp"
+
+#include <map>
+#include <utility>
+
+#include "spline/locate.hpp"
+
+namespace tanktread {
+
+SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    const Scene& scene = members[p].scene;
+    Body& body = *members[p].body;
+    if (scene.surfactant) {
+      auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *scene.surfactant, body.modulus,
+                                                               scene.surfactant->diffusivity_of(scene.flow.rate(), body.radius));
+      membrane::Surfactant* const known = surfactant.get();
+      if (body.initial_area == 0) body.initial_area = known->mass(known->start(body.initial));
+      all_.push_back({p, std::move(surfactant), known});
+    }
+    if (scene.maxwell_membrane())
+      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity(),
+                                                                    *scene.membrane.relaxation_time)});
+    for (const auto& part : scene.fields)
+      all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});
+  }
+  if (all_.empty()) return;
+  std::vector<coupling::CoupledMotion::On> on;
+  for (const One& one : all_) on.push_back({one.particle, one.field.get()});
+  motion_.emplace(capsule, std::move(on));
+}
+
+const motion::State& SurfaceFields::of_shape(const motion::State& state) {
+  if (!motion_) return state;
+  shapes_ = {};
+  shapes_.time = state.time, shapes_.step = state.step, shapes_.slope_error = state.slope_error;
+  shapes_.x = shape(state.x), shapes_.frozen = shape(state.frozen);
+  for (const Net& slope : state.history) shapes_.history.push_back(shape(slope));
+  for (const motion::Place& place : state.places) shapes_.places.push_back({place.time, shape(place.x)});
+  return shapes_;
+}
+
+void SurfaceFields::put_back(const motion::State& own, motion::State& state) const {
+  if (!motion_) {
+    state = own;
+    return;
+  }
+  state.x = with_shape(state.x, own.x);
+  for (std::size_t k = 0; k < state.history.size(); ++k) state.history[k] = with_shape(state.history[k], own.history[k]);
+  for (std::size_t k = 0; k < state.places.size(); ++k) state.places[k].x = with_shape(state.places[k].x, own.places[k].x);
+}
+
+motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies) {
+  if (!motion_) return own;
+  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred(before, y, shape, bodies) : Net(); };
+  motion::State state;
+  state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
+  state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen);
+  for (std::size_t k = 0; k < old.places.size(); ++k) state.places.push_back({old.places[k].time, transfer(old.places[k].x, own.places[k].x)});
+  return state;
+}
+
+/// One control net and its fields.
+Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
+  before.motion_->set_fields(y);
+  Net now = motion_->start(shape);
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    const std::size_t p = all_[k].particle;
+    const Body* const old = bodies[p];
+    if (!old) {
+      motion_->set_coefficients(now, k, before.motion_->coefficients(y, k));
+      continue;
+    }
+    const spline::Space &from = old->nested(), &to = members_[p].body->nested();
+    const spline::Locator locator(from);
+    const auto site = [&](const spline::Site& here) { return locator(spline::place(to, here)); };
+    motion_->set_coefficients(now, k, all_[k].field->transferred(*before.all_[k].field, members_[p].own(shape), site));
+  }
+  return now;
+}
+
+void SurfaceFields::set_state(const Net& y, double distance) {
+  if (!motion_) return;
+  if (distance > 0 && capsule_.evaluated_about(shape(y), distance)) motion_->set_fields(y);
+  else motion_->set_state(y);
+}
+
+void SurfactantRow::add_columns(Columns& to) const {
+  constexpr const char* of = "drop with surfactant";
+  to.add(mass, {"surfactant_mass", "1", "integral of the concentration over the interface, over the initial one: stays 1 to round-off", {}, of});
+  to.add(smallest, {"smallest_concentration", "1", "of surfactant over the initial one", {}, of});
+  to.add(largest, {"largest_concentration", "1", "the same", {}, of});
+}
+
+void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
+  const auto& loads = capsule_.particles()[p].loads;
+  const auto& parts = members_[p].scene.loads;  // of the last loads
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    const One& one = all_[k];
+    if (one.particle != p) continue;
+    now.energy += one.field->energy();
+    now.dissipation += one.field->dissipation();
+    if (one.part) one.part->add_columns(one.field->values(), to);
+    if (!one.surfactant) continue;
+    now.tension.smallest = members_[p].scene.surfactant->tension(one.surfactant->largest());
+    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;
+    SurfactantRow{mass, one.surfactant->smallest(), one.surfactant->largest()}.add_columns(to);
+  }
+}
+
+double SurfaceFields::power(const Net& v) const {
+  double sum = 0;
+  for (const One& one : all_) sum += one.field->load().cwiseProduct(members_[one.particle].own(v)).sum();
+  return sum;
+}
+
+/// Adds what fields and loads show; 0 on particles that have no value of a name.
+void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
+  std::map<std::string, Eigen::MatrixXd> all;
+  const auto add = [&](std::size_t p, const std::vector<membrane::SurfaceValues>& several) {
+    for (const membrane::SurfaceValues& one : several) {
+      const auto known = all.try_emplace(one.name, Eigen::MatrixXd::Zero(capsule_.n_points(), one.values.cols())).first;
+      known->second.middleRows(members_[p].block.first_point, members_[p].block.n_points) = one.values;
+    }
+  };
+  for (const One& one : all_) add(one.particle, one.field->snapshot());
+  for (std::size_t p = 0; p < members_.size(); ++p)
+    for (const auto& load : capsule_.particles()[p].loads) add(p, load->snapshot(members_[p].own(x)));
+  for (const auto& [name, values] : all) {
+    Net net = Net::Zero(values.rows(), 3);
+    net.leftCols(values.cols()) = values;
+    fields.push_back({name, nodes.values(net).leftCols(values.cols())});
+  }
+}
+
+void SurfaceFields::add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
+  add_registered(nodes, x, fields);
+  Net values = Net::Zero(capsule_.n_points(), 3);
+  bool any = false;
+  for (const One& one : all_)
+    if (one.surfactant) any = true, members_[one.particle].block.rows(values).col(0) = one.surfactant->concentration();
+  if (!any) return;
+  const Eigen::VectorXd c = nodes.values(values).col(0);
+  const std::vector<spline::Site>& sites = nodes.mesh().sites;
+  for (const One& one : all_) {
+    if (!one.surfactant) continue;
+    const spline::Block& block = members_[one.particle].block;
+    for (output::Field& field : fields)
+      if (field.name == "smallest tension" || field.name == "largest tension")
+        for (Eigen::Index i = 0; i < c.size(); ++i)
+          if (const int e = sites[static_cast<std::size_t>(i)].element - block.first_element; e >= 0 && e < block.n_elements)
+            field.values(i, 0) = members_[one.particle].scene.surfactant->tension(c[i]);
+  }
+  fields.push_back({"concentration", c});
+}
+
+}  // namespace tanktread

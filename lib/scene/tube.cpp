@@ -1,0 +1,185 @@
+#include "scene/tube.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/words.hpp"
+#include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// In a channel, at the places that a surface is drawn from.
+void check_fits_channel(const Scene& scene, const Body& body, const surface::TubeWall& wall) {
+  const surface::Channel& channel = *wall.channel;
+  const surface::Patches particle(surface::BezierMap(body.space), body.initial), around(surface::BezierMap(wall.space), wall.net);
+  double first = channel.end(), last = channel.start();
+  for (int e = 0; e < particle.size(); ++e)
+    for (const auto& line : surface::sample(particle[e]))
+      for (const Vec3& x : line) {
+        const Vec3 at = channel.coordinates(x);
+        if (!channel.outline().inside(at.tail<2>()))
+          throw UserError(formatted("The particle does not fit into the channel: at [%.4g, %.4g, %.4g] it is in the wall; R_C = %.4g, half the "
+                                    "channel's width is %.4g where it is narrowest.",
+                                    x[0], x[1], x[2], body.radius, channel.smallest_radius()));
+        first = std::min(first, at[0]), last = std::max(last, at[0]);
+      }
+  const double margin = 1.7 * wall.radius();
+  if (first < channel.start() + margin || last > channel.end() - margin)
+    throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to "
+                              "Channel/start = %.4g and Channel/end = %.4g.",
+                              first, last, margin, channel.start(), channel.end()));
+  const surface::ElementBoxes its(particle), walls(around);
+  const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), wall.radius()).gap;
+  if (const double least = scene.tube.contact_gap * body.radius; gap < least)
+    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
+                              gap, scene.tube.contact_gap, least));
+}
+
+void check_fits(const Scene& scene, const Body& body) {
+  if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()))
+    return check_fits_channel(scene, body, *channel->surface());
+  const surface::Outline& outline = body.duct->outline();
+  const Vec3& centre = scene.particle.shape.center;
+  const double from_axis = outline.distance({centre[1], centre[2]});
+  if (from_axis <= 0)
+    throw UserError(
+        formatted("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
+  const surface::Clearance nearest = surface::clearance(surface::Patches(surface::BezierMap(body.space), body.initial), outline);
+  const std::string where = formatted("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
+  if (nearest.gap <= 0)
+    throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
+                              where.c_str(), -nearest.gap, body.radius, outline.radius()));
+  const double least = scene.tube.contact_gap * body.radius;
+  if (nearest.gap < least)
+    throw UserError(
+        formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
+                  where.c_str(), nearest.gap, scene.tube.contact_gap, least));
+}
+
+/// Adds the flow rate, and the pressure drop of the empty channel if it is one.
+TubeRow with_channel(const coupling::Tube& tube, TubeRow now) {
+  now.flow_rate = tube.flow_rate(now.pressure_drop * tube.copies());
+  const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
+  if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
+  return now;
+}
+
+}  // namespace
+
+void check_fit(const Scene& scene, const Body& body) {
+  if (!scene.tube.present) return;
+  try {
+    check_fits(scene, body);
+  } catch (const UserError& error) {
+    if (scene.name.empty()) throw;
+    throw UserError("Particles/" + scene.name + ": " + error.what());
+  }
+}
+
+std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
+  if (!scene.tube.present) return {};
+  if (scene.tube.channel)
+    return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0), scene.quadrature,
+                                                         scene.solvers.wall);
+  return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0));
+}
+
+std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body) {
+  if (!scene.tube.present) return {};
+  if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
+  const surface::Outline& outline = body.duct->outline();
+  const double centroid = surface::measures(body.space, body.rest).centroid[0];
+  const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
+  const double length = x1.maxCoeff() - x1.minCoeff(), period = scene.tube.periodic_length.value_or(0);
+  const int images = surface::train_images(scene.tube, outline.radius(), scene.quadrature.tolerance);
+  if (images > 0 && period <= length)
+    throw UserError(formatted("Tube/periodic length = %.4g must be more than the particles are long, which reach from x1 = %.4g to %.4g seen from "
+                              "their centroid.",
+                              period, x1.minCoeff(), x1.maxCoeff()));
+  surface::TubeOptions options = scene.tube;
+  const double chain = length + 2 * images * period, alone = surface::tube_length({}, outline.radius(), length);
+  const double along_chain = std::ceil((chain - length) / alone * options.axial_elements), most = most_wall_points() / options.azimuthal_elements;
+  if (options.axial_elements + along_chain > most)
+    throw UserError(formatted("Tube/periodic length = %.4g with %d copies at either side asks for %.3g elements along the wall, but at most %.0f fit "
+                              "into memory: give a shorter one.",
+                              period, images, options.axial_elements + along_chain, most));
+  options.axial_elements += static_cast<int>(along_chain);
+  double along = surface::tube_length(scene.tube, outline.radius(), chain);
+  if (images > 0 && options.grading == 1) along = surface::repeat_elements(options, along, period);
+  auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, chain / 2));
+  wall->images = images;
+  surface::check_length(*wall, x1.minCoeff() - images * period, x1.maxCoeff() + images * period);
+  return wall;
+}
+
+std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases) {
+  if (!body.wall) return {};
+  coupling::TubeParameters parameters;
+  parameters.viscosity = scene.flow.viscosity;
+  parameters.viscosity_ratio = scene.particle.viscosity_ratio;
+  if (scene.tube.channel) parameters.symmetry = body.symmetry;
+  parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
+  parameters.period = scene.tube.periodic_length.value_or(0);
+  parameters.copies = body.wall->images;
+  parameters.quadrature = scene.quadrature;
+  parameters.direct = scene.solvers.direct;
+  if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
+    return std::make_unique<coupling::Tube>(channel, body.space, parameters, phases);
+  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
+}
+
+void TubeRow::add_columns(const Scene& scene, Columns& to) const {
+  if (!to.when(scene.tube.present)) return;
+  constexpr const char *tube = "; in a tube", *channel = "; in a channel";
+  to.add(pressure_drop, {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7); of one period of a train", {},
+         tube});
+  add_gap(gap, to);
+  if (to.when(scene.flow.held == "pressure drop"))
+    to.add(flow_rate, {"flow_rate", "length^3/time", "through the tube, where Flow/held is `pressure drop`", {},
+           "; where the pressure drop is held"});
+  if (to.when(scene.tube.channel.has_value())) {
+    to.add(channel_pressure_drop, {"channel_pressure_drop", "force/length^2", "between the ends of the empty channel (2.30)", {}, channel});
+    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop", "force/length^2", "the same, over that of a straight tube of the inlet's "
+           "section and as long", {}, channel});
+  }
+  to.add(checks.flux, {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", {}, tube});
+  to.add(checks.force, {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: "
+         "should vanish (2.14)", {}, tube});
+  to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
+  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance "
+         "vanishes", {}, tube});
+  to.add(checks.pressure_by_force, {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance", {},
+         tube});
+}
+
+TubeRow tube_row(coupling::Capsule& capsule, const Net& x) {
+  const coupling::Tube& tube = *capsule.tube();
+  const coupling::Tube::Checks checks = capsule.checks(x);
+  return with_channel(tube, {.pressure_drop = capsule.response(x).pressure_drop / tube.copies(), .gap = tube.gap(), .checks = checks});
+}
+
+TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop) {
+  return with_channel(tube, {.pressure_drop = pressure_drop, .gap = tube.gap(), .checks = tube.checks(-density, {}, tube.respond(-density))});
+}
+
+void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
+  if (wall.channel || (scene.particles.empty() && !scene.tube.periodic_length)) return;
+  const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
+  const double period = scene.tube.periodic_length.value_or(0), chain = wall.images * period;
+  if (period > 0 && x1.maxCoeff() - x1.minCoeff() >= period)
+    throw RunFailure(formatted("the particles reach from x1 = %.4g to %.4g seen from their centroid, into their copies: Tube/periodic length = %.4g "
+                               "is too short",
+                               x1.minCoeff(), x1.maxCoeff(), period));
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + chain + wall.radius());  // nearer to an end the disturbance has not died out
+  if (wall.length() < needed)
+    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
+                               "an end, Tube/length = %.4g is too short",
+                               x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
+}
+
+}  // namespace tanktread

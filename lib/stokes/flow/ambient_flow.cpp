@@ -1,0 +1,111 @@
+#include "stokes/flow/ambient_flow.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+namespace tanktread::stokes {
+namespace {
+
+Mat3 four_roll(double a) {
+  Mat3 gradient;
+  gradient << 1 + a, 0, 1 - a, 0, 0, 0, -1 + a, 0, -1 - a;
+  return gradient / 2;
+}
+
+Mat3 unit_gradient(const FlowOptions& options) {
+  Mat3 gradient = Mat3::Zero();
+  if (options.type == "simple shear") gradient(0, 2) = 1;
+  if (options.type == "four-roll") return four_roll(options.roll_parameter.value());
+  if (options.type == "planar hyperbolic") return four_roll(1);
+  if (options.type == "uniaxial extension") gradient.diagonal() << -0.5, -0.5, 1;
+  if (options.type == "linear") return options.gradient.value();
+  return gradient;
+}
+
+}  // namespace
+
+AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
+  Field field;
+  const bool has_rate = options.type != "linear" && options.type != "parabolic";
+  field.gradient = unit_gradient(options) * (has_rate ? options.shear_rate : 1.);
+  if (options.type == "uniform") field.velocity = options.velocity.value();
+  if (options.type == "parabolic") {
+    field.velocity[0] = options.maximum_velocity.value();
+    field.direction = Vec3::Unit(0);
+    const double bend = -options.maximum_velocity.value() / (options.half_width.value() * options.half_width.value());
+    field.curvature.diagonal() << 0, options.profile == "round" ? bend : 0, bend;
+  }
+  return field;
+}
+
+AmbientFlow::AmbientFlow(const FlowOptions& options, std::shared_ptr<const DuctFlow> duct)
+    : duct_(std::move(duct)), user_(options.user), history_(options.history), steady_(field(options)), field_(steady_), rate_(options.rate()) {
+  if ((options.type == "duct") != static_cast<bool>(duct_))
+    throw std::invalid_argument("the flow of type `duct`, and no other, needs a duct");
+}
+
+bool AmbientFlow::at(double time, double start) {
+  if (!history_) return false;
+  const FlowHistory::Moment moment = history_->at(time, start);
+  if (moment.amplitude == moment_.amplitude && moment.turn == moment_.turn) return false;
+  moment_ = moment;
+  field_ = steady_;
+  field_ = turned(moment.turn, moment.amplitude).field_;
+  return true;
+}
+
+double AmbientFlow::next_kink(double time) const { return history_ ? history_->next_kink(time) : std::numeric_limits<double>::infinity(); }
+
+/// Seven angles tell all: the field is a polynomial of degree three in the turn's sine and cosine.
+std::vector<AmbientFlow> AmbientFlow::directions() const {
+  if (!history_ || !history_->angles) return {*this};
+  std::vector<AmbientFlow> all;
+  for (int k = 0; k < 7; ++k) all.push_back(turned(history_->turn(360. / 7 * k), 1));
+  return all;
+}
+
+/// Turned by Q about the origin, with an amplitude a.
+AmbientFlow AmbientFlow::turned(const Mat3& q, double a) const {
+  AmbientFlow flow = *this;
+  flow.moment_ = {a, q};
+  flow.field_ = {a * q * field_.velocity, a * q * field_.gradient * q.transpose(), a * q * field_.direction, q * field_.curvature * q.transpose()};
+  return flow;
+}
+
+Vec3 AmbientFlow::velocity(const Vec3& x) const {
+  if (duct_) return moment_.amplitude * duct_->velocity(x);
+  if (user_) return moment_.amplitude * moment_.turn * user_->velocity(moment_.turn.transpose() * x);
+  const Vec3 v = field_.velocity + field_.gradient * x;
+  return affine() ? v : Vec3(v + x.dot(field_.curvature * x) * field_.direction);
+}
+
+Mat3 AmbientFlow::gradient(const Vec3& x) const {
+  if (duct_) return moment_.amplitude * duct_->gradient(x);
+  if (user_) return moment_.amplitude * moment_.turn * user_->gradient(moment_.turn.transpose() * x) * moment_.turn.transpose();
+  return affine() ? field_.gradient : Mat3(field_.gradient + 2 * field_.direction * (field_.curvature * x).transpose());
+}
+
+Net AmbientFlow::velocities(const Net& x) const {
+  if (duct_) return moment_.amplitude * duct_->velocities(x);
+  if (user_) {
+    Net v(x.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = velocity(x.row(i).transpose()).transpose();
+    return v;
+  }
+  Net v = (x * field_.gradient.transpose()).rowwise() + field_.velocity.transpose();
+  if (!affine()) v += (x * field_.curvature).cwiseProduct(x).rowwise().sum() * field_.direction.transpose();
+  return v;
+}
+
+std::vector<Mat3> AmbientFlow::gradients(const Net& x) const {
+  std::vector<Mat3> all;
+  if (duct_) {
+    all = duct_->gradients(x);
+    for (Mat3& gradient : all) gradient *= moment_.amplitude;
+    return all;
+  }
+  for (Eigen::Index i = 0; i < x.rows(); ++i) all.push_back(gradient(x.row(i).transpose()));
+  return all;
+}
+
+}  // namespace tanktread::stokes

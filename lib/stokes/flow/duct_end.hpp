@@ -1,0 +1,64 @@
+#pragma once
+// The open ends of a channel, where its flow is that of a straight duct.
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "stokes/flow/duct_flow.hpp"
+#include "surface/channel.hpp"
+
+namespace tanktread::stokes {
+
+/// What a plane end across a channel, through which a duct's flow u(y2, y3) goes along `along`, does to the fluid inside, but for its pressure:
+///
+///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
+///
+/// n into the fluid, e_a the axes of the section. Velocity and traction of the duct are exact; the plane is summed over Gauss points of rays from the
+/// centroid, by halves where a point is close.
+class DuctEnd {
+ public:
+  /// `flow`: of the straight duct whose section this is; `inward`: 1 where along points into the fluid, at the inlet, -1 at the outlet. Throws
+  /// UserError where a ray meets the outline twice.
+  DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
+
+  /// P at the rows of x, in the fluid or on the wall, units length/time.
+  Net velocities(const Net& x) const;
+
+  /// Gauss points of the section: places, and areas.
+  struct Points {
+    Net x;
+    Eigen::VectorXd area;
+  };
+  Points points() const;
+
+  const DuctFlow& flow() const { return flow_; }
+
+ private:
+  /// Part of the section: rays to side k, u = t[0] .. t[1], over r[0] .. r[1] of their length.
+  struct Cell {
+    int side;
+    double t[2], r[2];
+  };
+  struct Nodes {
+    std::vector<double> y[2], area;
+  };
+  void add(const Cell& cell, int order, Nodes& nodes) const;
+  void add_graded(const Cell& cell, const Vec3& at, Nodes& nodes) const;
+  surface::Vec2 ray(const Cell& cell, double t, double r) const;
+  struct Sources {
+    std::vector<double> x[3], force[3], velocity[3], normal[3];
+  };
+  Sources sources(const Nodes& nodes) const;
+  static void add(const Sources& sources, const Vec3& target, Eigen::Ref<Eigen::Matrix<double, 1, 3>> u);
+  bool close(const Cell& cell, const Vec3& at, bool& around) const;
+  std::vector<Cell> cells(int around) const;
+
+  DuctFlow flow_;
+  surface::Channel::Section place_;
+  double inward_;
+  Sources far_;
+  std::vector<Cell> cells_;
+  std::vector<Sources> close_;  // of each cell, for points that are near the plane but not near it
+};
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,119 @@
+#include "stokes/flow/flow_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "base/csv.hpp"
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
+#include "deck/section.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::stokes {
+
+namespace {
+constexpr double degree = std::numbers::pi / 180;
+}
+
+void FlowHistory::declare(deck::Section& section) {
+  section.key("type", type, deck::Choice{"table", "sine"},
+              "`table`: `amplitudes` and `angles` at `times`, straight in between; `sine`: mean + amplitude sin(2 pi frequency t + phase)");
+  section.key("times", times, deck::not_negative(), "time",
+              "of the `table`, in order; two equal ones make a jump, say where the flow stops; before the first and after the last nothing changes");
+  section.key("amplitudes", amplitudes, deck::any(), "1", "at `times`: what the velocity of the flow is multiplied by; 1 if not given");
+  section.key("angles", angles, deck::any(), "degree", "at `times`: by which the flow is turned about `axis`; 0 if not given");
+  section.key("file", file, deck::Choice{},
+              "of the `table`, instead of these three: rows of a time, its amplitude and, if all have one, its angle, with commas in between, below "
+              "a row of names that begins with `time` or none; looked for where the program is started and beside the deck");
+  if (angles || section.given("angles")) axis = "x2";
+  section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
+              "through the origin, about which `angles` turn the flow, by the right hand; `x2` if not given");
+  if (type == "sine") mean = 0, amplitude = 1, phase = 0;
+  section.key("mean", mean, deck::any(), "1", "of the `sine`; 0 if not given");
+  section.key("amplitude", amplitude, deck::any(), "1", "of the `sine`; 1 if not given");
+  section.key("frequency", frequency, deck::positive(), "1/time", "of the `sine`: periods in a unit of time");
+  section.key("phase", phase, deck::any(), "degree", "of the `sine` at time 0; 0 if not given");
+}
+
+void FlowHistory::read() {
+  if (!file) return;
+  for (const auto& [key, given] : {std::pair{"times", &times}, {"amplitudes", &amplitudes}, {"angles", &angles}})
+    if (*given) throw UserError(std::string("Flow/history/file and Flow/history/") + key + " contradict each other: the file holds all of them.");
+  const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(*file, 80));
+  const std::vector<CsvRow> rows = csv_rows(text_of_file(*file, name, 10'000'000), "time");
+  if (rows.empty()) throw UserError(name + " holds no row of a time and an amplitude.");
+  const std::size_t columns = rows.front().fields.size();
+  times.emplace(), amplitudes.emplace();
+  if (columns == 3) angles.emplace(), axis = axis.value_or("x2");
+  for (const CsvRow& row : rows) {
+    const std::string where = name + formatted(", line %d: ", row.line);
+    if (columns < 2 || columns > 3 || row.fields.size() != columns)
+      throw UserError(where + "a row holds a time, an amplitude and, in all rows or in none, an angle, but this one holds " +
+                      formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
+    times->push_back(csv_number(row.fields[0], where));
+    amplitudes->push_back(csv_number(row.fields[1], where));
+    if (angles) angles->push_back(csv_number(row.fields[2], where));
+    if (times->back() < 0 || (times->size() > 1 && times->back() < times->end()[-2]))
+      throw UserError(where + "times must not be negative, and in order, the earliest first.");
+  }
+}
+
+void FlowHistory::check() const {
+  const std::string own = "Flow/history/type `" + type + "`";
+  const auto belongs = [&](const char* key, bool given, const char* owner) {
+    if (given && type != owner)
+      throw UserError(std::string("Flow/history/") + key + " belongs to the type `" + owner + "`, but is given with " + own + ".");
+  };
+  belongs("file", file.has_value(), "table");
+  belongs("times", times.has_value(), "table");
+  belongs("amplitudes", amplitudes.has_value(), "table");
+  belongs("angles", angles.has_value(), "table");
+  belongs("mean", mean.has_value(), "sine");
+  belongs("amplitude", amplitude.has_value(), "sine");
+  belongs("frequency", frequency.has_value(), "sine");
+  belongs("phase", phase.has_value(), "sine");
+  if (type == "sine") {
+    if (!frequency) throw UserError(own + " needs Flow/history/frequency.");
+    return;
+  }
+  if (!times) throw UserError(own + " needs Flow/history/times or Flow/history/file.");
+  if (!amplitudes && !angles) throw UserError(own + " needs Flow/history/amplitudes or Flow/history/angles.");
+  if (axis && !angles) throw UserError("Flow/history/axis needs Flow/history/angles.");
+  const auto as_many = [&](const char* key, const std::optional<std::vector<double>>& values) {
+    if (values && values->size() != times->size())
+      throw UserError(std::string("Flow/history/") + key + " must hold as many numbers as Flow/history/times, " + std::to_string(times->size()) +
+                      ", but holds " + std::to_string(values->size()) + ".");
+  };
+  as_many("amplitudes", amplitudes);
+  as_many("angles", angles);
+  if (!std::ranges::is_sorted(*times)) throw UserError("Flow/history/times must be in order, the earliest first.");
+}
+
+FlowHistory::Moment FlowHistory::at(double time, double start) const {
+  if (type == "sine") return {*mean + *amplitude * std::sin(2 * std::numbers::pi * *frequency * time + *phase * degree), Mat3::Identity()};
+  // The piece in which the step began; times of steps are those of the table to round-off.
+  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(*times, start * (1 + 1e-12)) - times->begin());
+  const std::size_t j = std::min(after, times->size() - 1), i = after == 0 ? 0 : after - 1;
+  const double t = i == j ? 0 : std::clamp((time - (*times)[i]) / ((*times)[j] - (*times)[i]), 0.0, 1.0);
+  const auto value = [&](const std::vector<double>& values) { return (1 - t) * values[i] + t * values[j]; };
+  Moment now;
+  if (amplitudes) now.amplitude = value(*amplitudes);
+  if (angles) now.turn = turn(value(*angles));
+  return now;
+}
+
+Mat3 FlowHistory::turn(double angle) const { return Eigen::AngleAxisd(angle * degree, Vec3::Unit(axis.value()[1] - '1')).toRotationMatrix(); }
+
+double FlowHistory::next_kink(double time) const {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  if (type == "sine") return never;
+  const auto next = std::ranges::upper_bound(*times, time);
+  return next == times->end() ? never : *next;
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,105 @@
+#include "stokes/flow/flow_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/errors.hpp"
+#include "base/small_matrices.hpp"
+#include "deck/section.hpp"
+
+namespace tanktread::stokes {
+
+void FlowOptions::declare(deck::Section& section) {
+  deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
+  if (registered) std::ranges::copy(registered->names(), std::back_inserter(types));
+  section.key(
+      "type", type, types,
+      "ambient flow: `simple shear` is rate (x3, 0, 0), in a straight Tube too, whose wall goes along with it then, `planar hyperbolic` "
+      "rate (x1, 0, -x3), `uniaxial extension` rate (-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, "
+      "`uniform` by `velocity`, `parabolic` along x1 with `profile`, `maximum velocity` and `half width`, without a wall, `duct` along x1 "
+      "through the section of the Tube, with `mean velocity`");
+  section.key("shear rate", shear_rate, deck::positive(), "1/time", "rate of the flow; for `linear` it stays 1, the gradient says all");
+  section.key("viscosity", viscosity, deck::positive(), "stress x time", "of the outer fluid");
+  section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
+              "a of (P-48), for `four-roll`: 1 is planar hyperbolic flow, 0 simple shear turned by 45 degrees, -1 rotation");
+  section.key("gradient", gradient, deck::any(), "1/time", "dv_i/dx_j of the `linear` flow, nine numbers row by row, without trace");
+  section.key("velocity", velocity, deck::any(), "length/time", "of the `uniform` flow, three numbers");
+  section.key("gravity", gravity, deck::any(), "length/time^2", "acceleration, three numbers, that acts on Particle/density difference");
+  if (type == "duct") mean_velocity = 1;
+  section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
+              "of the `duct` flow: flow rate over area of the section, in a channel at its inlet; 1 if not given");
+  section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
+              "what of the `duct` flow stays whatever particles do: the `flow rate`, or the `pressure drop` between the ends of the modelled piece, "
+              "with which the empty tube or channel has the mean velocity");
+  if (type == "parabolic") profile = "round", maximum_velocity = 1;
+  section.key("profile", profile, deck::Choice{"round", "plane"},
+              "of the `parabolic` flow: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2), or (1 - x3^2/half width^2); `round` if not given");
+  section.key("maximum velocity", maximum_velocity, deck::positive(), "length/time", "of the `parabolic` flow, on its axis; 1 if not given");
+  section.key("half width", half_width, deck::positive(), "length",
+              "of the `parabolic` flow: distance from the axis or mid-plane at which its velocity vanishes");
+  if (registered) declare_registered(section);
+  if (section.given("history") || section.documenting()) {
+    history.emplace();
+    section.section("history", *history, "how the flow changes in time; without this list it does not");
+    if (section.documenting()) history.reset();
+  }
+}
+
+/// Reads the section of a registered type, and refuses sections of other ones.
+void FlowOptions::declare_registered(deck::Section& section) {
+  user.reset();
+  for (const std::string& name : registered->names()) {
+    if (name != type && section.given(name))
+      throw UserError(section.path(name) + " belongs to Flow/type `" + name + "`, but Flow/type is `" + type + "`.");
+    if (name != type && !section.documenting()) continue;
+    const auto make = registered->read(section, name);
+    if (name == type) user = make();
+  }
+}
+
+void FlowOptions::check() const {
+  const auto belongs = [this](const char* key, bool given, const char* owner) {
+    if (given && type != owner)
+      throw UserError(std::string("Flow/") + key + " belongs to Flow/type `" + owner + "`, but Flow/type is `" + type + "`.");
+    if (!given && type == owner) throw UserError(std::string("Flow/type `") + owner + "` needs Flow/" + key + ".");
+  };
+  belongs("roll parameter", roll_parameter.has_value(), "four-roll");
+  belongs("gradient", gradient.has_value(), "linear");
+  belongs("velocity", velocity.has_value(), "uniform");
+  belongs("mean velocity", mean_velocity.has_value(), "duct");
+  belongs("profile", profile.has_value(), "parabolic");
+  belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
+  belongs("half width", half_width.has_value(), "parabolic");
+  if (held != "flow rate" && type != "duct")
+    throw UserError("Flow/held `" + held + "` and Flow/type `" + type + "` contradict each other: it belongs to `duct`.");
+  if (user && shear_rate != 1.0)
+    throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: that flow has keys of its own, in Flow/" + type + ".");
+  const bool own_speed = type == "duct" || type == "parabolic";
+  if (own_speed && shear_rate != 1.0)
+    throw UserError("Flow/shear rate and Flow/type `" + type + "` contradict each other: give Flow/" + (type == "duct" ? "mean" : "maximum") +
+                    " velocity.");
+  if (history) {
+    if (type == "quiescent") throw UserError("Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has nothing to change.");
+    if (type == "duct" && history->angles)
+      throw UserError("Flow/history/angles and Flow/type `duct` contradict each other: the flow is along the tube.");
+    history->check();
+  }
+  if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
+    throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
+                    ".");
+  if (type == "linear" && shear_rate != 1.0)
+    throw UserError("Flow/shear rate and Flow/gradient contradict each other: the gradient of a `linear` flow holds its rate already.");
+}
+
+double FlowOptions::rate() const {
+  if (type == "quiescent" || type == "uniform" || type == "duct") return 0.0;
+  if (user) return user->rate();
+  if (type == "linear") return largest_stretch(gradient.value());
+  if (type == "parabolic") return *maximum_velocity / half_width.value();
+  return shear_rate;
+}
+
+double FlowOptions::speed(double radius) const { return mean_velocity.value_or(rate() * radius); }
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,53 @@
+#include <algorithm>
+#include <array>
+
+#include "stokes/kernels/far_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// Nodes that all targets meet before the next ones are loaded: 48 or 72 bytes each.
+constexpr int nodes_in_cache = 4096;
+
+/// u[3 k + c] of target k, which has the coordinates given[0][k], and what else goes with it in given[1][k], by sum(nodes, block, sums).
+template <std::size_t Vectors, class Nodes, class Sum>
+void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, Vectors>& given, double* u, const Sum& sum) {
+  const int n = static_cast<int>(given[0].size());
+  double block[3 * Vectors * far_block], sums[3 * far_block];
+  std::fill_n(u, 3 * given[0].size(), 0.);
+  for (int node = 0; node < nodes.n; node += nodes_in_cache) {
+    const Nodes part = nodes.part(node, std::min(nodes_in_cache, nodes.n - node));
+    for (int first = 0; first < n; first += far_block) {
+      for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
+        for (std::size_t v = 0; v < Vectors; ++v)
+          for (std::size_t c = 0; c < 3; ++c) block[far_block * (3 * v + c) + l] = given[v][std::min(first + l, n - 1)][c];
+      sum(part, block, sums);
+      for (int l = 0; l < std::min(far_block, n - first); ++l)
+        for (int c = 0; c < 3; ++c) u[3 * (first + l) + c] += sums[far_block * c + l];
+    }
+  }
+}
+
+/// The sum of nodes of a kind, of the precision asked.
+template <class Nodes>
+auto of(Precision precision) {
+  void (*const full)(const Nodes&, const double*, double*) = far_sum;
+  void (*const single)(const Nodes&, const double*, double*) = far_sum_in_single;
+  return precision == Precision::single ? single : full;
+}
+
+}  // namespace
+
+void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision) {
+  sums_by_blocks<1>(forces, {targets}, u, of<PointForces>(precision));
+}
+
+void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision) {
+  sums_by_blocks<2>(nodes, {targets, v0}, u, of<Stresslets>(precision));
+}
+
+void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u) {
+  sums_by_blocks<1>(points, {targets}, u, kernel);
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,77 @@
+#pragma once
+// A panel at a register of points of a table: for kernels only.
+
+#include "base/register.hpp"
+#include "stokes/kernels/point_table.hpp"
+
+namespace tanktread::stokes {
+namespace INSTRUCTIONS {
+
+/// One pack of points of a table. The degree is a template argument where it is usual, 0 where it is known at run time only.
+template <int Degree>
+struct Points {
+  const int n;
+  const Register *bs, *bt, *ds, *dt;
+  Points(const PointTable& table, int k) : n(Degree ? Degree + 1 : table.degree + 1) {
+    bs = registers(table.bernstein.data()) + static_cast<std::ptrdiff_t>(4) * n * k;
+    bt = bs + n, ds = bt + n, dt = ds + n;
+  }
+
+  Register value(const double* q) const {
+    Register total{};
+    for (int j = 0; j < n; ++j) {
+      Register row{};
+      for (int i = 0; i < n; ++i) row += bs[i] * q[n * j + i];
+      total += bt[j] * row;
+    }
+    return total;
+  }
+
+  void gradient(const double* q, Register& along_s, Register& along_t) const {
+    along_s = along_t = Register{};
+    for (int j = 0; j < n; ++j) {
+      Register row{}, slope{};
+      for (int i = 0; i < n; ++i) row += bs[i] * q[n * j + i], slope += ds[i] * q[n * j + i];
+      along_s += bt[j] * slope;
+      along_t += dt[j] * row;
+    }
+  }
+
+  /// r = x - x0, n = x_,s x x_,t, and r.n
+  Register height(const double* x, int n_b, const double* x0, Register (&r)[3], Register (&normal)[3]) const {
+    Register a[3], b[3];
+    for (int c = 0; c < 3; ++c) {
+      r[c] = value(x + n_b * c) - x0[c];
+      gradient(x + n_b * c, a[c], b[c]);
+    }
+    for (int c = 0; c < 3; ++c) normal[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+    return r[0] * normal[0] + r[1] * normal[1] + r[2] * normal[2];
+  }
+};
+
+/// moment[n_c b + c] = sum over the points of g[n_c k + c] B_b, for all Bernstein polynomials of a table.
+template <int Degree, int n_c>
+void project(const PointTable& table, const Register* g, double* moment) {
+  const int n = Degree ? Degree + 1 : table.degree + 1;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      Register total[n_c] = {};
+      for (int k = 0; k < table.packs(); ++k) {
+        const Points<Degree> points(table, k);
+        const Register b = points.bs[i] * points.bt[j];
+        for (int c = 0; c < n_c; ++c) total[c] += g[n_c * k + c] * b;
+      }
+      for (int c = 0; c < n_c; ++c) moment[n_c * (n * j + i) + c] = sum(total[c]);
+    }
+}
+
+/// Calls `use` with the sums of a usual degree, or with those of any.
+template <template <int> class Sums, class Use>
+void with_degree(int degree, const Use& use) {
+  if (degree == 3) return use(Sums<3>());
+  if (degree == 4) return use(Sums<4>());
+  use(Sums<0>());
+}
+
+}  // namespace INSTRUCTIONS
+}  // namespace tanktread::stokes

@@ -1,0 +1,223 @@
+#include "stokes/medium/periodic_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+namespace tanktread::stokes {
+
+namespace {
+
+/// Rounds the extent across outwards, to steps of between an eighth and a quarter of its length, so that a shape that moves seldom asks for another
+/// table, and the box depends on the shape only.
+std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent) {
+  for (int d = cell.n(); d < 3; ++d) {
+    const double step = std::exp2(std::floor(std::log2(extent[1][d] - extent[0][d]))) / 4;
+    extent[0][d] = step * std::floor(extent[0][d] / step), extent[1][d] = step * std::ceil(extent[1][d] / step);
+  }
+  return extent;
+}
+
+/// Numbers of steps to images that are near, so that the nearest of the others is about `far` lengths of the box away from every pair in it; and how
+/// near.
+std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
+  const double longest = box.colwise().norm().maxCoeff();
+  std::array<int, 3> steps{0, 0, 0};
+  double distance = 1e300;
+  for (int d = 0; d < cell.n(); ++d) {
+    const double spacing = cell.spacing(d);
+    int& n = steps[static_cast<std::size_t>(d)];
+    n = std::max(1, static_cast<int>(std::ceil(far * longest / spacing - 0.3)));
+    distance = std::min(distance, n * spacing);
+  }
+  return {steps, distance};
+}
+
+/// The stresslet's rest, steeper by one order, errs up to three times as much; measured on cubes, tilted and oblong cells.
+double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
+
+/// Nodes on [-1, 1] that interpolate what has its nearest pole y half-lengths away.
+int order_for(double tolerance, double y) { return static_cast<int>(std::ceil(-std::log(tolerance) / std::asinh(y))); }
+
+std::vector<double> chebyshev(int n) {
+  std::vector<double> nodes;
+  for (int a = 0; a < n; ++a) nodes.push_back(std::cos(std::numbers::pi * (2 * a + 1) / (2 * n)));
+  return nodes;
+}
+
+/// Values at places from those at Chebyshev nodes, by the barycentric formula.
+Eigen::MatrixXd interpolation(const std::vector<double>& places, const std::vector<double>& nodes) {
+  const auto n = static_cast<Eigen::Index>(nodes.size());
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(places.size()), n);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const double apart = places[i] - nodes[static_cast<std::size_t>(a)];
+      if (apart == 0) {
+        row.setZero();
+        row[a] = 1;
+        break;
+      }
+      row[a] = (a % 2 ? -1 : 1) * std::sin(std::numbers::pi * (2. * static_cast<double>(a) + 1) / (2. * static_cast<double>(n))) / apart;
+    }
+    result.row(static_cast<Eigen::Index>(i)) = row / row.sum();
+  }
+  return result;
+}
+
+/// The differences of nodes, each once, and which that of a and b is.
+std::vector<double> differences(const std::vector<double>& nodes, std::vector<int>& number) {
+  std::vector<double> all;
+  for (const double a : nodes)
+    for (const double b : nodes) {
+      const double d = (b - a) / 2;
+      const auto known = std::ranges::find_if(all, [&](double other) { return std::abs(other - d) < 1e-13; });
+      number.push_back(static_cast<int>(known - all.begin()));
+      if (known == all.end()) all.push_back(d);
+    }
+  return all;
+}
+
+/// From values [component][x][y][z] at nodes to [x][y][z][component] at places.
+std::vector<double> interpolated(std::vector<double> values, const std::array<Eigen::MatrixXd, 3>& by) {
+  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // the last index goes to the front
+    const Eigen::Index rest = static_cast<Eigen::Index>(values.size()) / matrix.cols();
+    const Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(values.data(), matrix.cols(), rest).transpose() * matrix.transpose();
+    values.assign(result.data(), result.data() + result.size());
+  };
+  for (int d = 2; d >= 0; --d) contract(by[static_cast<std::size_t>(d)]);
+  return values;
+}
+
+/// The three numbers that each one carried adds to, side by side, with a fourth that is idle.
+std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>& components, int n) {
+  constexpr int number[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  const int in = kind == PeriodicKernel::Kind::stokeslet ? 3 : 6;
+  const std::size_t places = components.size() / static_cast<std::size_t>(n);
+  std::vector<double> result(4 * static_cast<std::size_t>(in) * places, 0.);
+  for (std::size_t k = 0; k < places; ++k)
+    for (int c = 0; c < in; ++c)
+      for (int i = 0; i < 3; ++i)
+        result[static_cast<std::size_t>(4 * in) * k + static_cast<std::size_t>(4 * c + i)] =
+            components[static_cast<std::size_t>(n) * k + static_cast<std::size_t>(in == 3 ? number[3 * i + c] : 6 * i + c)];
+  return result;
+}
+
+/// Where the table has the difference of two nodes.
+struct Differences {
+  const std::array<std::vector<int>, 3>* number;
+  const std::array<std::size_t, 3>* many;
+  std::array<int, 3> order;
+};
+
+/// What In numbers at each node do to node a.
+template <int In>
+Eigen::Array4d product(const Differences& of, const double* table, int a, const double* carried) {
+  const auto& [n0, n1, n2] = of.order;
+  const int* along[3] = {&(*of.number)[0][static_cast<std::size_t>(n0 * (a % n0))], &(*of.number)[1][static_cast<std::size_t>(n1 * (a / n0 % n1))],
+                         &(*of.number)[2][static_cast<std::size_t>(n2 * (a / (n0 * n1)))]};
+  const int rows = static_cast<int>((*of.many)[1]), columns = static_cast<int>((*of.many)[2]);
+  Eigen::Array4d sum = Eigen::Array4d::Zero();
+  for (int b2 = 0; b2 < n2; ++b2)
+    for (int b1 = 0; b1 < n1; ++b1)
+      for (int b0 = 0; b0 < n0; ++b0, carried += In) {
+        const double* t = table + 4 * In * static_cast<std::ptrdiff_t>((along[0][b0] * rows + along[1][b1]) * columns + along[2][b2]);
+        for (int c = 0; c < In; ++c) sum += Eigen::Map<const Eigen::Array4d>(t + 4 * c) * carried[c];
+      }
+  return sum;
+}
+
+}  // namespace
+
+PeriodicSum::PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double asked, const std::array<Vec3, 2>& extent)
+    : kind_(kind), cell_(cell), away_(Vec3::Zero()), low_(Vec3::Constant(-0.5)), length_(Vec3::Ones()), across_(rounded(cell, extent)) {
+  const double tolerance = sharper(asked, kind);
+  double highest = 0;
+  for (int d = cell.n(); d < 3; ++d) highest = std::max({highest, std::abs(across_[0][d]), std::abs(across_[1][d])});
+  for (int d = 0; d < 3; ++d) away_ += (d < cell.n() ? 5 : 5 * highest) * cell.vectors().col(d);
+  Mat3 box = cell.vectors();
+  for (int d = cell.n(); d < 3; ++d) {
+    length_[d] = across_[1][d] - across_[0][d];
+    low_[d] = across_[0][d];
+    box.col(d) *= length_[d];
+  }
+  low_ += cell.coordinates(away_);
+  std::array<int, 3> steps{};
+  double distance = 0;
+  for (int far = 1; far < 9; ++far) {
+    std::tie(steps, distance) = near_steps(cell, box, far);
+    int most = 0;
+    for (int d = 0; d < 3; ++d) most = std::max(most, order_for(tolerance, 2 * distance / box.col(d).norm()));
+    if (most <= std::min(7 + 3 * far, most_chebyshev)) break;
+  }
+  images_ = cell.around(steps);
+  std::array<std::vector<double>, 3> nodes, places;
+  std::array<Eigen::MatrixXd, 3> to_places;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double length = box.col(static_cast<Eigen::Index>(d)).norm();
+    box_.half[d] = 0.5;
+    box_.order[d] = std::clamp(order_for(tolerance, 2 * distance / length), 2, most_chebyshev);
+    nodes[d] = chebyshev(std::clamp(order_for(tolerance, distance / length), 2, 40));
+    places[d] = differences(chebyshev(box_.order[d]), difference_[d]);
+    differences_[d] = places[d].size();
+    to_places[d] = interpolation(places[d], nodes[d]);
+  }
+  const PeriodicKernel kernel(kind, cell, box, steps, tolerance);
+  table_ = columns(kind, interpolated(kernel.values(nodes), to_places), kernel.components());
+  components_ = kind == PeriodicKernel::Kind::stokeslet ? 12 : 24;
+}
+
+bool PeriodicSum::suits(const std::array<Vec3, 2>& extent) const {
+  const std::array<Vec3, 2> across = rounded(cell_, extent);
+  for (int d = cell_.n(); d < 3; ++d)
+    if (across[0][d] != across_[0][d] || across[1][d] != across_[1][d]) return false;
+  return true;
+}
+
+Vec3 PeriodicSum::in_box(const Vec3& wrapped) const {
+  return (cell_.coordinates(wrapped) - low_).cwiseQuotient(length_) - Vec3::Constant(0.5);
+}
+
+/// Numbers at the nodes of sources to values at those of targets, in blocks.
+void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& u) const {
+  const int n = box_.n_nodes();
+  const std::size_t in = static_cast<std::size_t>(components_) / 4;
+  std::vector<double> carried;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(n); ++b)
+    for (std::size_t c = 0; c < in; ++c) carried.push_back(q[c][b]);
+  const Differences from{&difference_, &differences_, box_.order};
+  for (int a = 0; a < n; ++a) {
+    const Eigen::Array4d sum = in == 3 ? product<3>(from, table_.data(), a, carried.data()) : product<6>(from, table_.data(), a, carried.data());
+    for (int i = 0; i < 3; ++i) u[static_cast<std::size_t>(far_block * (3 * (a / far_block) + i) + a % far_block)] = sum[i];
+  }
+}
+
+void PeriodicSum::add_rest(const Charges& sources, std::span<const Vec3> targets, double* u) {
+  const int in = kind_ == PeriodicKernel::Kind::stokeslet ? 3 : 6, n_nodes = box_.n_nodes();
+  std::vector<double> at[3], q[6];
+  for (int k = 0; k < sources.n; ++k) {
+    const Vec3 s = in_box({sources.x[k], sources.y[k], sources.z[k]});
+    for (int c = 0; c < 3; ++c) at[c].push_back(s[c]);
+  }
+  Charges in_cell{sources.n, at[0].data(), at[1].data(), at[2].data(), sources.q};
+  std::array<double*, 6> at_nodes{};
+  for (int c = 0; c < 6; ++c) q[c].assign(static_cast<std::size_t>(n_nodes), 0), at_nodes[static_cast<std::size_t>(c)] = q[c].data();
+  scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(in) * n_nodes));
+  spread(in, box_, in_cell, scratch_.data(), at_nodes);
+  std::vector<double> node_u(static_cast<std::size_t>(3 * far_block * ((n_nodes + far_block - 1) / far_block)), 0.);
+  apply(q, node_u);
+  for (std::size_t first = 0; first < targets.size(); first += far_block) {
+    double block[3 * far_block], sums[3 * far_block] = {};
+    for (std::size_t l = 0; l < far_block; ++l) {
+      const Vec3 s = in_box(targets[std::min(first + l, targets.size() - 1)]);
+      for (std::size_t c = 0; c < 3; ++c) block[far_block * c + l] = s[static_cast<Eigen::Index>(c)];
+    }
+    interpolate(3, box_, node_u.data(), 1, block, sums);
+    for (std::size_t l = 0; l < std::min<std::size_t>(far_block, targets.size() - first); ++l)
+      for (std::size_t c = 0; c < 3; ++c) u[3 * (first + l) + c] += sums[far_block * c + l];
+  }
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,186 @@
+#include "stokes/sums/near_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+#include "quadrature/gauss.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// What one panel may err by, relative to the whole: several of them err at a time, and the estimate rho^(-2 n) leaves out factors that
+/// grow with the order. Measured on deformed surfaces (tests/verify/layers.cpp).
+double share(double tolerance) { return 0.3 * std::pow(tolerance, 1.125); }
+
+Vec3 point(const double* bezier, int n_b, int b) { return {bezier[b], bezier[n_b + b], bezier[2 * n_b + b]}; }
+
+quadrature::Patch flat_picture(const double* bezier, int degree) {
+  const int n = degree + 1, n_b = n * n;
+  const Vec3 a = point(bezier, n_b, 0), b = point(bezier, n_b, degree), c = point(bezier, n_b, n_b - 1), d = point(bezier, n_b, n_b - n);
+  return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
+}
+
+/// Numbers the surfaces that panels make up by the control points that they share; how many there are.
+int connected(const Panels& panels, std::vector<int>& surface) {
+  std::vector<int> first;  // of each control point: a panel that has it, or -1
+  std::vector<int> root(static_cast<std::size_t>(panels.size()));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int e) {
+    while (root[e] != e) e = root[e] = root[root[e]];
+    return e;
+  };
+  for (int e = 0; e < panels.size(); ++e)
+    for (int a = 0; a < panels[e].functions; ++a) {
+      const auto point = static_cast<std::size_t>(panels.points(e)[a]);
+      if (point >= first.size()) first.resize(point + 1, -1);
+      if (first[point] < 0) first[point] = e;
+      root[find(e)] = find(first[point]);
+    }
+  std::vector<int> number(root.size(), -1);
+  int n = 0;
+  surface.resize(root.size());
+  for (int e = 0; e < panels.size(); ++e) {
+    int& mine = number[find(e)];
+    if (mine < 0) mine = n++;
+    surface[e] = mine;
+  }
+  return n;
+}
+
+/// Distance from the panel beyond which `order` points a direction are enough, wherever the target is: about, and not too short.
+double clearance(double area, double longest, const quadrature::Demand& demand, int order) {
+  double d = longest;
+  for (int k = 0; k < 2; ++k) {
+    const double rho = std::pow(std::min(1., demand.error(area, d)), -0.5 / order);
+    d = std::max((rho - 1 / rho) / 2, 1e-3) * longest;
+  }
+  return d;
+}
+
+}  // namespace
+
+NearField::NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface)
+    : panels_(panels),
+      demand_{0, 0, tolerance, smooth_order},
+      steep_(steep),
+      largest_order_(1 + quadrature::order_for(tolerance, quadrature::ellipse(0, 1))),
+      views_(panels.size()),
+      reach_(panels.size()) {
+  n_surfaces_ = connected(panels, surface_);
+  across_gaps_ = off_surface || n_surfaces_ > 1;
+  for (auto& c : centre_) c.resize(panels.size());
+}
+
+void NearField::view(int e) {
+  const NodeTable& t = *panels_[e].table;
+  const double* points = &(*bezier_)[panels_[e].first_bezier];
+  View& view = views_[e];
+  view.flat = flat_picture(points, t.degree);
+  view.area = view.flat.area();
+  const auto& [centre, u, v] = view.flat;
+  double square = 0;
+  for (int b = 0; b < t.n_bernstein; ++b) square = std::max(square, (point(points, t.n_bernstein, b) - centre).squaredNorm());
+  view.radius = std::sqrt(square);
+  view.normal = u.cross(v).normalized();
+  view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // the same at all corners
+  for (int j = 1; j < t.degree; ++j)  // of all inner points, so that it does not depend on where s and t start
+    for (int i = 1; i < t.degree; ++i)
+      view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
+}
+
+void NearField::update(const std::vector<double>& bezier, const PanelImages& images) {
+  bezier_ = &bezier;
+  for (int e = 0; e < panels_.size(); ++e)
+    if (images.own(e)) view(e);
+  std::vector<double> total(static_cast<std::size_t>(n_surfaces_), 0.);
+  for (int e = 0; e < panels_.size(); ++e) total[static_cast<std::size_t>(surface_[e])] += views_[images.source[e]].area;
+  for (int e = 0; e < panels_.size(); ++e) {
+    if (!images.own(e)) continue;
+    View& view = views_[e];
+    const double area = total[static_cast<std::size_t>(surface_[e])];
+    view.demand = demand_;
+    view.demand.allowed = share(demand_.tolerance) * std::sqrt(4 * std::numbers::pi * area);
+    view.across = view.demand;
+    if (steep_) view.across.steep = std::sqrt(area / (4 * std::numbers::pi));
+    const double longest = std::max(view.flat.u.norm(), view.flat.v.norm());
+    const auto& strictest = across_gaps_ ? view.across : view.demand;
+    const double reach = view.radius + view.bulge + clearance(view.area, longest, strictest, panels_[e].table->order);
+    reach_[e] = reach * reach;
+  }
+  for (int e = 0; e < panels_.size(); ++e) {
+    if (!images.own(e)) {
+      const surface::Reflection& image = images.reflections[images.image[e]];
+      const int source = images.source[e];
+      views_[e] = views_[source];
+      quadrature::Patch& flat = views_[e].flat;
+      flat = {image(flat.centre), image.of_vector(flat.u), image.of_vector(flat.v)};
+      views_[e].normal = flat.u.cross(flat.v).normalized();
+      reach_[e] = reach_[source];
+    }
+    for (int c = 0; c < 3; ++c) centre_[c][e] = views_[e].flat.centre[c];
+  }
+  vicinity_.place(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
+}
+
+bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
+  return !own.empty() && surface_[own.front().panel] == surface_[e];
+}
+
+/// A target off the surface faces panels that bulge towards it, and sees the flat picture nearer by the bulge: one to three Gauss points a direction
+/// (tests/verify/layer_shapes.cpp). Panels of its own surface bulge away from each other's corners.
+quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
+  if (!across) return quadrature::sight(view.flat, target);
+  const double height = (target - view.flat.centre).dot(view.normal);
+  return quadrature::sight(view.flat, target - std::clamp(height, -view.bulge, view.bulge) * view.normal);
+}
+
+bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const {
+  const View& view = views_[e];
+  const bool across = !on_same_surface(e, own);
+  const quadrature::Sight seen = sight(view, target, across);
+  const double rho = std::min(seen.rho_u, seen.rho_v);
+  double power = (across ? view.across : view.demand).error(view.area, seen.distance);
+  for (int k = 0; k < panels_[e].table->order && power < 1; ++k) power *= rho * rho;
+  return power >= 1;
+}
+
+void NearField::list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near) {
+  near.clear();
+  suspects_.clear();
+  vicinity_.list(target.data(), suspects_);
+  for (const int e : suspects_) {
+    const bool on_it = std::any_of(own.begin(), own.end(), [&](const SelfPair& pair) { return pair.panel == e; });
+    if (!on_it && !far_enough(e, target, own)) near.push_back(e);
+  }
+  std::sort(near.begin(), near.end());
+}
+
+const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> own) {
+  const NodeTable& t = *panels_[panel].table;
+  const View& view = views_[panel];
+  const bool across = !on_same_surface(panel, own);
+  const quadrature::Demand& demand = across ? view.across : view.demand;
+  const quadrature::Sight seen = sight(view, target, across);
+  const int needed = quadrature::order_for(demand.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
+  const int order = std::max(needed, t.order + 1);
+  if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
+    const auto [at, is_new] = whole_.try_emplace({t.degree, order});
+    if (is_new) {
+      const auto& gauss = quadrature::tensor_gauss(order);
+      tabulate({{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}}, t.degree,
+               at->second);
+    }
+    return at->second;
+  }
+  points_.clear();
+  const std::span<const double> bezier(bezier_->data() + panels_[panel].first_bezier, static_cast<std::size_t>(3) * t.n_bernstein);
+  quadrature::graded(bezier, t.degree, target, demand, points_);
+  tabulate(points_, t.degree, parts_);
+  return parts_;
+}
+
+}  // namespace tanktread::stokes

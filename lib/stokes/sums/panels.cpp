@@ -1,0 +1,110 @@
+#include "stokes/sums/panels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/kept_once.hpp"
+#include "quadrature/gauss.hpp"
+#include "spline/bernstein.hpp"
+#include "stokes/kernels/panel_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+NodeTable table(int degree, int order) {
+  const auto& rule = quadrature::tensor_gauss(order);
+  const int n = degree + 1, n_nodes = rule.size();
+  NodeTable t{degree, order, n * n, n_nodes, {}, {}, {}, {rule.weights.begin(), rule.weights.end()}};
+  for (auto* values : {&t.value, &t.along_s, &t.along_t}) values->resize(static_cast<std::size_t>(n) * n * n_nodes);
+  double bs[spline::max_degree + 1], bt[spline::max_degree + 1], ds[spline::max_degree + 1], dt[spline::max_degree + 1];
+  for (int k = 0; k < n_nodes; ++k) {
+    spline::bernstein(degree, rule.s[k], bs, ds, nullptr);
+    spline::bernstein(degree, rule.t[k], bt, dt, nullptr);
+    for (int b = 0; b < n * n; ++b) {
+      const int i = b % n, j = b / n, at = n_nodes * b + k;
+      t.value[at] = bs[i] * bt[j], t.along_s[at] = ds[i] * bt[j], t.along_t[at] = bs[i] * dt[j];
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
+Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
+  Tables extractions;
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const spline::Element& element = space.elements[e];
+    auto found = std::find_if(tables_.begin(), tables_.end(),
+                              [&](const NodeTable& t) { return t.degree == element.degree && t.order == orders[e]; });
+    if (found == tables_.end()) found = tables_.insert(tables_.end(), table(element.degree, orders[e]));
+    const int m = static_cast<int>(element.points.size());
+    const std::size_t first = extraction_.size();
+    for (int a = 0; a < m; ++a)
+      for (int b = 0; b < found->n_bernstein; ++b) extraction_.push_back((*element.extraction)(a, b));
+    panels_.push_back({&*found, m, points_.size(), kept_once(extraction_, first, extractions), bezier_size_, n_nodes_});
+    points_.insert(points_.end(), element.points.begin(), element.points.end());
+    n_nodes_ += found->n_nodes;
+    bezier_size_ += static_cast<std::size_t>(3) * found->n_bernstein;
+  }
+}
+
+void Panels::bezier(const Net& net, std::vector<double>& points) const {
+  points.resize(bezier_size_);
+  for (int e = 0; e < size(); ++e) bezier(e, net, points);
+}
+
+void Panels::bezier(int e, const Net& net, std::vector<double>& points) const {
+  const Panel& p = panels_[e];
+  extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
+}
+
+void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
+  for (auto& component : value) component.resize(panels.n_nodes());
+  for (int e = 0; e < panels.size(); ++e) node_values(panels, e, bezier, value);
+}
+
+void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
+  const NodeTable& t = *panels[e].table;
+  for (int c = 0; c < 3; ++c)
+    combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
+}
+
+namespace {
+
+/// Of one panel: normal[c] points to its first node; scratch holds tangents.
+void panel_normals(const Panel& panel, const double* bezier, std::vector<double>& scratch, const std::array<double*, 3>& normal) {
+  const NodeTable& t = *panel.table;
+  scratch.resize(static_cast<std::size_t>(6) * t.n_nodes);
+  for (int c = 0; c < 3; ++c) {
+    combine(t.n_bernstein, t.n_nodes, t.along_s.data(), bezier + c * t.n_bernstein, &scratch[c * t.n_nodes]);
+    combine(t.n_bernstein, t.n_nodes, t.along_t.data(), bezier + c * t.n_bernstein, &scratch[(3 + c) * t.n_nodes]);
+  }
+  weigh_normals(t.n_nodes, scratch.data(), t.weights.data(), normal[0], normal[1], normal[2]);
+}
+
+}  // namespace
+
+void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]) {
+  for (auto& component : normal) component.resize(panels.n_nodes());
+  std::vector<double> scratch;
+  for (int e = 0; e < panels.size(); ++e) {
+    const int first = panels[e].first_node;
+    panel_normals(panels[e], &bezier[panels[e].first_bezier], scratch, {&normal[0][first], &normal[1][first], &normal[2][first]});
+  }
+}
+
+void node_weights(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double>& weight) {
+  const int n = panels[e].table->n_nodes;
+  std::vector<double> scratch, normal(static_cast<std::size_t>(3) * n);
+  panel_normals(panels[e], &bezier[panels[e].first_bezier], scratch, {&normal[0], &normal[n], &normal[2 * n]});
+  for (int k = 0; k < n; ++k)
+    weight[panels[e].first_node + k] = std::sqrt(normal[k] * normal[k] + normal[n + k] * normal[n + k] + normal[2 * n + k] * normal[2 * n + k]);
+}
+
+void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight) {
+  weight.resize(panels.n_nodes());
+  for (int e = 0; e < panels.size(); ++e) node_weights(panels, e, bezier, weight);
+}
+
+}  // namespace tanktread::stokes

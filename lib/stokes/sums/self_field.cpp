@@ -1,0 +1,164 @@
+#include "stokes/sums/self_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <Eigen/Geometry>
+
+#include "quadrature/gauss.hpp"
+#include "spline/bernstein.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// Radial points for a tolerance. The integrand is smooth along a ray; measured on the cube mesh, n = 3 and up (tests/verify/layers.cpp).
+int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
+
+/// By how much of its distance a corner may be off where the tangents say before orders are raised: the more digits, the less. Measured on spheroids
+/// 10 : 1 (tests/verify/layer_shapes.cpp), whose tips are as sharp as their elements.
+double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
+
+/// Rules kept at a time, and their points, of 136 bytes: metrics come and go in a long run, and a wild shape asks for rules of 25,000 points.
+constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
+
+quadrature::Rule whole_square(int order) {
+  const auto& gauss = quadrature::tensor_gauss(order);
+  return {{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}};
+}
+
+/// sum B_i(s) B_j(t) p_ij. At corners and on sides of a panel most of the polynomials vanish.
+Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
+  Vec3 sum = Vec3::Zero();
+  for (int j = 0; j < n; ++j) {
+    if (bt[j] == 0) continue;
+    for (int i = 0; i < n; ++i) {
+      if (bs[i] == 0) continue;
+      for (int c = 0; c < 3; ++c) sum[c] += bs[i] * bt[j] * bezier[n * n * c + n * j + i];
+    }
+  }
+  return sum;
+}
+
+/// The polynomials at the site, made when first asked for: but for the first pair of a site that is on the rank whose target it is.
+void fill(SelfPair& pair, int degree) {
+  if (!pair.bernstein.empty()) return;
+  const int n = degree + 1;
+  pair.bernstein.resize(static_cast<std::size_t>(4) * n);
+  double* b = pair.bernstein.data();
+  spline::bernstein(degree, pair.s, b, b + 2 * n, nullptr);
+  spline::bernstein(degree, pair.t, b + n, b + 3 * n, nullptr);
+}
+
+}  // namespace
+
+SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options)
+    : options_(options), radial_(radial_points(options.tolerance)), first_{0} {
+  std::size_t pairs = 0;
+  for (const auto& places : sites) pairs += places.size();
+  pairs_.reserve(pairs);
+  for (const auto& places : sites) {
+    for (const spline::Site& site : places) {
+      SelfPair& pair = pairs_.emplace_back();
+      pair.panel = site.element, pair.s = site.s, pair.t = site.t;
+      if (&site == &places.front()) fill(pair, space.elements[site.element].degree);
+    }
+    first_.push_back(pairs_.size());
+  }
+}
+
+const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
+  const int degree = panels[pair.panel].table->degree, n = degree + 1;
+  fill(pair, degree);
+  quadrature::Shear shear;
+  quadrature::PolarOrders orders;
+  if (options_.rule != "fixed") {
+    const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
+    const Vec3 a1 = product(b + 2 * n, b + n, n, points), a2 = product(b, b + 3 * n, n, points);
+    shear = quadrature::shear(a1.dot(a1), a1.dot(a2), a2.dot(a2));
+    const double squares[2] = {a1.squaredNorm(), a2.squaredNorm()};
+    if (std::min(squares[0], squares[1]) < 1e-20 * std::max(squares[0], squares[1]))
+      orders.radial = 2 * radial_;  // a side that is one point: the area vanishes with r, so nothing is singular
+    else
+      orders = raised_orders(pair, degree, points, shear, a1, a2);
+  }
+  if (!pair.table || shear != pair.shear || orders != pair.orders) {
+    pair.shear = shear, pair.orders = orders;
+    pair.weights.clear();
+    pair.table = &made(pair, degree);
+  }
+  return *pair.table;
+}
+
+/// None where the corners are about where the tangents a1, a2 at the collocation point say.
+quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear,
+                                                 const Vec3& a1, const Vec3& a2) const {
+  const int n = degree + 1, n_b = n * n;
+  const int at[4] = {0, degree, n_b - 1, n_b - n};
+  const Vec3 x0 = product(pair.bernstein.data(), pair.bernstein.data() + n, n, bezier);
+  std::array<Vec3, 4> corner, affine;
+  const double allowed = std::pow(distortion_allowed(options_.tolerance), 2), rounding = 1e-20 * (a1.squaredNorm() + a2.squaredNorm());
+  bool distorted = false;
+  for (int k = 0; k < 4; ++k) {
+    corner[k] = Vec3(bezier[at[k]], bezier[n_b + at[k]], bezier[2 * n_b + at[k]]) - x0;
+    affine[k] = ((k == 1 || k == 2) - pair.s) * a1 + ((k == 2 || k == 3) - pair.t) * a2;
+    distorted |= (corner[k] - affine[k]).squaredNorm() > allowed * corner[k].squaredNorm() + rounding;
+  }
+  if (!distorted) return {};
+  return quadrature::polar_orders(pair.s, pair.t, shear, radial_, options_.tolerance, corner, affine);
+}
+
+const PointTable& SelfField::made(const SelfPair& pair, int degree) {
+  const Key key{degree, pair.s, pair.t, pair.shear, pair.orders};
+  if (const auto found = tables_.find(key); found != tables_.end()) return *found->second;
+  std::size_t points = 0;
+  for (const auto& [other, kept] : tables_) points += static_cast<std::size_t>(kept->points);
+  if (tables_.size() > most_tables || points > most_points) forget_rules();
+  auto& table = tables_[key] = std::make_unique<PointTable>();
+  const auto& [s, t, shear, orders] = std::tie(pair.s, pair.t, pair.shear, pair.orders);
+  if (options_.rule == "fixed")
+    tabulate(quadrature::lachat_watson(s, t, options_.points), degree, *table);
+  else if (!orders.radial)
+    tabulate(quadrature::polar(s, t, shear, quadrature::polar_orders(s, t, shear, radial_, options_.tolerance)), degree, *table);
+  else if (orders.angular == std::array<int, 4>{})
+    tabulate(whole_square(orders.radial), degree, *table);
+  else
+    tabulate(quadrature::polar(s, t, shear, orders), degree, *table);
+  return *table;
+}
+
+void SelfField::forget_rules() {
+  for (SelfPair& pair : pairs_) pair.table = nullptr, pair.weights.clear();
+  tables_.clear();
+}
+
+void SelfField::forget_weights() {
+  for (SelfPair& pair : pairs_) pair.weights.clear();
+}
+
+Vec3 SelfField::value(int i, const Panels& panels, const std::vector<double>& bezier) const {
+  const SelfPair& pair = pairs_[first_[i]];
+  const int n = panels[pair.panel].table->degree + 1;
+  const double* b = pair.bernstein.data();
+  return product(b, b + n, n, &bezier[panels[pair.panel].first_bezier]);
+}
+
+std::pair<Vec3, Vec3> SelfField::tangents(int i, const Panels& panels, const std::vector<double>& bezier) const {
+  const SelfPair& pair = pairs_[first_[i]];
+  const int n = panels[pair.panel].table->degree + 1;
+  const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
+  return {product(b + 2 * n, b + n, n, points), product(b, b + 3 * n, n, points)};
+}
+
+std::pair<int, Eigen::VectorXd> SelfField::basis(int i, const Panels& panels) const {
+  const SelfPair& pair = pairs_[first_[i]];
+  const Panel& panel = panels[pair.panel];
+  const int n = panel.table->degree + 1, n_b = n * n;
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(panel.functions);
+  const double* extraction = panels.extraction(pair.panel);
+  for (int a = 0; a < panel.functions; ++a)
+    for (int b = 0; b < n_b; ++b) values[a] += extraction[n_b * a + b] * pair.bernstein[b % n] * pair.bernstein[n + b / n];
+  return {pair.panel, values};
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,95 @@
+#include "system/agreement.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include <mpi.h>
+
+namespace tanktread::coupling {
+
+namespace {
+
+constexpr std::chrono::seconds patience(30);
+
+/// Of all ranks; none where there is one only.
+MPI_Comm& everyone() {
+  static MPI_Comm comm = MPI_COMM_NULL;
+  return comm;
+}
+
+int rank() {
+  int mine = 0;
+  MPI_Comm_rank(everyone(), &mine);
+  return mine;
+}
+
+/// Waits until all have come to `request`; one that has met an error does so only for a while.
+void wait(MPI_Request& request, int code, const std::string& message) {
+  const auto start = std::chrono::steady_clock::now();
+  for (int here = 0; MPI_Test(&request, &here, MPI_STATUS_IGNORE), !here;) {
+    const auto waited = std::chrono::steady_clock::now() - start;
+    if (waited < std::chrono::milliseconds(10))
+      std::this_thread::yield();
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (code > 0 && waited > patience) {
+      if (!message.empty()) std::fprintf(stderr, "tanktread: rank %d: %s\n", rank(), message.c_str());
+      MPI_Abort(MPI_COMM_WORLD, code);
+    }
+  }
+}
+
+}  // namespace
+
+void begin_agreements() {
+  int parallel = 0, ranks = 1;
+  MPI_Initialized(&parallel);
+  if (!parallel) return;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  if (ranks > 1) MPI_Comm_dup(MPI_COMM_WORLD, &everyone());
+}
+
+int largest(int mine, const std::string& error) {
+  if (everyone() == MPI_COMM_NULL) return mine;
+  int of_all = 0;
+  MPI_Request request;
+  MPI_Iallreduce(&mine, &of_all, 1, MPI_INT, MPI_MAX, everyone(), &request);
+  if (error.empty())
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
+  else
+    wait(request, 3, error);
+  return of_all;
+}
+
+std::string error_of_any(const std::string& mine) {
+  if (everyone() == MPI_COMM_NULL) return mine;
+  const int who = largest(mine.empty() ? 0 : rank() + 1, mine) - 1;
+  if (who < 0) return {};
+  std::string error = mine;
+  auto size = static_cast<unsigned>(error.size());
+  MPI_Bcast(&size, 1, MPI_UNSIGNED, who, everyone());
+  error.resize(size);
+  MPI_Bcast(error.data(), static_cast<int>(size), MPI_CHAR, who, everyone());
+  return error;
+}
+
+void take_first(std::span<double> numbers) {
+  if (everyone() != MPI_COMM_NULL) MPI_Bcast(numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, 0, everyone());
+}
+
+double of_first(double mine) {
+  take_first({&mine, 1});
+  return mine;
+}
+
+bool of_first(bool mine) { return of_first(mine ? 1. : 0.) != 0; }
+
+void leave_together(int code, const std::string& message) {
+  if (everyone() == MPI_COMM_NULL) return;
+  MPI_Request all;
+  MPI_Ibarrier(everyone(), &all);
+  wait(all, code == 2 || code == 3 ? code : 0, rank() > 0 ? message : std::string());
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,729 @@
+#include "system/capsule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "base/formatted.hpp"
+#include "base/small_matrices.hpp"
+#include "surface/symmetry.hpp"
+#include "system/collocation.hpp"
+#include "system/label_rotations.hpp"
+#include "system/solvers/block_system.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Every particle with its space and its rows.
+CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
+  if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
+  place(parameters.particles);
+  return parameters;
+}
+
+bool slides(const Particle& particle) { return particle.slides(); }
+
+std::optional<VelocityProjection> chosen_projection(const spline::Space& space, const Net& unstressed, const CapsuleParameters& of,
+                                                    const Ranks& ranks) {
+  if (of.solvers.projection == "collocation") return {};
+  return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
+}
+
+/// By how much a control point gives way to a force, in waves between the longest of a surface and the shortest of a mesh, of wave number k: a sheet
+/// in a fluid does by 1/(4 mu k) of velocity over force per area, or less where it is viscous itself.
+Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
+  for (const Particle& one : particles) {
+    const auto own = areas.segment(one.block.first_point, one.block.n_points);
+    const double element = std::sqrt(own.sum() / one.block.n_elements), k = std::sqrt(std::numbers::pi / (2 * element * one.radius));
+    if (!one.rigid)
+      result.segment(one.block.first_point, one.block.n_points) = (4 * viscosity * k + one.material.viscosity.shear * k * k) * own;
+  }
+  return result.unaryExpr([](double m) { return m > 0 ? 1 / m : 0; });
+}
+
+bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
+
+}  // namespace
+
+Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
+                 const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
+    : space_(space),
+      unstressed_(unstressed),
+      rest_(initial),
+      flow_(flow),
+      parameters_(placed(parameters, space)),
+      ranks_(ranks),
+      phases_(phases),
+      geometry_(space),
+      mass_matrix_(space),
+      membrane_(space, unstressed, materials(parameters_.particles)),
+      tangent_(membrane_),
+      projection_(chosen_projection(space, unstressed, parameters, ranks)),
+      layer_(stokes::Layer::Kernel::single_layer, space, projection_ ? projection_->sites() : space.collocation, parameters.quadrature),
+      collocation_(parameters.solvers.direct, parameters.symmetry),
+      mass_(parameters.solvers.direct, parameters.symmetry),
+      velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
+      step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
+      inner_solver_(parameters.solvers.of(parameters.solvers.velocity)),
+      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature, !by_tractions()),
+      tube_(std::move(tube)) {
+  surface::Symmetry& symmetry = parameters_.symmetry;
+  if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
+  const surface::Share share =
+      surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank());
+  own(share);
+  ranks_.own(own_points_, symmetry);
+  collocation_.factor(collocation_matrix(space));
+  mass_.factor(mass_matrix_.update(unstressed));
+  if (measure() == stokes::Measure::reference) mass_matrix_.release();
+  nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
+  make_layers();
+  if (by_tractions())
+    tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.solvers, parameters.wall, tube_.get(),
+                       ranks);
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
+    viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {
+    const Eigen::VectorXd areas = mass_matrix_.row_sums(unstressed);
+    area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
+    if (area_->empty()) area_.reset();
+  }
+  loads_ = Loads(particles(), own_elements_);
+  if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
+  if (parameters_.cell) deform_cell(0);
+  if (tube_) {
+    if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
+    tube_->set_reference(unstressed, measure(), measured_on_present(particles()));
+    if (!tractions_ && (particles().size() > 1 || !rigid_.empty())) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
+  }
+  for (const Particle& particle : particles())
+    volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
+  if (std::ranges::any_of(particles(), coupling::slides))
+    interface_.emplace(space, unstressed, particles(), parameters.quadrature, own_points_, share.elements, collocation_, mass_.reference(), ranks_,
+                       projection_ ? &*projection_ : nullptr);
+}
+
+Capsule::~Capsule() = default;
+
+/// The layers of velocities, and those of the Jacobian where they are at other places.
+void Capsule::make_layers() {
+  using stokes::Layer;
+  const surface::Symmetry& symmetry = parameters_.symmetry;
+  const std::vector<double> contrasts = by_tractions() ? std::vector<double>() : viscosity_contrasts(particles());
+  const auto make = [&](std::optional<Layer>& layer, Layer::Kernel kernel, const stokes::Sites& sites, const std::vector<double>& factor) {
+    layer.emplace(kernel, space_, sites, parameters_.quadrature, factor);
+  };
+  layer_.set_reference(unstressed_, measured_on_present(particles()));
+  layer_.set_symmetry(symmetry);
+  if (projection_) {
+    make(site_layer_, Layer::Kernel::single_layer, space_.collocation, {});
+    site_layer_->set_reference(unstressed_);
+  }
+  if (!contrasts.empty()) make(double_layer_, Layer::Kernel::double_layer, projection_ ? projection_->sites() : space_.collocation, contrasts);
+  if (!contrasts.empty() && projection_) make(site_double_layer_, Layer::Kernel::double_layer, space_.collocation, contrasts);
+  std::vector<int> everybody = symmetry.fundamental();
+  if (projection_) everybody.resize(projection_->sites().size()), std::iota(everybody.begin(), everybody.end(), 0);
+  if (parameters_.wall) layer_.set_wall(*parameters_.wall);
+  if (parameters_.wall && double_layer_) double_layer_->set_wall(*parameters_.wall);
+  layer_.share(ranks_.rank(), ranks_.size(), everybody);
+  if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
+}
+
+/// Sums for the own points run over fundamental elements, those that touch the points or their images; or, where an element is an image of itself,
+/// over all that touch the points.
+void Capsule::own(const surface::Share& share) {
+  const surface::Symmetry& symmetry = parameters_.symmetry;
+  const auto points = [&](int e) { return std::span<const int>(space_.elements[static_cast<std::size_t>(e)].points); };
+  surface::FundamentalElements found = surface::fundamental_elements(symmetry, static_cast<int>(space_.elements.size()), points);
+  const auto mine = [&](int a) { return std::ranges::binary_search(share.points, symmetry.source()[a]); };
+  std::erase_if(found.element, [&](int e) { return std::ranges::none_of(points(e), mine); });
+  own_points_ = share.points;
+  folded_ = found.whole();
+  own_elements_ = folded_ ? std::move(found.element) : share.elements;
+}
+
+/// What was evaluated stands as long as the flow is the same.
+void Capsule::at(double time, double start) {
+  const bool other_flow = flow_.at(time, start), other_cell = parameters_.cell && deform_cell(time);
+  if (other_flow || other_cell) latest_ = {};
+}
+
+/// dH/dt = L H. Whether the cell is another one then.
+bool Capsule::deform_cell(double time) {
+  const stokes::PeriodicCell now(exponential(time * flow_.gradient(Vec3::Zero())) * parameters_.cell->vectors(), parameters_.cell->n());
+  if (cell_ && *cell_ == now) return false;
+  cell_ = now;
+  layer_.repeat(now);
+  if (double_layer_) double_layer_->repeat(now);
+  if (tractions_) tractions_->repeat(now);
+  return true;
+}
+
+/// What is taken from each particle.
+std::vector<Vec3> Capsule::put_into_cell(Net& x) const {
+  std::vector<Vec3> shifts;
+  for (const Particle& particle : particles()) {
+    auto rows = particle.block.rows(x);
+    shifts.push_back(cell_->shift(rows.colwise().mean().transpose()));
+    rows.rowwise() -= shifts.back().transpose();
+  }
+  return shifts;
+}
+
+/// Control values of an affine v_inf: exact, for the basis sums to one.
+Net Capsule::ambient(const Net& x) const {
+  Net v(x.rows(), 3);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = flow_.velocity(x.row(i).transpose()).transpose();
+  return v;
+}
+
+void Capsule::replicate(Net& net) { ranks_.replicate(net); }
+
+/// Of what own elements give to all points.
+void Capsule::replicate_sums(Net& net) {
+  if (folded_) surface::fold(parameters_.symmetry, net);
+  replicate(net);
+}
+
+/// Of what an operator gives at own points, or, where its far sums are shared, of parts that add up.
+void Capsule::gather(bool shared, Net& net) {
+  if (!shared) return replicate(net);
+  Net* const one[] = {&net};
+  ranks_.add(one);
+}
+
+/// The same at the targets of velocities.
+void Capsule::gather_targets(bool shared, Net& net) {
+  if (!projection_) return gather(shared, net);
+  ranks_.add({net.data(), static_cast<std::size_t>(net.size())});
+}
+
+/// A^-1 of each field, in place; ranks share the columns.
+void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
+  const std::vector<int> components = a.components();
+  int column = 0;
+  for (Net* const field : fields) {
+    std::vector<int> mine;
+    for (const int c : components)
+      if (ranks_.owner(column++, 3 * static_cast<int>(fields.size())) == ranks_.rank()) mine.push_back(c);
+    *field = a.solve(*field, mine);
+  }
+  ranks_.add(fields);
+}
+
+Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
+  Net* const one[] = {&field};
+  solve(a, one);
+  return field;
+}
+
+/// Kept until another shape is asked about: a row of the series asks for the last velocity's.
+const Net& Capsule::energy_gradient(const Net& x) {
+  if (same(x, gradient_at_)) return gradient_;
+  gradient_.resize(x.rows(), 3);
+  membrane_.load(x, own_elements_, gradient_);
+  load_sums_ = loads_.add_work(x, gradient_);
+  replicate_sums(gradient_);
+  for (Net& sum : load_sums_) replicate_sums(sum);
+  loads_.add_global_work(x, load_sums_, gradient_);
+  for (const Net& work : external_)
+    if (work.size() > 0) gradient_ -= work;
+  rigid_.clear(gradient_);  // push_bodies has theirs
+  gradient_at_ = x;
+  return gradient_;
+}
+
+/// Returns the complete sums of the loads at x.
+const std::vector<Net>& Capsule::load_sums(const Net& x) {
+  if (loads_.n_sums() > 0) energy_gradient(x);
+  return load_sums_;
+}
+
+void Capsule::press(Net work, External kind) {
+  Net& known = external_[static_cast<std::size_t>(kind)];
+  if (same(work, known)) return;
+  if (kind == External::contacts) rigid_.push(work);
+  known = std::move(work), latest_ = {}, gradient_at_ = {};
+}
+
+/// Contacts and loads push bodies, beside what is given.
+void Capsule::push_bodies(const Net& x) {
+  const auto pushed = [](const Particle& particle) { return particle.rigid && !particle.loads.empty(); };
+  if (std::ranges::none_of(particles(), pushed)) return;  // contacts do since `press`
+  Net push = Net::Zero(x.rows(), 3);
+  std::vector<Net> sums = loads_.add_work(x, push);
+  replicate_sums(push);
+  for (Net& sum : sums) replicate_sums(sum);
+  loads_.add_global_work(x, sums, push);
+  const Net& contacts = external_[static_cast<std::size_t>(External::contacts)];
+  rigid_.push(contacts.size() > 0 ? Net(contacts - push) : Net(-push));
+}
+
+Net Capsule::load(const Net& x) {
+  if (!rigid_.empty() || viscous_) velocity(x);  // the load is part of what the velocity is solved from
+  return same(x, latest_.x) ? latest_.load : membrane_load(x, nullptr);
+}
+
+/// The load at x, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than twice three.
+Net Capsule::membrane_load(const Net& x, Net* other) {
+  const auto clock = phases_.time("membrane");
+  const bool together = other && measure() == stokes::Measure::reference;
+  if (other && !together) *other = solved(mass_.reference(), std::move(*other));
+  if (parameters_.strong_load) {
+    Net t = Net::Zero(x.rows(), 3);
+    membrane_.strong_load(x, own_points_, t);
+    replicate(t);
+    return solved(collocation_, std::move(t));
+  }
+  Net d = energy_gradient(x);
+  if (!together) return measured_load(x, std::move(d));
+  const auto projection = phases_.time("projection");
+  Net* const both[] = {&d, other};
+  solve(mass_.reference(), both);
+  return d;
+}
+
+Net Capsule::flux_vector(const Net& x) {
+  const auto clock = phases_.time("volume");
+  Net b(x.rows(), 3);
+  geometry_.volume_gradient(x, own_elements_, b);
+  replicate_sums(b);
+  return b;
+}
+
+/// P v: of each particle that deforms what its volume allows.
+void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
+  for (const Particle& particle : particles()) {
+    if (particle.rigid) continue;
+    const auto rows = [&](const Net& net) { return particle.block.rows(net).array(); };
+    particle.block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * particle.block.rows(c);
+  }
+}
+
+/// Of a symmetric scene the rotations that its images leave as they are.
+std::vector<Net> Capsule::relabellings(const Net& x) {
+  std::vector<int> axes;
+  for (int k = 0; k < 3; ++k) {
+    const auto keeps = [k](const surface::Image& g) { return g.signs.prod() * g.signs[k] > 0; };
+    if (std::ranges::all_of(parameters_.symmetry.images(), keeps)) axes.push_back(k);
+  }
+  std::vector<Net> all;
+  if (interface_) all = interface_->rotations(x, axes);
+  for (const Particle& one : particles()) {
+    if (one.rigid || one.slides() || std::ranges::any_of(one.loads, &membrane::Load::depends_on_labels)) continue;
+    for (const int k : axes)
+      if (const auto field = label_rotation(space_, one.block, unstressed_, x, k, collocation_)) all.push_back(*field);
+  }
+  return all;
+}
+
+Net Capsule::symmetric(Net field) const {
+  parameters_.symmetry.complete(field);
+  return field;
+}
+
+Net Capsule::velocity(const Net& x, const Net& guess) {
+  if (same(x, latest_.x)) return latest_.velocity;
+  ++work_.evaluations;
+  latest_ = {};
+  Net v = symmetric(evaluate(x, guess));
+  if (!v.allFinite()) return v;
+  latest_.x = x;
+  return latest_.velocity = std::move(v);
+}
+
+bool Capsule::adopt(const Net& x, const Net& v) {
+  if (interface_ || tractions_ || !rigid_.empty()) return false;
+  if (same(x, latest_.x)) return true;
+  Net load = membrane_load(x, nullptr);
+  if (viscous_) viscous_->update(x, own_elements_), load += viscous_load(x, v);
+  latest_ = {};
+  latest_.x = x, latest_.load = std::move(load), latest_.velocity = latest_.unknowns = v;
+  return true;
+}
+
+Net Capsule::fluid_velocity(const Net& x, const Net& guess) {
+  const Net v = velocity(x, guess);
+  return interface_ ? latest_.fluid : v;
+}
+
+const Tube::Response& Capsule::response(const Net& x) {
+  velocity(x);
+  place(x);
+  if (!latest_.response) latest_.response = tube_->respond(latest_.load, latest_.unknowns);
+  return *latest_.response;
+}
+
+Tube::Checks Capsule::checks(const Net& x) {
+  const Tube::Response& known = response(x);
+  return tube_->checks(latest_.load, latest_.unknowns, known);
+}
+
+void Capsule::place(const Net& x) {
+  if (same(x, placed_)) return;
+  tube_->place(x);
+  placed_ = x;
+}
+
+/// On a lattice where the means of the particles are in the cell.
+Net Capsule::evaluate(Net x, const Net& guess) {
+  if (!cell_ || !x.allFinite()) return evaluate_here(std::move(x), guess);
+  const std::vector<Vec3> shifts = put_into_cell(x);
+  rigid_.enter(shifts, flow_.gradient(Vec3::Zero()));
+  Net v = evaluate_here(std::move(x), {});
+  for (std::size_t p = 0; p < shifts.size(); ++p) {
+    const Vec3 faster = flow_.gradient(Vec3::Zero()) * shifts[p];
+    for (Net* net : {&v, &latest_.fluid})
+      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
+    rigid_.carry(p, shifts[p], faster);
+  }
+  return v;
+}
+
+/// (4.2), station by station: the load of membranes (membrane_load) and of bodies, what it drives through the layers and the ambient flow
+/// (explicit_velocity), the volumes' conditions (constrain), and where viscosities differ, bodies are rigid or a tube's blocks are asked for, the
+/// system of all (solve_velocity).
+Net Capsule::evaluate_here(Net x, const Net& guess) {
+  rigid_.place(x);
+  if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
+    return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  push_bodies(x);
+  if (tractions_) return evaluate_tractions(x);
+  const bool constrained = parameters_.volume.constraint != "none";
+  const Net b = constrained ? flux_vector(x) : Net();
+  Net c = b;
+  Net f = membrane_load(x, constrained ? &c : nullptr);
+  rigid_.add_load(f);
+  latest_.load = f;
+  Net v = explicit_velocity(x, f);
+  rigid_.add_lacking(v);
+  rigid_.subtract_prescribed(v);
+  if (constrained) constrain(v, b, c);
+  if (viscous_) viscous_->update(x, own_elements_);
+  if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
+  latest_.unknowns = v;
+  if (viscous_) latest_.load += viscous_load(x, symmetric(v));
+  if (!rigid_.empty()) {
+    latest_.unknowns = symmetric(v);
+    latest_.load += rigid_.completing_load(v);
+    rigid_.move(v);
+  }
+  if (!interface_) return v;
+  latest_.fluid = symmetric(v);
+  const auto clock = phases_.time("interface motion");
+  v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
+  if (constrained) constrain(v, b, c);  // interpolation of the normal motion lets a little flux in
+  return v;
+}
+
+/// Of rigid bodies and nothing else (2.40).
+Net Capsule::evaluate_tractions(const Net& x) {
+  const auto clock = phases_.time("tractions");
+  std::vector<Vec3> centres;
+  std::vector<Rigid> driven;
+  for (std::size_t p = 0; p < particles().size(); ++p) centres.push_back(rigid_.centre(p)), driven.push_back(rigid_.given(p));
+  tractions_->solve(x, centres, driven, flow_);
+  Net v(x.rows(), 3);
+  for (std::size_t p = 0; p < particles().size(); ++p) {
+    const RigidTractions::Body& body = tractions_->bodies()[p];
+    rigid_.move(p, body.motion, body.force, body.torque, v);
+  }
+  latest_.load = -tractions_->density();
+  latest_.unknowns = v;
+  note_tractions();
+  if (tube_) latest_.response = tube_->respond(latest_.load, {}, tractions_->lacking_pressure());
+  return v;
+}
+
+/// Of a velocity at the targets.
+Net Capsule::control_values(Net at_targets) {
+  return projection_ ? projection_->control_values(at_targets) : solved(collocation_, std::move(at_targets));
+}
+
+/// A f, at the targets; nothing is summed of no load.
+Net Capsule::single_layer_of(const Net& x, const Net& f) {
+  Net u = zero_at_targets();
+  if (f.isZero(0)) return u;
+  {
+    const auto clock = phases_.time("single layer");
+    layer_.place(x, measure());
+    layer_.apply(f, own_targets(), u);
+  }
+  gather_targets(layer_.shared(), u);
+  return u;
+}
+
+/// H v at the targets, where the double layer was placed.
+Net Capsule::double_layer_of(const Net& v) {
+  Net hv = zero_at_targets();
+  double_layer_->apply(v, own_targets(), hv);
+  gather_targets(double_layer_->shared(), hv);
+  return hv;
+}
+
+/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle.
+Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves) {
+  Net u = single_layer_of(x, f);
+  if (by_sites()) {
+    const bool known = tube_ && flow_.duct();
+    const Eigen::SparseMatrix<double>& values = projection_ ? projection_->values() : sites_;
+    u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(values * x)) - u / parameters_.viscosity;
+    if (tube_ && schur()) {
+      Tube::Response response = tube_->respond(f, moves);
+      u += response.velocity;
+      if (!has_velocity_system()) latest_.response = std::move(response);
+    }
+    const auto clock = phases_.time("projection");
+    return control_values(std::move(u));
+  }
+  Net v = ambient(x);
+  const auto clock = phases_.time("projection");
+  v -= control_values(std::move(u)) / parameters_.viscosity;
+  return v;
+}
+
+/// Takes the shape into the tube; whether that can be: no point of it is outside.
+bool Capsule::enter_tube(const Net& x) {
+  place(x);
+  const Net at_sites = sites_ * x;
+  if (tube_->fixed()) return !ranks_.any(!tube_->inside(at_sites, own_points_));
+  const surface::Outline& outline = tube_->wall().outline;
+  const bool outside = std::ranges::any_of(own_points_, [&](int i) {
+    const surface::Vec2 place(at_sites(i, 1), at_sites(i, 2));
+    return (place - outline.centroid()).norm() >= inner_radius_ && !outline.inside(place);
+  });
+  return !ranks_.any(outside);
+}
+
+/// Whether all sites are, if there is one.
+bool Capsule::in_front_of_wall(const Net& x) {
+  if (!parameters_.wall) return true;
+  const Net at = sites_ * x;
+  for (Eigen::Index i = 0; i < at.rows(); ++i)
+    if (!(parameters_.wall->height(at.row(i).transpose()) > 0)) return false;
+  return true;
+}
+
+/// Returns the load of the virtual work d on the surface at x: per unstressed area (3.7), or per current area (3.6).
+Net Capsule::measured_load(const Net& x, Net d) {
+  const auto clock = phases_.time("projection");
+  return measure() == stokes::Measure::reference ? solved(mass_.reference(), std::move(d)) : mass_.solve(mass_matrix_.update(measured_net(x)), d);
+}
+
+/// Returns C v, with C as it was updated last.
+Net Capsule::viscous_work(const membrane::ViscousLoad& c, const Net& v) {
+  const auto clock = phases_.time("membrane");
+  Net work;
+  c.apply(v, work);
+  replicate_sums(work);
+  return work;
+}
+
+void Capsule::note_tractions() {
+  const Net& v = latest_.unknowns;
+  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
+}
+
+void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
+  ++work_.velocity_solves;
+  work_.velocity_iterations += report.iterations;
+  work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
+  const auto contrast = [](const Particle& particle) { return std::abs(std::log(particle.viscosity_ratio)); };
+  const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
+  const std::string system = rigid_.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
+  if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
+}
+
+/// Rows of D on every rank, each made by the rank whose point it is: taken from what is assembled, or assembled for this.
+stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
+  std::vector<int> own;
+  std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
+  stokes::Rows<double> made;
+  if (!assembled) double_layer_->assemble(own, made);
+  stokes::Rows<double> rows = stokes::Rows<double>::Zero(3 * static_cast<Eigen::Index>(targets.size()), 3 * x.rows());
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto point = std::ranges::lower_bound(own_points_, targets[k]);
+    if (point == own_points_.end() || *point != targets[k]) continue;
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
+        assembled ? double_rows_.middleRows<3>(3 * (point - own_points_.begin())) : made.middleRows<3>(3 * next++);
+  }
+  ranks_.add({rows.data(), static_cast<std::size_t>(rows.size())});
+  return rows;
+}
+
+/// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
+/// are solved for. Starts from `guess`, else from the right-hand side.
+Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
+  const auto clock = phases_.time("velocity system");
+  const Eigen::Index n = x.rows();
+  constexpr double most_bytes = 1e9;
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
+  const bool assembled = double_layer_ && !cell_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
+  if (double_layer_) double_layer_->place(x);
+  if (assembled) double_layer_->assemble(own_targets(), double_rows_);
+  const bool single_assembled = viscous_ && !cell_ && parameters_.solvers.assembled(layer_.by_clusters());
+  if (viscous_) layer_.place(x, measure());
+  if (single_assembled) layer_.assemble(own_targets(), single_rows_);
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // of own targets, for everybody
+    Net at_targets = zero_at_targets();
+    const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
+    for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();
+    gather_targets(false, at_targets);
+    return at_targets;
+  };
+  const auto load_of = [&](const Net& v) {  // what the velocity adds to the load, empty where it adds nothing
+    Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
+    if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
+    return load;
+  };
+  const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
+    if (!double_layer_ && !viscous_) return v;
+    Net hv = assembled ? times(double_rows_, v) : double_layer_ ? double_layer_of(v) : zero_at_targets();
+    if (load.size() > 0) hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
+    Net bv = v - (projection_ ? projection_->control_values(hv) : collocation_.solve(hv));
+    rigid_.complete(v, bv);
+    return bv;
+  };
+  if (!schur()) return solve_blocks([&](const Net& v) { return without_wall(v, load_of(v)); }, f, b, c, rhs);
+  const auto project = [&](Net& v) {
+    if (b.size() > 0) constrain(v, b, c);
+  };
+  const auto apply = [&](const double* in, double* out) {
+    Net v = Eigen::Map<const Net>(in, n, 3);
+    project(v);
+    const Net load = load_of(v);
+    Net bv = without_wall(v, load);
+    if (tube_) bv -= collocation_.solve(tube_->respond(load, v).velocity);
+    project(bv);
+    Eigen::Map<Net>(out, n, 3) = bv;
+  };
+  const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
+  Eigen::VectorXd v = guess.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size())) : right;
+  if (!alone_) alone_.emplace(particles(), rigid_, rest_, parameters_.quadrature);
+  const auto rows_of = [&](std::span<const int> targets) { return double_rows_of(x, targets, assembled); };
+  const FilmInverses films(particles(), *alone_, rigid_, x, rows_of);
+  const auto precondition = [&](const double* in, double* out) {
+    Net y = Eigen::Map<const Net>(in, n, 3);
+    alone_->take_to_sites(y);
+    films.add(y);
+    alone_->solve(rigid_, y);
+    Eigen::Map<Net>(out, n, 3) = y;
+  };
+  const LinearSystem system{velocity_blocks(), apply, alone_->empty() ? Apply() : precondition};
+  note(velocity_solver_.solve(system, right, v, parameters_.solvers.tolerance), v);
+  Net solution = Eigen::Map<const Net>(v.data(), n, 3);
+  project(solution);
+  return solution;
+}
+
+void Capsule::forget_recycled() const {
+  for (const Krylov* solver : {&velocity_solver_, &step_solver_, &inner_solver_}) solver->forget();
+  if (tube_) tube_->forget_recycled();
+}
+
+/// v, f^D, dp and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f; the start is what it would be without a wall.
+Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
+  const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
+  const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
+  const Eigen::VectorXd right = system.right_hand_side(rhs, f);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
+  x.head(rhs.size()) = right.head(rhs.size());
+  note(velocity_solver_.solve(system.linear_system(velocity_blocks(), parameters_.solvers.tube), right, x, parameters_.solvers.tolerance), x);
+  return Eigen::Map<const Net>(x.data(), rhs.rows(), 3);
+}
+
+Blocks Capsule::velocity_blocks() const {
+  if (particles().size() == 1) return {{"velocity", 3 * space_.n_points}};
+  Blocks blocks;
+  for (const Particle& particle : particles())
+    blocks.push_back({formatted("velocity of particle %d", static_cast<int>(blocks.size()) + 1), 3 * particle.block.n_points});
+  return blocks;
+}
+
+/// V = b.x/3, for V is a cubic of x without lower terms. Where that leads nowhere, x is not finite any more.
+void Capsule::restore_volume(Net& x) {
+  rigid_.place(x);
+  if (parameters_.volume.constraint != "exact") return;
+  const auto clock = phases_.time("volume");
+  std::vector<double> missing(particles().size());  // over V0
+  Net c;
+  const auto larger_than = [&](double bound) { return std::ranges::any_of(missing, [&](double m) { return !(std::abs(m) <= bound); }); };
+  for (int k = 0; k < 6; ++k) {  // two changes are enough after any but a very long step
+    const Net b = flux_vector(x);
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+      const auto rows = particles()[p].block.rows(x);
+      const double volume = (rows.rowwise() - rows.colwise().mean()).cwiseProduct(particles()[p].block.rows(b)).sum() / 3;
+      missing[p] = rigid_.holds(p) ? 0 : 1 - volume / volume0_[p];
+    }
+    if (k > 1 && !larger_than(2e-15)) return;
+    if (k == 5) break;
+    if (k == 0) c = inflation(symmetric(solved(mass_.reference(), b)));
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+      const spline::Block& block = particles()[p].block;
+      block.rows(x) += missing[p] * volume0_[p] / block.rows(b).cwiseProduct(block.rows(c)).sum() * block.rows(c);
+    }
+  }
+  if (larger_than(1e-12)) x.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+double Capsule::volume_error(const Net& x) const {
+  return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
+}
+
+Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
+  const Particle& particle = particles()[p];
+  const auto own = [&](const Net& net) { return particle.block.rows(net); };
+  Mat3 moment;
+  if (tractions_) {
+    moment = -tractions_->moment(p);
+    note_tractions();
+  } else if (rigid_.holds(p)) {
+    moment = rigid_.load_moment(p);
+  } else {
+    Net work = own(energy_gradient(x));
+    if (viscous_) work += own(viscous_work(x, interface_ ? fluid_velocity(x) : slope));
+    moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
+    if (!particle.loads.empty() || pressed())  // about the centroid
+      moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
+  }
+  if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {
+    const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
+    std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
+    std::iota(elements.begin(), elements.end(), particle.block.first_element);
+    Net flux;
+    geometry_.volume_gradient(x, elements, flux);
+    moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(flux);
+  }
+  return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+}
+
+/// Returns C v at x, which is kept until another x or v is asked for: every particle of a row of the series asks for the same.
+const Net& Capsule::viscous_work(const Net& x, const Net& v) {
+  if (same(x, viscous_at_) && same(v, viscous_of_)) return viscous_work_;
+  viscous_->update(x, own_elements_);
+  viscous_at_ = x, viscous_of_ = v;
+  return viscous_work_ = viscous_work(*viscous_, v);
+}
+
+double Capsule::membrane_dissipation(const Net& x, const Net& slope, std::size_t p) {
+  if (!viscous_) return 0;
+  const Net v = interface_ ? fluid_velocity(x) : slope;
+  return particles()[p].block.rows(v).cwiseProduct(particles()[p].block.rows(viscous_work(x, v))).sum();
+}
+
+stokes::Evaluations Capsule::kernel_evaluations() const {
+  stokes::Evaluations sum = layer_.evaluations();
+  for (const auto* other : {&double_layer_, &site_layer_, &site_double_layer_})
+    if (*other) sum += (*other)->evaluations();
+  if (tube_) sum += tube_->kernel_evaluations();
+  if (tractions_) sum += tractions_->kernel_evaluations();
+  return sum;
+}
+
+}  // namespace tanktread::coupling

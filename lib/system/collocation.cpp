@@ -1,0 +1,42 @@
+#include "system/collocation.hpp"
+
+#include <vector>
+
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+BetweenSites between_sites(const spline::Space& space, const Net& surface) {
+  stokes::Sites places;
+  std::vector<double> areas;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(space.elements[static_cast<std::size_t>(e)].degree);
+    for (int q = 0; q < rule.size(); ++q) {
+      const spline::Site place{e, rule.s[q], rule.t[q]};
+      places.push_back({place});
+      areas.push_back(rule.weights[q] * surface::point(space, surface, place).jacobian);
+    }
+  }
+  const Eigen::SparseMatrix<double> values = value_matrix(space, places);
+  return {places, values, values.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), values.rows()).asDiagonal()};
+}
+
+Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const auto& [number, s, t] = sites[i].front();
+    const spline::Element& element = space.elements[static_cast<std::size_t>(number)];
+    const Eigen::VectorXd values = spline::basis(element, s, t, 0).value;
+    for (std::size_t a = 0; a < element.points.size(); ++a)
+      entries.emplace_back(static_cast<int>(i), element.points[a], values[static_cast<Eigen::Index>(a)]);
+  }
+  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(sites.size()), space.n_points);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space) { return value_matrix(space, space.collocation); }
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,75 @@
+#include "system/contact.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/LU>
+
+#include "spline/basis.hpp"
+
+namespace tanktread::coupling {
+
+double Contacts::force() const {
+  return std::accumulate(all.begin(), all.end(), 0., [](double sum, const Contact& one) { return sum + one.force; });
+}
+
+void Contacts::add_columns(Columns& to) const {
+  to.add(force(), {"contact_force", "force", "sum of the forces by which Contact/limiter held particles apart over the step that ended here; 0 where "
+         "the fluid did"});
+  to.add(impulse, {"contact_impulse", "force time", "sum of these forces times the time that they acted for, so far"});
+}
+
+void add_work(std::span<const Particle> particles, const Contact& contact, double force, Net& work) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Particle& particle = particles[contact.particle[k]];
+    const auto& [element, s, t] = contact.site[k];
+    const spline::Element& at = particle.space->elements[static_cast<std::size_t>(element)];
+    const Eigen::VectorXd shares = spline::basis(at, s, t, 0).value;
+    auto rows = particle.block.rows(work);
+    for (Eigen::Index a = 0; a < shares.size(); ++a)
+      rows.row(at.points[static_cast<std::size_t>(a)]) += (k == 0 ? -force : force) * shares[a] * contact.normal.transpose();
+  }
+}
+
+Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::Index n_points) {
+  Net sum = Net::Zero(n_points, 3);
+  for (const Contact& one : contacts.all) add_work(particles, one, one.force, sum);
+  return sum;
+}
+
+namespace {
+
+/// f of A f + q = 0 in the rows that are `held`, 0 elsewhere.
+Eigen::VectorXd forces(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const std::vector<int>& held) {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(q.size());
+  if (held.empty()) return f;
+  const Eigen::MatrixXd of_held = a(held, held);
+  const Eigen::VectorXd right = -q(held), found = of_held.partialPivLu().solve(right);
+  f(held) = found;
+  return f;
+}
+
+}  // namespace
+
+Eigen::VectorXd complementary(const Eigen::MatrixXd& a, const Eigen::VectorXd& q) {
+  const Eigen::Index n = q.size();
+  const double small = 1e-12 * q.cwiseAbs().maxCoeff();
+  std::vector<int> held;
+  const Eigen::Index most = 1000 * n;
+  for (Eigen::Index pivot = 0; pivot < most; ++pivot) {
+    const Eigen::VectorXd f = forces(a, q, held), open = a * f + q;
+    const auto wrong = [&](int k) { return std::ranges::binary_search(held, k) ? f[k] < 0 : open[k] < -small; };
+    int k = 0;
+    while (k < n && !wrong(k)) ++k;
+    if (k == n) return f;
+    const auto at = std::ranges::lower_bound(held, k);
+    if (at != held.end() && *at == k)
+      held.erase(at);
+    else
+      held.insert(at, k);
+  }
+  return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,228 @@
+#include "system/coupled_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tanktread::coupling {
+
+namespace {
+Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
+
+/// The rows of a net; an empty net stays empty.
+Net rows_of(const spline::Block& block, const Net& net) { return net.rows() > 0 ? Net(block.rows(net)) : Net(); }
+}  // namespace
+
+CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields)
+    : capsule_(capsule), fields_(std::move(fields)), n_(capsule.n_points()) {
+  Eigen::Index first = 3 * n_;
+  for (const On& on : fields_) {
+    const Particle& particle = capsule.particles()[on.particle];
+    const Eigen::Index size = on.field->size();
+    blocks_.push_back({on, first, size, particle.radius * std::sqrt(particle.block.n_points / static_cast<double>(size)), particle.block});
+    first += size;
+  }
+  rows_ = (first + 2) / 3;
+}
+
+Net CoupledMotion::start(const Net& shape) const {
+  Net y = with_shape(Net::Zero(rows_, 3), shape);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(y, k, blocks_[k].on.field->start(blocks_[k].rows.rows(shape)));
+  return y;
+}
+
+Net CoupledMotion::with_shape(Net y, const Net& shape) const {
+  y.topRows(n_) = shape;
+  return y;
+}
+
+Eigen::VectorXd CoupledMotion::coefficients(const Net& y, std::size_t k) const {
+  return Eigen::Map<const Eigen::VectorXd>(y.data() + blocks_[k].first, blocks_[k].size) / blocks_[k].scale;
+}
+
+void CoupledMotion::set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const {
+  Eigen::Map<Eigen::VectorXd>(y.data() + blocks_[k].first, blocks_[k].size) = blocks_[k].scale * q;
+}
+
+void CoupledMotion::set_fields(const Net& y) {
+  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k].on.field->set_state(blocks_[k].rows.rows(y), coefficients(y, k));
+}
+
+void CoupledMotion::set_state(const Net& y) {
+  set_fields(y);
+  Net load = Net::Zero(n_, 3);
+  for (const Block& block : blocks_) block.rows.rows(load) -= block.on.field->load();
+  capsule_.press(std::move(load), Capsule::External::fields);
+}
+
+Net CoupledMotion::velocity(const Net& y) {
+  if (!y.allFinite()) return not_a_number(y);
+  set_state(y);
+  const Net x = shape(y), u = capsule_.velocity(x);
+  if (!u.allFinite()) return not_a_number(y);
+  Net rate = with_shape(Net::Zero(rows_, 3), u);
+  const Net slip = slip_at(x);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(rate, k, blocks_[k].on.field->rate(rows_of(blocks_[k].rows, slip)));
+  return rate;
+}
+
+/// Velocity of the fluids minus that of the control points; empty if none slides.
+Net CoupledMotion::slip_at(const Net& x) { return capsule_.slides() ? Net(capsule_.fluid_velocity(x) - capsule_.velocity(x)) : Net(); }
+
+Net CoupledMotion::defect(const Net& y, const Net& u) {
+  if (!defect_spares_system()) return Dynamics::defect(y, u);
+  if (!y.allFinite()) return not_a_number(y);
+  set_state(y);
+  Net missing = with_shape(-u, capsule_.defect(shape(y), shape(u)));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(missing, k, blocks_[k].on.field->rate({}) - coefficients(u, k));
+  return missing;
+}
+
+void CoupledMotion::freeze(const Net& y) {
+  capsule_.freeze(shape(y));
+  for (const Block& block : blocks_) block.on.field->freeze(block.rows.rows(y));
+}
+
+void CoupledMotion::linearise(const Net& y) {
+  set_state(y);
+  const Net slip = slip_at(shape(y));
+  for (const Block& block : blocks_) block.on.field->linearise(rows_of(block.rows, slip));
+  capsule_.linearise(shape(y));
+}
+
+/// B of the shape; the identity of the fields.
+Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.left(shape(delta))); }
+
+/// B J delta of the shape, or J delta if control points slide or `solved`; J delta of the fields.
+Net CoupledMotion::right(const Net& delta, bool solved) {
+  Net load = Net::Zero(n_, 3);
+  std::vector<Eigen::VectorXd> values;
+  const Net dx = shape(delta);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Block& block = blocks_[k];
+    values.push_back(block.on.field->value_change(block.rows.rows(dx), coefficients(delta, k)));
+    block.rows.rows(load) += block.on.field->load_change(block.rows.rows(dx), values.back());
+  }
+  const Capsule::RateChange change = solved ? capsule_.velocity_change(dx, load) : capsule_.rate_change(dx, load);
+  Net result = with_shape(Net::Zero(rows_, 3), change.rate);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Block& block = blocks_[k];
+    set_coefficients(result, k, block.on.field->rate_change(block.rows.rows(dx), values[k], rows_of(block.rows, change.slip)));
+  }
+  return result;
+}
+
+/// (left - shift (right + secants)) delta = rhs.
+Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
+  capsule_.prepare_step(shift);
+  const auto apply = [&](const double* in, double* out) {
+    const Net delta = Eigen::Map<const Net>(in, rows_, 3);
+    Eigen::Map<Net>(out, rows_, 3) = left(delta) - shift * (right(delta) + secants(delta));
+  };
+  const auto precondition = [&](const double* in, double* out) {
+    Net delta = Eigen::Map<const Net>(in, rows_, 3);
+    delta = with_shape(std::move(delta), capsule_.step_preconditioner(shape(delta)));
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const Block& block = blocks_[k];
+      membrane::Field& field = *block.on.field;
+      Eigen::VectorXd r = coefficients(delta, k);
+      if (field.follows_shape()) {
+        const Net dx = block.rows.rows(delta);
+        r += shift * field.rate_change(dx, field.value_change(dx, Eigen::VectorXd::Zero(block.size)), {});
+      }
+      set_coefficients(delta, k, field.solve(shift, r));
+    }
+    Eigen::Map<Net>(out, rows_, 3) = delta;
+  };
+  Net delta = capsule_.solve_step(apply, precondition, rhs, tolerance);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    Eigen::VectorXd q = coefficients(delta, k);
+    blocks_[k].on.field->conserve(coefficients(rhs, k), q);
+    set_coefficients(delta, k, q);
+  }
+  return symmetric(std::move(delta));
+}
+
+Net CoupledMotion::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
+  return system(shift, left(r), tolerance, secants);
+}
+
+Net CoupledMotion::correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
+  return defect_spares_system() ? system(shift, shift * defect, tolerance, secants) : Dynamics::correction(shift, defect, tolerance, secants);
+}
+
+Net CoupledMotion::missed(const Net& dv, const Net& delta) { return left(dv) - right(delta); }
+
+Net CoupledMotion::missed_of(const Net& change, const Net& delta, double shift) {
+  return defect_spares_system() ? Net(change + left(delta) / shift - right(delta)) : Dynamics::missed_of(change, delta, shift);
+}
+
+Net CoupledMotion::derivative(const Net& y, const Net& v, const Net& delta) {
+  if (!capsule_.has_frozen()) return difference(y, v, delta);
+  linearise(y);
+  return symmetric(right(delta, true));
+}
+
+Net CoupledMotion::mesh_motion(const Net& delta) {
+  const Net motion = capsule_.mesh_motion(shape(delta));
+  return motion.rows() > 0 ? with_shape(Net::Zero(rows_, 3), motion) : Net();
+}
+
+void CoupledMotion::restore_volume(Net& y) {
+  Net x = shape(y);
+  capsule_.restore_volume(x);
+  y.topRows(n_) = x;
+}
+
+void CoupledMotion::improve_start(Net& y, const Net& before, double shift) {
+  Net x = shape(y);
+  capsule_.improve_start(x, shape(before), shift);
+  y.topRows(n_) = x;
+}
+
+Net CoupledMotion::moved(const Net& y, const RigidMotion& motion) const {
+  return with_shape(Net::Zero(y.rows(), 3), rigid_velocity(shape(y), motion, Vec3::Zero()));
+}
+
+Net CoupledMotion::slid(const Net& y, const Net& along) {
+  set_fields(y);
+  Net change = with_shape(Net::Zero(rows_, 3), along);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(change, k, blocks_[k].on.field->relabelled(blocks_[k].rows.rows(along)));
+  return change;
+}
+
+Net CoupledMotion::conserved(std::size_t k) const {
+  const Eigen::VectorXd of_q = blocks_[k].on.field->conserved();
+  if (of_q.size() == 0) return {};
+  Net gradient = Net::Zero(rows_, 3);
+  set_coefficients(gradient, k, of_q / (blocks_[k].scale * blocks_[k].scale));
+  return gradient;
+}
+
+std::vector<Net> CoupledMotion::relabellings(const Net& y) {
+  std::vector<Net> all;
+  for (const Net& slide : capsule_.relabellings(shape(y))) all.push_back(slid(y, slide));
+  return all;
+}
+
+Net CoupledMotion::symmetric(Net rate) const {
+  rate = with_shape(std::move(rate), capsule_.symmetric(shape(rate)));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    Eigen::VectorXd q = coefficients(rate, k);
+    capsule_.symmetrise(*blocks_[k].on.field, q);
+    set_coefficients(rate, k, q);
+  }
+  return rate;
+}
+
+double CoupledMotion::norm(const Net& displacement) const {
+  double largest = capsule_.norm(shape(displacement));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const double changed = coefficients(displacement, k).norm() / std::sqrt(static_cast<double>(blocks_[k].size));
+    largest = changed <= largest ? largest : changed;  // a norm that is not a number is kept
+  }
+  return largest;
+}
+
+}  // namespace tanktread::coupling

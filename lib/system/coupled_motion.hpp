@@ -1,0 +1,90 @@
+#pragma once
+// Motion of capsules and drops together with the fields on their surfaces, for all time integrators.
+
+#include <vector>
+
+#include "membrane/field.hpp"
+#include "system/capsule.hpp"
+
+namespace tanktread::coupling {
+
+/// State y = (x, q_1, q_2, ...): the control net of all particles, followed by the coefficients of each field, stored contiguously in rows of three
+/// numbers (the last row is filled with zeros). Coefficients are multiplied by R_C sqrt(control points/coefficients) of their particle, so that the
+/// Euclidean inner product of states weights fields and shape alike and does not depend on the unit of length.
+///
+///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   the load of each field added to that of its particle                          (4.33)
+///
+/// The Jacobian of the fields is exact. The Krylov solver sees x and q, preconditioned by the field's own block, and by the lower block triangle if
+/// the field follows the shape. Calls are collective; every rank holds all fields.
+class CoupledMotion : public Dynamics {
+ public:
+  struct On {
+    std::size_t particle;
+    membrane::Field* field;
+  };
+
+  /// `capsule` and the fields must outlive this.
+  CoupledMotion(Capsule& capsule, std::vector<On> fields);
+
+  Net start(const Net& shape) const;                         ///< state at the start of a run with this shape
+  Net shape(const Net& y) const { return y.topRows(n_); }    ///< control net
+  Net with_shape(Net y, const Net& shape) const;             ///< the state with another control net
+  Eigen::VectorXd coefficients(const Net& y, std::size_t k) const;
+  void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
+  const std::vector<On>& fields() const { return fields_; }
+  Eigen::Index n_rows() const { return rows_; }  ///< of a state
+
+  /// The gradient of the sum that field k conserves, as a state; of no rows if there is none.
+  Net conserved(std::size_t k) const;
+
+  /// The change of the state y if control points move along the surfaces by this small displacement and nothing else does.
+  Net slid(const Net& y, const Net& along);
+
+  /// Sets the state of the fields only.
+  void set_fields(const Net& y);
+  /// Sets the state of the fields and adds their load to the capsule's. The shape is passed with each call to the capsule.
+  void set_state(const Net& y);
+
+  Net velocity(const Net& y) override;
+  void at(double time, double start) override { capsule_.at(time, start); }
+  double next_kink(double time) const override { return capsule_.next_kink(time); }
+  void freeze(const Net& y) override;
+  double frozen_bytes() const override { return capsule_.frozen_bytes(); }
+  void linearise(const Net& y) override;
+  Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
+  Net missed(const Net& dv, const Net& delta) override;
+  Net defect(const Net& y, const Net& u) override;
+  bool defect_spares_system() const override { return capsule_.defect_spares_system(); }
+  Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
+  Net missed_of(const Net& change, const Net& delta, double shift) override;
+  Net derivative(const Net& y, const Net& v, const Net& delta) override;
+  Net mesh_motion(const Net& delta) override;
+  void restore_volume(Net& y) override;
+  void improve_start(Net& y, const Net& before, double shift) override;
+  std::vector<Net> relabellings(const Net& y) override;
+  Net moved(const Net& y, const RigidMotion& motion) const override;
+  Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
+  Net symmetric(Net rate) const override;
+  double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
+  /// The largest of the capsule's norm and the root mean square changes of the fields' coefficients.
+  double norm(const Net& displacement) const override;
+
+ private:
+  struct Block {
+    On on;
+    Eigen::Index first, size;  // among the numbers of a state
+    double scale;
+    spline::Block rows;        // of its particle
+  };
+  Net left(const Net& delta);
+  Net right(const Net& delta, bool solved = false);
+  Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
+  Net slip_at(const Net& x);
+
+  Capsule& capsule_;
+  std::vector<On> fields_;
+  std::vector<Block> blocks_;
+  Eigen::Index n_, rows_;  // control points; rows of a state
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,255 @@
+#include "system/interface_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "base/small_matrices.hpp"
+#include "stokes/layer.hpp"
+#include "surface/geometry.hpp"
+#include "system/collocation.hpp"
+
+namespace tanktread::coupling {
+
+InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles,
+                                 const quadrature::Options& quadrature, const std::vector<int>& own_points, const std::vector<int>& own_elements,
+                                 const membrane::SymmetricSolver& collocation, const membrane::SymmetricSolver& mass, const Ranks& ranks,
+                                 const VelocityProjection* projection)
+    : space_(space),
+      sites_(collocation_matrix(space)),
+      projection_(projection),
+      collocation_(collocation),
+      mass_(mass),
+      ranks_(ranks),
+      mesh_(space, initial, membrane::NeoHookean{1}),
+      tangent_(mesh_) {
+  for (const Particle& particle : particles) {
+    if (!particle.slides()) continue;
+    const spline::Block& block = particle.block;
+    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}, {}});
+    Drop& drop = drops_.back();
+    const auto holds = [&](int e) { return e >= block.first_element && e < block.first_element + block.n_elements; };
+    std::ranges::copy_if(own_points, std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
+    if (projection_)
+      for (int i = 0; i < static_cast<int>(projection_->sites().size()); ++i)
+        if (holds(projection_->sites()[static_cast<size_t>(i)].front().element)) drop.places.push_back(i);
+    if (!drop.relaxed) continue;
+    relaxed_ = true;
+    std::ranges::copy_if(own_elements, std::back_inserter(own_elements_), holds);
+    std::vector<int> targets;
+    for (const int i : drop.points) targets.push_back(i - block.first_point);
+    stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, quadrature);
+    layer.place(block.rows(initial));
+    layer.assemble(targets, drop.layer);
+  }
+}
+
+/// At a plain pole, where elements have no normal themselves, the mean of theirs close by.
+Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites) {
+  const surface::Point p = surface::point(space, x, sites.front());
+  if (p.jacobian > 1e-9 * std::max(p.a1.squaredNorm(), p.a2.squaredNorm())) return p.n;
+  constexpr double aside = 1e-4;
+  Vec3 sum = Vec3::Zero();
+  for (const spline::Site& s : sites) sum += surface::point(space, x, {s.element, s.s + aside * (0.5 - s.s), s.t + aside * (0.5 - s.t)}).n;
+  return sum.normalized();
+}
+
+namespace {
+/// The part of a field along the interface, row by row.
+Net along_interface(const Net& normals, Net field) {
+  for (Eigen::Index i = 0; i < field.rows(); ++i) field.row(i) -= normals.row(i).dot(field.row(i)) * normals.row(i);
+  return field;
+}
+
+/// The change of n n.field where the normals change by n'.
+Net turned(const Net& normals, const Net& change, Net field) {
+  for (Eigen::Index i = 0; i < field.rows(); ++i) {
+    const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
+    field.row(i) = across * change.row(i) + tilted * normals.row(i);
+  }
+  return field;
+}
+
+/// U (6.4) from b = dV/dx, for 3 V = b.x; of a velocity that is the same everywhere exactly that one.
+Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
+  const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
+  return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
+}
+
+/// Half the vorticity of v, averaged over the interior, from b = dV/dx; of a rotation exactly that one.
+Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
+  const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
+  const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
+  return Vec3(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)) / 2;
+}
+
+/// Velocity of places y in a rotation.
+Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
+
+/// Omega_s (4.14) of a velocity u at the sites y, whose share of the area is about |b|.
+Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
+  constexpr double hold = 1e-3;  // deviations from a sphere below 3 % turn with the fluid rather than by themselves, which noise would have a say in
+  Mat3 moments = Mat3::Zero();
+  Vec3 across = Vec3::Zero();
+  double inertia = 0;
+  for (Eigen::Index i = 0; i < y.rows(); ++i) {
+    const double area = b.row(i).norm();
+    const Vec3 n = normals.row(i).transpose(), arm = Vec3(y.row(i).transpose()).cross(n);
+    moments += area * arm * arm.transpose();
+    across += area * arm * u.row(i).dot(n);
+    inertia += area * y.row(i).squaredNorm();
+  }
+  moments.diagonal().array() += hold * inertia;
+  return moments.ldlt().solve(across);
+}
+
+/// Control points x of a drop, b = dV/dx there, and its velocity v; and at its sites.
+struct Moving {
+  Net x, b, v;
+  Net places, normals, velocities;
+};
+
+/// The rigid motion W about the mean of the control points that the mesh of a drop shares (4.14).
+RigidMotion shared_motion(const Moving& drop) {
+  const Eigen::RowVector3d middle = drop.x.colwise().mean();
+  const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
+  const Vec3 rotation = mean_rotation(from_mean, drop.b, drop.v);
+  const Eigen::RowVector3d mean = mean_motion(from_mean, drop.b, drop.v - rotated(rotation, from_mean));
+  const Net rest = drop.velocities - (rotated(rotation, y).rowwise() + mean);
+  return {mean.transpose(), rotation + rotation_of_shape(y, drop.normals, drop.b, rest)};
+}
+
+/// The rotation that takes one net about its mean nearest to another.
+Mat3 rotation_between(const Net& from, const Net& to) {
+  return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
+}
+}  // namespace
+
+Net InterfaceMotion::normals_at(const Net& x) const {
+  Net normals = Net::Zero(x.rows(), 3);
+  for (const Drop& drop : drops_)
+    for (const int i : drop.points) normals.row(i) = site_normal(space_, x, space_.collocation[static_cast<size_t>(i)]).transpose();
+  ranks_.replicate(normals);
+  return normals;
+}
+
+/// w at own collocation sites, from the density f.
+Net InterfaceMotion::sliding(const Net& x, const Net& f) const {
+  Net w = Net::Zero(x.rows(), 3);
+  for (const Drop& drop : drops_) {
+    if (!drop.relaxed) continue;
+    const spline::Block& block = drop.block;
+    const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
+    const Net density = block.rows(f) * turn;  // on the initial shape, as A0 is
+    const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
+    for (size_t k = 0; k < drop.points.size(); ++k)
+      w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();
+  }
+  return w;
+}
+
+/// Control values of W + n n.(v - W) + (1 - n n).w, W at x with b = dV/dx there, w from the density f (empty: none); rest: v - W - w at the places.
+Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
+  Net u = sites_ * v, w = sliding(x, f);
+  const Net places = sites_ * x;
+  std::vector<RigidMotion> shared;
+  for (const Drop& drop : drops_) {
+    const auto own = [&](const Net& net) { return drop.block.rows(net); };
+    shared.push_back(shared_motion({own(x), own(b), own(v), own(places), own(normals), own(u)}));
+  }
+  const auto cross = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
+    for (size_t d = 0; d < drops_.size(); ++d) {
+      const Vec3 middle = drops_[d].block.rows(x).colwise().mean().transpose();
+      for (const int i : drops_[d].*rows) {
+        const Vec3 whole = shared[d].velocity + shared[d].angular_velocity.cross(Vec3(at.row(i).transpose()) - middle);
+        const Eigen::RowVector3d with = whole.transpose() + along.row(i);
+        rest.row(i) += velocities.row(i) - with;
+        velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);
+      }
+    }
+  };
+  if (projection_) {
+    const Eigen::SparseMatrix<double>& values = projection_->values();
+    ranks_.replicate(w);
+    u = values * v;
+    const Net n = projection_->normals(x);
+    const Net free = values * collocation_.solve(w), along = along_interface(n, free);
+    rest = -free;
+    const Net slid = projection_->control_values(along);
+    cross(values * x, n, Net::Zero(n.rows(), 3), &Drop::places, u);
+    const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
+    return projection_->control_values(u - leak.asDiagonal() * n) + slid;
+  }
+  rest = Net::Zero(u.rows(), 3);
+  cross(places, normals, w, &Drop::points, u);
+  ranks_.replicate(u);
+  return collocation_.solve(u);
+}
+
+std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> axes) const {
+  if (axes.empty()) return {};
+  const Net normals = projection_ ? projection_->normals(x) : normals_at(x);
+  const Net places = (projection_ ? projection_->values() : sites_) * x;
+  std::vector<Net> all;
+  for (const Drop& drop : drops_) {
+    const Vec3 middle = drop.block.rows(x).colwise().mean().transpose();
+    for (const int k : axes) {
+      Net field = Net::Zero(places.rows(), 3);
+      for (const int i : projection_ ? drop.places : drop.points) {
+        const Vec3 turn = Vec3::Unit(k).cross(Vec3(places.row(i).transpose()) - middle), n = normals.row(i).transpose();
+        field.row(i) = (turn - n.dot(turn) * n).transpose();
+      }
+      if (!projection_) ranks_.replicate(field);
+      all.push_back(projection_ ? projection_->control_values(field) : collocation_.solve(field));
+    }
+  }
+  return all;
+}
+
+Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {
+  latest_.x = x;
+  const Net normals = normals_at(x);
+  if (!relaxed_) return combined(x, b, normals, v, {}, latest_.rest);
+  Net d(x.rows(), 3);
+  mesh_.load(x, own_elements_, d);
+  ranks_.replicate(d);
+  latest_.density = sites_ * mass_.solve(d);
+  return combined(x, b, normals, v, collocation_.solve(along_interface(normals, latest_.density)), latest_.rest);
+}
+
+void InterfaceMotion::linearise(const Net& x, const Net& b) {
+  x_ = x, flux_ = b;
+  normals_ = normals_at(x);
+  known_ = latest_.x.rows() == x.rows() && latest_.x == x ? latest_ : Latest();
+  if (relaxed_) tangent_.update(x, own_elements_);
+}
+
+Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
+  const double most = delta.cwiseAbs().maxCoeff();
+  const bool turns = known_.x.size() > 0 && most > 0;
+  const double aside = 1e-6 * x_.cwiseAbs().maxCoeff() / most;
+  Net there, change, density, rest;
+  if (turns) there = x_ + aside * delta, change = (normals_at(there) - normals_) / aside;
+  if (relaxed_) {
+    Net h(delta.rows(), 3);
+    tangent_.apply(delta, h);
+    ranks_.replicate(h);
+    density = along_interface(normals_, sites_ * mass_.solve(h));
+    if (turns) density -= turned(normals_, change, known_.density);
+    density = collocation_.solve(density);
+  }
+  const Net kept = combined(x_, flux_, normals_, dv, density, rest);
+  if (!turns) return kept;
+  if (projection_) {
+    const Net n = projection_->normals(x_);
+    return kept + projection_->control_values(turned(n, (projection_->normals(there) - n) / aside, known_.rest));
+  }
+  Net u = turned(normals_, change, known_.rest);
+  ranks_.replicate(u);
+  return kept + collocation_.solve(u);
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,158 @@
+#include "system/power_balance.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "quadrature/gauss.hpp"
+#include "surface/geometry.hpp"
+#include "system/collocation.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Two points a direction: between collocation sites the velocity errs like the square of a parabola, which the middle alone counts twice.
+const quadrature::TensorRule& rule() { return quadrature::tensor_gauss(2); }
+
+/// Of all elements, in their order.
+stokes::Sites places(const spline::Space& space) {
+  stokes::Sites sites;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
+    for (int q = 0; q < rule().size(); ++q) sites.push_back({{e, rule().s[q], rule().t[q]}});
+  return sites;
+}
+
+double product(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
+
+}  // namespace
+
+double turnover(double flow, double forces, double fluids) {
+  return (std::abs(flow) + std::abs(forces) + std::abs(fluids) + std::abs(flow + forces - fluids)) / 2;
+}
+
+void Powers::add_columns(Columns& to) const {
+  const double all = turnover(flow, forces, fluids);
+  to.add(flow, {"flow_power", "force length/time", "power that the flow puts in beyond what the outer fluid alone would take (6.11)"});
+  to.add(forces, {"force_power", "force length/time", "power of weights, of forces on membranes and bodies, and of contacts"});
+  to.add(fluids, {"fluid_dissipation", "force length/time", "power that the fluids turn into heat, beyond what the outer one alone would (6.12)"});
+  to.add(all > 0 ? left_over / all : 0, {"power_residual", "1", "what the balance of power lacks (6.13), over half the magnitudes of its terms"});
+}
+
+PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
+                           const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
+    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),
+      mass_(space), single_(stokes::Layer::Kernel::single_layer, space, places_, quadrature) {
+  single_.set_reference(unstressed, measured_on_present(capsule.particles()));
+  if (const std::vector<double> contrasts = viscosity_contrasts(capsule.particles()); !contrasts.empty())
+    double_.emplace(stokes::Layer::Kernel::double_layer, space, places_, quadrature, contrasts);
+  if (!wall) return;
+  single_.set_wall(*wall);
+  if (double_) double_->set_wall(*wall);
+}
+
+Powers PowerBalance::operator()(const Net& x, const Net& slope) {
+  const Net load = capsule_.load(x), v = capsule_.slides() || capsule_.viscous() ? capsule_.fluid_velocity(x) : slope;
+  const RigidParticles rigid = capsule_.rigid_at(x);
+  const Net measured = capsule_.measured_net(x);
+  const Net work = mass_.update(measured) * load, inside = density(v, rigid);
+  Powers powers;
+  powers.flow = of_flow(x, work, inside);
+  Net stored = Net::Zero(x.rows(), 3);
+  std::vector<int> all(space_.elements.size());
+  std::iota(all.begin(), all.end(), 0);
+  capsule_.membrane().load(x, all, stored);
+  capsule_.loads().add_stored_work(x, stored);
+  for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
+    const Particle& particle = capsule_.particles()[p];
+    if (particle.rigid) continue;
+    powers.membranes += capsule_.membrane_dissipation(x, v, p);
+    powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
+  }
+  const double done = product(work, v);  // to all surfaces by the fluids
+  powers.fluids = powers.flow - done;
+  powers.forces = powers.storing + powers.membranes - done;
+  powers.left_over = left_over(load, missed(x, v, inside, load), x, measured);
+  return powers;
+}
+
+/// In a duct's flow the pressure drop that the particles add does the work (2.7); others are of one gradient, as the walls of their tube move.
+double PowerBalance::of_flow(const Net& x, const Net& work, const Net& inside) {
+  const stokes::AmbientFlow& flow = capsule_.flow();
+  if (flow.duct()) {
+    const Tube& tube = *capsule_.tube();
+    const double drop = capsule_.response(x).pressure_drop;
+    return flow.amplitude() * tube.flow_rate(drop) * drop / tube.copies();
+  }
+  const Net flux = capsule_.geometry().volume_gradient(x);
+  const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+  double power = product(work, flow.velocities(x));
+  for (const Particle& particle : capsule_.particles()) {
+    const Mat3 moment = particle.block.rows(inside).transpose() * particle.block.rows(flux);
+    power -= 2 * viscosity_ * viscosity_contrast(particle) * strain.cwiseProduct(moment).sum();
+  }
+  return power;
+}
+
+/// int (Df - p n).r by Gauss' rule, p the mean of Df.n over each particle: a uniform pressure does no work, and what quadrature leaves of its
+/// layer counts for nothing.
+double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
+  const Net loads = values_ * load;
+  double sum = 0;
+  for (const Particle& particle : capsule_.particles()) {
+    double area = 0, pressure = 0, flux = 0;
+    const int first = particle.block.first_element * rule().size(), n = particle.block.n_elements * rule().size();
+    for (int i = first; i < first + n; ++i) {
+      const spline::Site& place = places_[static_cast<std::size_t>(i)].front();
+      const double weight = rule().weights[i % rule().size()];
+      const surface::Point at = surface::point(space_, x, place);
+      const Vec3 force = weight * surface::point(space_, measured, place).jacobian * loads.row(i).transpose(), lacks = left.row(i);
+      sum += force.dot(lacks);
+      area += weight * at.jacobian, pressure += force.dot(at.n), flux += weight * at.jacobian * at.n.dot(lacks);
+    }
+    sum -= pressure / area * flux;
+  }
+  return sum;
+}
+
+/// What the double layers are of: the velocity, and w of (2.23) of rigid bodies.
+Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
+  Net all = v;
+  for (std::size_t p = 0; p < capsule_.particles().size(); ++p)
+    if (rigid.holds(p) && rigid.density(p).size() > 0) capsule_.particles()[p].block.rows(all) = rigid.density(p);
+  return all;
+}
+
+/// v less the right-hand side of (2.22), at the places.
+Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
+  const stokes::AmbientFlow& flow = capsule_.flow();
+  if (const auto& cell = capsule_.cell()) {
+    single_.repeat(*cell);
+    if (double_) double_->repeat(*cell);
+    for (const Particle& particle : capsule_.particles()) {
+      const Vec3 shift = cell->shift(particle.block.rows(x).colwise().mean().transpose()), slower = flow.gradient(Vec3::Zero()) * shift;
+      particle.block.rows(x).rowwise() -= shift.transpose();
+      particle.block.rows(v).rowwise() -= slower.transpose();
+      if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
+    }
+  }
+  const std::vector<int> own = ranks_.share(static_cast<int>(places_.size()));
+  Net u = Net::Zero(static_cast<Eigen::Index>(places_.size()), 3), twice = u;
+  single_.place(x, capsule_.measure());
+  single_.apply(load, own, u);
+  u /= -viscosity_;
+  if (double_) {
+    double_->place(x);
+    double_->apply(density, own, twice);
+    u += twice;
+  }
+  const Net at = values_ * x;
+  if (Tube* tube = capsule_.tube()) {
+    Net answer(u.rows(), 3);
+    tube->velocity_at(at, capsule_.response(x), own, answer);
+    for (const int i : own) u.row(i) += answer.row(i);
+  }
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  return values_ * v - flow.velocities(at) - u;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,219 @@
+#include "system/shape_coordinates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "system/agreement.hpp"
+#include "system/collocation.hpp"
+#include "system/interface_motion.hpp"
+#include "system/solids/rigid_motion.hpp"
+
+namespace tanktread::coupling {
+
+ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
+                                   const VelocityProjection* projection, const Vec3& parity)
+    : parity_(symmetry, parity), sites_(collocation_matrix(space)), collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
+      projection_(projection) {
+  collocation_.factor(sites_);
+  for (const int i : symmetry.fundamental()) {
+    const auto holds = [i](const Particle& particle) { return particle.block.holds(i); };
+    const Particle& particle = *std::ranges::find_if(particles, holds);
+    if (particle.rigid) continue;
+    if (particle.slides()) {
+      const Vec3 normal = site_normal(space, x, space.collocation[static_cast<std::size_t>(i)]);
+      add_along(i, normal);
+      if (parity_.scalar_signs()[i] != 0) all_.push_back({i, projection_ ? Vec3(Vec3::Zero()) : normal});
+      continue;
+    }
+    for (int c = 0; c < 3; ++c)
+      if (parity_.signs()(i, c) != 0) all_.push_back({i, Vec3::Unit(c)});
+  }
+  if (projection_) {
+    normals_ = projection_->normals(x);
+    for (std::size_t i = 0; i < projection_->sites().size(); ++i) {
+      const int e = projection_->sites()[i].front().element;
+      const auto holds = [e](const Particle& one) { return e >= one.block.first_element && e < one.block.first_element + one.block.n_elements; };
+      if (!std::ranges::find_if(particles, holds)->slides()) normals_.row(static_cast<Eigen::Index>(i)).setZero();
+    }
+  }
+  for (const Particle& particle : particles)
+    if (particle.rigid) add_rigid(particle.block, x);
+  for (const Particle& particle : particles)
+    if (particle.slides()) carry_whole(particle.block);
+}
+
+void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
+  const Net own = block.rows(x);
+  const Vec3 centre = own.colwise().mean().transpose();
+  const std::size_t first = rigid_.size();
+  for (int k = 0; k < 6; ++k) {
+    Net field = Net::Zero(x.rows(), 3);
+    block.rows(field) = rigid_velocity(own, unit_motion(k), centre);
+    for (std::size_t other = first; other < rigid_.size(); ++other) field -= rigid_[other].cwiseProduct(field).sum() * rigid_[other];
+    rigid_.push_back(field / field.norm());
+  }
+}
+
+/// The directions across a normal that the parity leaves to a site.
+void ShapeCoordinates::add_along(int site, const Vec3& normal) {
+  const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
+  const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> directions(left.asDiagonal() * tangential * left.asDiagonal());
+  for (int k = 0; k < 3; ++k)
+    if (directions.eigenvalues()[k] > 0.5) along_.push_back({site, directions.eigenvectors().col(k)});
+}
+
+void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
+  const auto n = static_cast<Eigen::Index>(along_.size());
+  if (n == 0) return;
+  dynamics.velocity(x);
+  dynamics.linearise(x);
+  if (dynamics.mesh_motion(x).rows() == 0) return;
+  Eigen::MatrixXd slides(n, n), drawn(n, shape_size());
+  for (Eigen::Index k = 0; k < n; ++k) slides.col(k) = coordinates_along(dynamics.mesh_motion(along(Eigen::VectorXd::Unit(n, k))));
+  for (Eigen::Index k = 0; k < shape_size(); ++k)
+    drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
+  const double scale = slides.diagonal().cwiseAbs().mean();
+  for (const Net& field : dynamics.relabellings(x)) {  // as (4.17) holds them
+    if (!admits(field)) continue;
+    const Eigen::VectorXd turn = coordinates_along(field).normalized();
+    slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
+    drawn -= turn * (turn.transpose() * drawn);
+  }
+  following_ = -slides.partialPivLu().solve(drawn);
+  take_first({following_.data(), static_cast<std::size_t>(following_.size())});
+}
+
+/// Translations of one drop become what they are, tangential parts included.
+void ShapeCoordinates::carry_whole(const spline::Block& block) {
+  for (int c = 0; c < 3; ++c) {
+    Net field = Net::Zero(sites_.rows(), 3);
+    field.middleRows(block.first_point, block.n_points).col(c).setOnes();
+    Net symmetric = field;
+    parity_.complete(symmetric);
+    if (symmetric != field) continue;
+    Eigen::VectorXd y = coordinates_of_shape(field);
+    for (const Translation& other : translations_) {
+      const double part = other.coordinates.dot(y);
+      y -= part * other.coordinates, field -= part * other.field;
+    }
+    const double size = y.norm();
+    translations_.push_back({y / size, field / size, {}});
+  }
+  for (Translation& one : translations_) one.rest = one.field - across(one.coordinates);
+}
+
+void ShapeCoordinates::add_fields(CoupledMotion& motion, const Net& y) {
+  motion_ = &motion, state_ = y;
+  std::vector<Eigen::Triplet<double>> entries;
+  int first = 0, n = 0;
+  for (const CoupledMotion::On& on : motion.fields()) {
+    const auto size = static_cast<int>(on.field->size());
+    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(size));
+    for (int i = 0; i < size; ++i)  // of a scalar of control points one column for each fundamental point, with its images
+      if (!on.field->of_points()) columns[static_cast<std::size_t>(i)].emplace_back(i, 1);
+      else if (const double sign = parity_.scalar_signs()[i]; sign != 0) columns[static_cast<std::size_t>(parity_.source(i))].emplace_back(i, sign);
+    for (const auto& column : columns) {
+      for (const auto& [row, sign] : column) entries.emplace_back(first + row, n, sign / std::sqrt(static_cast<double>(column.size())));
+      n += !column.empty();
+    }
+    first += size;
+  }
+  fields_.resize(3 * (motion.n_rows() - n_points()), n);
+  fields_.setFromTriplets(entries.begin(), entries.end());
+}
+
+Net ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
+  const Net d = of_shape(y.head(shape_size()));
+  if (!motion_) return d;
+  Net change = motion_->slid(state_, d - across(y));
+  change.topRows(n_points()) = d;
+  Eigen::Map<Eigen::VectorXd>(change.data() + 3 * n_points(), fields_.rows()) += fields_ * y.tail(fields_.cols());
+  return change;
+}
+
+Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
+  Net d = across(y);
+  for (const Translation& one : translations_) d += one.coordinates.dot(y) * one.rest;
+  if (following_.size() > 0) d += along(following_ * y);
+  return d;
+}
+
+/// The field with these coordinates that has no others.
+Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
+  Net at_sites = Net::Zero(sites_.rows(), 3);
+  Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());
+  for (std::size_t k = 0; k < all_.size(); ++k)
+    if (projected(all_[k]))
+      outward[all_[k].site] = y[static_cast<Eigen::Index>(k)];
+    else
+      at_sites.row(all_[k].site) += y[static_cast<Eigen::Index>(k)] * all_[k].direction.transpose();
+  parity_.complete(at_sites);
+  Net d = collocation_.solve(at_sites);
+  if (projection_) {
+    parity_.complete(outward);
+    d += projection_->control_values((projection_->values() * outward).asDiagonal() * normals_);
+  }
+  for (std::size_t k = 0; k < rigid_.size(); ++k) d += y[static_cast<Eigen::Index>(all_.size() + k)] * rigid_[k];
+  return d;
+}
+
+/// The field with these coordinates along the interface whose y are 0.
+Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
+  Net at_sites = Net::Zero(sites_.rows(), 3);
+  for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();
+  parity_.complete(at_sites);
+  const Net field = collocation_.solve(at_sites);
+  return projection_ ? field - across(coordinates_of_shape(field)) : field;
+}
+
+Eigen::VectorXd ShapeCoordinates::coordinates_along(const Net& field) const {
+  const Net at_sites = sites_ * field.topRows(n_points());
+  Eigen::VectorXd t(static_cast<Eigen::Index>(along_.size()));
+  for (std::size_t k = 0; k < along_.size(); ++k) t[static_cast<Eigen::Index>(k)] = at_sites.row(along_[k].site).dot(along_[k].direction);
+  return t;
+}
+
+bool ShapeCoordinates::admits(const Net& field) const {
+  constexpr double nearly = 1e-3;
+  const Net own = field.topRows(n_points());
+  Net completed = own;
+  parity_.complete(completed);
+  return (completed - own).norm() <= nearly * own.norm();
+}
+
+Net ShapeCoordinates::admitted(Net field) const {
+  Net own = field.topRows(n_points());
+  parity_.complete(own);
+  field.topRows(n_points()) = own;
+  Eigen::Map<Eigen::VectorXd> rest(field.data() + own.size(), field.size() - own.size());
+  if (rest.size() > 0) rest = fields_ * (fields_.transpose() * rest).eval();
+  return field;
+}
+
+Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
+  const Net own = field.topRows(n_points());
+  Eigen::VectorXd y(size());
+  y.head(shape_size()) = coordinates_of_shape(own);
+  if (!motion_) return y;
+  Net rest = -motion_->slid(state_, own - across(y));
+  rest.topRows(field.rows()) += field;
+  y.tail(fields_.cols()) = fields_.transpose() * Eigen::Map<const Eigen::VectorXd>(rest.data() + own.size(), fields_.rows());
+  return y;
+}
+
+Eigen::VectorXd ShapeCoordinates::coordinates_of_shape(const Net& field) const {
+  const Net at_sites = sites_ * field;
+  Eigen::VectorXd y(shape_size()), outward;
+  if (projection_) outward = projection_->scalar_values((projection_->values() * field).cwiseProduct(normals_).rowwise().sum());
+  for (std::size_t k = 0; k < all_.size(); ++k)
+    y[static_cast<Eigen::Index>(k)] = projected(all_[k]) ? outward[all_[k].site] : at_sites.row(all_[k].site).dot(all_[k].direction);
+  for (std::size_t k = 0; k < rigid_.size(); ++k) y[static_cast<Eigen::Index>(all_.size() + k)] = rigid_[k].cwiseProduct(field).sum();
+  return y;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,149 @@
+#include "system/solids/channel_flow.hpp"
+
+#include <numeric>
+
+#include "surface/geometry.hpp"
+#include "surface/symmetry.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+constexpr Eigen::Index few = 64;    // points that each rank does by itself
+constexpr double sharpness = 1e-2;  // tolerance over that of other layers
+}
+
+ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
+                         const std::string& wall_solver)
+    : DuctFlow(surface::Channel(options).tube(surface::Channel(options).start()), viscosity, mean_velocity),
+      channel_(std::make_shared<const surface::Channel>(options)),
+      surface_(std::make_shared<const surface::TubeWall>(surface::channel_wall(channel_, options.azimuthal_elements))),
+      options_(options),
+      quadrature_(quadrature),
+      wall_solver_(wall_solver) {
+  ends_.push_back(section(channel_->start(), 1));
+  ends_.push_back(section(channel_->end(), -1));
+}
+
+/// The plane at s, with the flow of the straight duct of that section and of this flow rate.
+stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
+  const surface::Channel::Section at = channel_->section(s);
+  const double area = channel_->outline().area() * at.factor.prod();
+  surface::TubeOptions tube = channel_->tube(s);
+  std::shared_ptr<const stokes::DuctProfile> profile;
+  const surface::Outline outline = channel_->outline(s);
+  profile = stokes::duct_profile(tube, outline);
+  return {DuctFlow(outline, profile, viscosity(), flow_rate() / area), at, inward};
+}
+
+std::shared_ptr<Wall> ChannelFlow::wall(Phases* phases) const {
+  if (!wall_) wall_ = std::make_shared<Wall>(*surface_, quadrature_, phases, surface::Symmetry(), wall_solver_);
+  return wall_;
+}
+
+std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry& particle) const {
+  if (wall_ && wall_->symmetry().order() == particle.order()) return wall_;
+  const Net* net[] = {&surface_->net};
+  std::vector<surface::Image> images;
+  for (const surface::Image& image : particle.images()) images.push_back(surface::image(surface_->space, net, image.signs).value());
+  const surface::Symmetry symmetry = images.empty() ? surface::Symmetry() : surface::Symmetry(images, surface_->net);
+  wall_ = std::make_shared<Wall>(*surface_, quadrature_, &phases, symmetry, wall_solver_);
+  return wall_;
+}
+
+Net ChannelFlow::ends(const Net& x) const { return ends_[0].velocities(x) + ends_[1].velocities(x); }
+
+const ChannelFlow::Solved& ChannelFlow::solved() const {
+  if (solved_) return *solved_;
+  const std::shared_ptr<Wall> wall = this->wall();
+  Solved solved;
+  const std::vector<int>& own = wall->own_targets();
+  Net at(static_cast<Eigen::Index>(own.size()), 3), of_ends(wall->targets().rows(), 3);
+  for (std::size_t k = 0; k < own.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = wall->targets().row(own[k]);
+  const Net found = ends(at);
+  for (std::size_t k = 0; k < own.size(); ++k) of_ends.row(own[k]) = found.row(static_cast<Eigen::Index>(k));
+  const Net without = viscosity() * wall->solve(wall->collocated(of_ends)), &with = wall->pumped();
+  const double middle = (channel_->start() + channel_->end()) / 2;
+  const stokes::DuctEnd::Points points = section(middle, 1).points();
+  const Vec3 along = channel_->section(middle).along;
+  const auto rate = [&](const Net& v) { return points.area.dot(v * along); };
+  const double given = rate(velocities(points.x, without, 0, true)), pumped = rate(velocities(points.x, with, 1, false));
+  solved.pressure_drop = (flow_rate() - given) / pumped;
+  solved.traction = without + solved.pressure_drop * with;
+  solved_ = std::make_shared<const Solved>(std::move(solved));
+  return *solved_;
+}
+
+quadrature::Options ChannelFlow::sharper() const {
+  quadrature::Options options = quadrature_;
+  options.tolerance = std::max(1e-10, sharpness * quadrature_.tolerance);
+  return options;
+}
+
+/// What wall and pressure drop do to the fluid, and the ends where they count; many points are shared among the ranks.
+Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, bool with_ends) const {
+  const std::shared_ptr<Wall> wall = this->wall();
+  if (!layer_) {
+    layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), sharper());
+    layer_->place(surface_->net);
+  }
+  const Ranks& ranks = wall->ranks();
+  const bool shared = ranks.size() > 1 && x.rows() >= few;
+  std::vector<int> own = shared ? ranks.share(static_cast<int>(x.rows())) : std::vector<int>(static_cast<std::size_t>(x.rows()));
+  if (!shared) std::iota(own.begin(), own.end(), 0);
+  Net u(x.rows(), 3), v = Net::Zero(x.rows(), 3), at(static_cast<Eigen::Index>(own.size()), 3);
+  layer_->apply(traction, x, own, u);
+  for (std::size_t k = 0; k < own.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(own[k]);
+  Net rest = pressure_drop / viscosity() * wall->inlet().integral(at);
+  if (with_ends) rest += ends(at);
+  for (std::size_t k = 0; k < own.size(); ++k) v.row(own[k]) = rest.row(static_cast<Eigen::Index>(k)) - u.row(own[k]) / viscosity();
+  if (shared) ranks.add({v.data(), static_cast<std::size_t>(v.size())});
+  return v;
+}
+
+Net ChannelFlow::at(const Net& x) const {
+  const Solved& known = solved();
+  return velocities(x, known.traction, known.pressure_drop, true);
+}
+
+Net ChannelFlow::velocities(const Net& x) const {
+  if (x.rows() < few) return at(x);
+  if (latest_at_.rows() != x.rows() || latest_at_ != x) latest_ = at(x), latest_at_ = x;
+  return latest_;
+}
+
+std::vector<Mat3> ChannelFlow::gradients(const Net& x) const {
+  const double h = 0.01 * channel_->smallest_radius();
+  std::vector<Mat3> all(static_cast<std::size_t>(x.rows()));
+  const Net here = velocities(x);
+  for (int d = 0; d < 3; ++d) {
+    const Eigen::RowVector3d step = h * Eigen::RowVector3d::Unit(d);
+    const Net slope = (at(x.rowwise() + step) - here) / h;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) all[static_cast<std::size_t>(i)].col(d) = slope.row(i).transpose();
+  }
+  return all;
+}
+
+double ChannelFlow::pressure_drop() const { return solved().pressure_drop; }
+
+double ChannelFlow::extra_pressure_drop() const { return pressure_drop() - pressure_gradient() * (channel_->end() - channel_->start()); }
+
+const Net& ChannelFlow::wall_traction() const { return solved().traction; }
+
+std::vector<double> ChannelFlow::flow_rates_at(const std::vector<double>& s) const {
+  std::vector<stokes::DuctEnd::Points> points;
+  Eigen::Index n = 0;
+  for (const double at : s) points.push_back(section(at, 1).points()), n += points.back().x.rows();
+  Net all(n, 3);
+  n = 0;
+  for (const stokes::DuctEnd::Points& of : points) all.middleRows(n, of.x.rows()) = of.x, n += of.x.rows();
+  const Net v = at(all);
+  std::vector<double> rates;
+  n = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    rates.push_back(points[k].area.dot(v.middleRows(n, points[k].x.rows()) * channel_->section(s[k]).along));
+    n += points[k].x.rows();
+  }
+  return rates;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,166 @@
+#include "system/solids/rigid_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace tanktread::coupling {
+
+namespace {
+
+constexpr int affine_modes = 11, quadratic_modes = 18;
+
+/// The fields y_b y_c e_i, b <= c.
+struct UnitQuadratic {
+  int i, b, c;
+};
+UnitQuadratic unit_quadratic(int k) {
+  constexpr int first[] = {0, 0, 0, 1, 1, 2}, second[] = {0, 1, 2, 1, 2, 2};
+  return {k / 6, first[k % 6], second[k % 6]};
+}
+
+/// The components of a trace-free symmetric matrix in the unit strains.
+Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
+  Eigen::Matrix<double, 5, 1> c;
+  c << e(0, 0), e(0, 0) + e(1, 1), e(0, 1), e(0, 2), e(1, 2);
+  return c;
+}
+
+Eigen::Quaterniond quaternion(const Net& place) { return {place(2, 0), place(1, 0), place(1, 1), place(1, 2)}; }
+
+/// Half the curl of a flow with gradient L_ij = dv_i/dx_j.
+Vec3 angular_velocity(const Mat3& l) { return 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1)); }
+
+}  // namespace
+
+Mat3 unit_strain(int k) {
+  Mat3 e = Mat3::Zero();
+  if (k < 2) {
+    e(k, k) = 1;
+    e(k + 1, k + 1) = -1;
+  } else {
+    const int i = k == 4 ? 1 : 0, j = k == 2 ? 1 : 2;
+    e(i, j) = e(j, i) = 1;
+  }
+  return e;
+}
+
+Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& p) {
+  Mat3 e;
+  e << (2 * p[0] + p[1]) / 3, p[2] / 2, p[3] / 2,  //
+      p[2] / 2, (p[1] - p[0]) / 3, p[4] / 2,       //
+      p[3] / 2, p[4] / 2, -(p[0] + 2 * p[1]) / 3;
+  return e;
+}
+
+Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) {
+  Net u(x.rows(), 3);
+  for (Eigen::Index a = 0; a < u.rows(); ++a)
+    u.row(a) = (motion.velocity + motion.angular_velocity.cross(x.row(a).transpose() - centre)).transpose();
+  return u;
+}
+
+RigidModes::RigidModes(Resistance& body, const Vec3& centre, bool quadratic) : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
+  const Net from_centre = body.surface().rowwise() - centre.transpose();
+  const auto field = [&](int k) -> Net {
+    if (k < 6) return rigid_velocity(body.surface(), unit_motion(k), centre);
+    if (k < affine_modes) return from_centre * unit_strain(k - 6);
+    const UnitQuadratic q = unit_quadratic(k - affine_modes);
+    return body.interpolated([&](const Net& x) -> Net {
+      Net u = Net::Zero(x.rows(), 3);
+      u.col(q.i) = (x.col(q.b).array() - centre[q.b]) * (x.col(q.c).array() - centre[q.c]);
+      return u;
+    });
+  };
+  for (int k = 0; k < response.cols(); ++k) {
+    density.push_back(body.force_density(field(k)));
+    response.col(k) << body.force(density.back()), body.torque(density.back(), centre);
+    stresslet.push_back(body.stresslet(density.back(), centre));
+  }
+}
+
+Net placed(const Vec3& centre) {
+  Net place = Net::Zero(3, 3);
+  place.row(0) = centre.transpose();
+  place(2, 0) = 1;
+  return place;
+}
+
+Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
+
+Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
+
+FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+    : LoneRigidBody(body.surface(), centre, radius, flow, driven), modes_(body, centre, !flow.affine()) {
+  mobility_ = modes_.response.leftCols<6>().inverse();
+  drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
+}
+
+/// Amplitudes of the modes in the body's axes: what the body moves by relative to the flow, and the strain that it resists.
+Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
+  const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
+  Eigen::VectorXd a(modes_.response.cols());
+  a.segment<5>(6) = -strain_components(0.5 * (l + l.transpose()));
+  if (!flow_.affine()) {
+    const Vec3 d = turn.transpose() * flow_.direction();
+    const Mat3 h = turn.transpose() * flow_.curvature() * turn;
+    for (int k = 0; k < quadratic_modes; ++k) {
+      const auto [i, b, c] = unit_quadratic(k);
+      a[affine_modes + k] = -(b == c ? 1 : 2) * d[i] * h(b, c);
+    }
+  }
+  Eigen::Matrix<double, 6, 1> driven;
+  driven << turn.transpose() * driven_.force, turn.transpose() * driven_.torque;
+  a.head<6>() = mobility_ * driven - drift_ * a.tail(a.size() - 6);
+  return a;
+}
+
+RigidMotion FreeBody::motion(const Net& place) const {
+  const Eigen::VectorXd a = amplitudes(place);
+  const Mat3 turn = rotation_of(place);
+  const Vec3 centre = centre_of(place);
+  return {flow_.velocity(centre) + turn * a.segment<3>(0), angular_velocity(flow_.gradient(centre)) + turn * a.segment<3>(3)};
+}
+
+Net LoneRigidBody::velocity(const Net& place) {
+  ++evaluations_;
+  const RigidMotion now = motion(place);
+  const Eigen::Quaterniond q = quaternion(place);
+  const Eigen::Quaterniond rate = Eigen::Quaterniond(0, now.angular_velocity[0], now.angular_velocity[1], now.angular_velocity[2]) * q;
+  Net slope = Net::Zero(3, 3);
+  slope.row(0) = now.velocity.transpose();
+  slope.row(1) = 0.5 * rate.vec().transpose();
+  slope(2, 0) = 0.5 * rate.w();
+  return slope;
+}
+
+void LoneRigidBody::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
+
+double LoneRigidBody::norm(const Net& displacement) const {
+  return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
+}
+
+Net LoneRigidBody::surface(const Net& place) const {
+  Net x = (surface_.rowwise() - centre_.transpose()) * rotation_of(place).transpose();
+  x.rowwise() += place.row(0);
+  return x;
+}
+
+Net FreeBody::force_density(const Net& place) const {
+  const Eigen::VectorXd a = amplitudes(place);
+  Net f = Net::Zero(surface_.rows(), 3);
+  for (Eigen::Index k = 0; k < a.size(); ++k) f += a[k] * modes_.density[static_cast<size_t>(k)];
+  return f * rotation_of(place).transpose();
+}
+
+Mat3 FreeBody::stresslet(const Net& place) const {
+  const Eigen::VectorXd a = amplitudes(place);
+  Mat3 s = Mat3::Zero();
+  for (Eigen::Index k = 0; k < a.size(); ++k) s -= a[k] * modes_.stresslet[static_cast<size_t>(k)];
+  const Mat3 turn = rotation_of(place);
+  return turn * s * turn.transpose();
+}
+
+}  // namespace tanktread::coupling

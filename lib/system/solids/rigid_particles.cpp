@@ -1,0 +1,200 @@
+#include "system/solids/rigid_particles.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "base/small_matrices.hpp"
+#include "membrane/mass.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// r x as a matrix.
+Mat3 cross(const Vec3& r) {
+  Mat3 matrix;
+  matrix << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
+  return matrix;
+}
+
+}  // namespace
+
+RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature,
+                               bool solved_here) {
+  for (const Particle& particle : particles) {
+    of_particle_.push_back(particle.rigid ? static_cast<int>(bodies_.size()) : -1);
+    if (!particle.rigid) continue;
+    Body& body = bodies_.emplace_back();
+    body.block = particle.block;
+    body.rigid = *particle.rigid;
+    body.radius = particle.radius, body.viscosity = viscosity;
+    const Net x = particle.block.rows(rest);
+    body.rest_centre = body.centre = surface::measures(*particle.space, x).centroid;
+    body.rest = x.rowwise() - body.centre.transpose();
+    if (!solved_here) continue;
+    const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
+      return other.lacking && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
+    });
+    body.lacking = alike == bodies_.end() ? std::make_shared<const OwnLacking>(*particle.space, x, quadrature)
+                                          : alike->lacking;
+    const Eigen::SparseMatrix<double> mass = membrane::MassMatrix(*particle.space, 8).update(x);
+    body.weight = mass * Eigen::VectorXd::Ones(x.rows());
+    body.moment = mass * body.rest;
+    body.first = body.moment.colwise().sum().transpose();
+    body.second = body.moment.transpose() * body.rest;
+    const Mat3 turning = body.second.trace() * Mat3::Identity() - body.second;
+    body.inertia << body.weight.sum() * Mat3::Identity(), -cross(body.first), cross(body.first), turning;
+  }
+}
+
+bool RigidParticles::prescribed() const {
+  return std::ranges::any_of(bodies_, [](const Body& body) { return body.rigid.prescribed; });
+}
+
+void RigidParticles::place(Net& x) {
+  if (!x.allFinite()) return;
+  for (Body& body : bodies_) {
+    auto rows = body.block.rows(x);
+    const Eigen::RowVector3d mean = rows.colwise().mean(), rest_mean = body.rest.colwise().mean();
+    body.turn = nearest_rotation((rows.rowwise() - mean).transpose() * (body.rest.rowwise() - rest_mean));
+    body.centre = (mean - rest_mean * body.turn.transpose()).transpose();
+    rows = (body.rest * body.turn.transpose()).rowwise() + body.centre.transpose();
+  }
+}
+
+RigidMotion RigidParticles::Body::carrying(const Vec3& f, const Vec3& t) const {
+  Motions right;
+  right << turn.transpose() * f, turn.transpose() * t;
+  const Motions motions = inertia.partialPivLu().solve(right);
+  return {turn * motions.head<3>(), turn * motions.tail<3>()};
+}
+
+RigidMotion RigidParticles::Body::mean(const Net& w) const {
+  const auto rows = block.rows(w);
+  const Mat3 moments = turn * (moment.transpose() * rows);  // int r w
+  return carrying(rows.transpose() * weight, Vec3(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0)));
+}
+
+Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velocity(rest * turn.transpose(), of, Vec3::Zero()); }
+
+RigidMotion RigidParticles::Body::load() const { return carrying(force, torque); }
+
+void RigidParticles::push(const Net& work) {
+  for (Body& body : bodies_) body.pushed = work.size() > 0 ? Net(body.block.rows(work)) : Net();
+}
+
+Rigid RigidParticles::Body::given() const {
+  Rigid all = rigid;
+  all.motion.velocity -= faster;
+  for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
+    const Vec3 here = pushed.row(a).transpose();
+    all.force += here;
+    all.torque += Vec3(turn * rest.row(a).transpose()).cross(here);
+  }
+  return all;
+}
+
+void RigidParticles::add_load(Net& load) const {
+  for (const Body& body : bodies_)
+    if (const Rigid given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.carrying(given.force, given.torque));
+}
+
+Net RigidParticles::Body::lacking_of(const RigidMotion& load) const {
+  const Vec3 a = turn.transpose() * load.velocity, b = turn.transpose() * load.angular_velocity;
+  Net sum = Net::Zero(rest.rows(), 3);
+  for (int k = 0; k < 3; ++k) sum += a[k] * lacking->loads[static_cast<std::size_t>(k)] + b[k] * lacking->loads[static_cast<std::size_t>(3 + k)];
+  return sum * turn.transpose();
+}
+
+Net RigidParticles::Body::lacking_of(const Net& w) const {
+  if (lacking->density.size() == 0) return Net::Zero(rest.rows(), 3);
+  const Net own = block.rows(w) * turn;
+  const Eigen::VectorXd sum = lacking->density * Eigen::Map<const Eigen::VectorXd>(own.data(), own.size());
+  return Eigen::Map<const Net>(sum.data(), rest.rows(), 3) * turn.transpose();
+}
+
+void RigidParticles::add_lacking(Net& v) const {
+  for (const Body& body : bodies_)
+    if (const Rigid given = body.given(); !given.prescribed)
+      body.block.rows(v) += body.lacking_of(body.carrying(given.force, given.torque)) / body.viscosity;
+}
+
+void RigidParticles::subtract_prescribed(Net& v) const {
+  for (const Body& body : bodies_)
+    if (body.rigid.prescribed) body.block.rows(v) -= body.field(body.given().motion);
+}
+
+void RigidParticles::complete(const Net& w, Net& v) const {
+  for (const Body& body : bodies_) {
+    body.block.rows(v) += body.lacking_of(w) - Net(body.block.rows(w));
+    const RigidMotion mean = body.mean(w);
+    body.block.rows(v) += body.rigid.prescribed ? Net(body.lacking_of(mean) / body.radius) : body.field(mean);
+  }
+}
+
+Net RigidParticles::completing_load(const Net& w) const {
+  Net load = Net::Zero(w.rows(), 3);
+  for (const Body& body : bodies_)
+    if (body.rigid.prescribed) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
+  return load;
+}
+
+void RigidParticles::enter(std::span<const Vec3> shifts, const Mat3& gradient) {
+  for (std::size_t p = 0; p < shifts.size(); ++p)
+    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].faster = gradient * shifts[p];
+}
+
+void RigidParticles::carry(std::size_t p, const Vec3& along, const Vec3& faster) {
+  if (!holds(p)) return;
+  Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
+  body.centre += along;
+  body.motion.velocity += faster;
+}
+
+void RigidParticles::move(Net& v) {
+  for (Body& body : bodies_) {
+    const RigidMotion mean = body.mean(v);
+    body.density = body.block.rows(v);
+    const Rigid given = body.given();
+    body.force = given.force, body.torque = given.torque;
+    if (body.rigid.prescribed) {
+      Motions of_body, integrals;
+      of_body << body.turn.transpose() * mean.velocity, body.turn.transpose() * mean.angular_velocity;
+      integrals = -body.viscosity / body.radius * body.inertia * of_body;
+      body.force = body.turn * integrals.head<3>(), body.torque = body.turn * integrals.tail<3>();
+    }
+    body.motion = body.rigid.prescribed ? given.motion : mean;
+    body.block.rows(v) = body.field(body.motion);
+  }
+}
+
+void RigidParticles::move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v) {
+  Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
+  body.motion = motion, body.force = force, body.torque = torque;
+  body.block.rows(v) = body.field(motion);
+}
+
+void RigidParticles::clear(Net& net) const {
+  for (const Body& body : bodies_) body.block.rows(net).setZero();
+}
+
+Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
+  const Body& of = body(p);
+  const Motions row = of.inertia.inverse().row(k).transpose();
+  Net functional = of.weight * row.head<3>().transpose();
+  for (Eigen::Index a = 0; a < functional.rows(); ++a) functional.row(a) += row.tail<3>().cross(Vec3(of.moment.row(a).transpose())).transpose();
+  return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
+}
+
+/// Of df = -(a + b x r).
+Mat3 RigidParticles::load_moment(std::size_t p) const {
+  const Body& of = body(p);
+  const RigidMotion load = of.load();
+  const Mat3 second = of.turn * of.second * of.turn.transpose();
+  return -(load.velocity * (of.turn * of.first).transpose() + cross(load.angular_velocity) * second);
+}
+
+}  // namespace tanktread::coupling

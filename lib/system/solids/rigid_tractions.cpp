@@ -1,0 +1,223 @@
+#include "system/solids/rigid_tractions.hpp"
+
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "surface/geometry.hpp"
+#include "system/solids/rigid_body.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+using Flat = Eigen::Map<const Eigen::VectorXd>;
+
+Flat flat(const Net& net) { return {net.data(), net.size()}; }
+
+Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
+
+/// The six unit motions of a body in its rows of six columns, at points or as control values.
+void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net own = block.rows(x);
+  for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
+}
+
+constexpr int strains = 5;
+
+/// The five unit strains of a body's sites.
+void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net from_centre = block.rows(at).rowwise() - centre.transpose();
+  for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
+}
+
+/// The motions, of those that are free, that take this much force and torque; 0 of the others.
+Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
+  if (free.empty()) return motion;
+  const Eigen::MatrixXd part = resistance(free, free);
+  const Eigen::VectorXd right = missing(free), solution = part.partialPivLu().solve(right);
+  motion(free) = solution;
+  return motion;
+}
+
+}  // namespace
+
+RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
+                               const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall,
+                               Tube* tube, Ranks& ranks)
+    : particles_(particles),
+      viscosity_(viscosity),
+      tube_(tube),
+      ranks_(ranks),
+      own_points_(ranks.share(space.n_points)),
+      between_(between_sites(space, rest)),
+      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
+      between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
+      sites_(collocation_matrix(space)),
+      mass_(space, 8),  // eight points: the area is no polynomial
+      krylov_(solvers.of(solvers.velocity)),
+      tolerance_(solvers.tolerance),
+      bodies_(particles.size()) {
+  for (stokes::Layer* layer : {&layer_, &between_layer_})
+    if (wall) layer->set_wall(*wall);
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    for (int k = 0; k < 6; ++k)
+      if (!particles[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
+}
+
+void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
+  for (stokes::Layer* layer : {&layer_, &between_layer_}) layer->repeat(cell);
+  repeats_ = true;
+}
+
+/// b and s (R c)/(b.c) of each body: any velocity with a flux makes the system regular; that away from the middle is one.
+void RigidTractions::make_regular(const Net& x, const Net& at) {
+  flux_ = outward_ = Net::Zero(x.rows(), 3);
+  for (const Particle& body : particles_) {
+    const Net own = body.block.rows(at), outward = own.rowwise() - own.colwise().mean();
+    body.block.rows(flux_) = surface::Geometry(*body.space).volume_gradient(body.block.rows(x));
+    body.block.rows(outward_) = 2 * body.radius / 3 / body.block.rows(flux_).cwiseProduct(outward).sum() * outward;
+  }
+}
+
+/// A of the bodies alone at the sites, made regular.
+Eigen::MatrixXd RigidTractions::system() {
+  const Eigen::Index n = flux_.size();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
+  stokes::Rows<double> rows;
+  layer_.assemble(own_points_, rows);
+  for (std::size_t i = 0; i < own_points_.size(); ++i) all.middleRows<3>(3 * own_points_[i]) = rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
+  ranks_.add({all.data(), static_cast<std::size_t>(all.size())});
+  for (const Particle& body : particles_) {
+    const Eigen::Index first = 3 * body.block.first_point, length = 3 * body.block.n_points;
+    all.block(first, first, length, length) += flat(outward_).segment(first, length) * flat(flux_).segment(first, length).transpose();
+  }
+  return all;
+}
+
+/// The same of all images of a lattice, times f.
+Net RigidTractions::images_of(const Net& f) {
+  Net u = Net::Zero(f.rows(), 3);
+  layer_.apply(f, own_points_, u);
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  for (const Particle& body : particles_)
+    body.block.rows(u) += body.block.rows(flux_).cwiseProduct(body.block.rows(f)).sum() * body.block.rows(outward_);
+  return u;
+}
+
+void RigidTractions::factor() {
+  factors_.reset();  // before there is another matrix
+  alone_ = system();
+  if (tube_)
+    factors_.emplace(alone_);
+  else
+    factors_.emplace(std::exchange(alone_, {}));
+}
+
+/// Of velocities at the sites, one a column, for the viscosity 1.
+Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
+  reports_.clear();
+  if (!repeats_ && !tube_) return factors_->solve(velocities);
+  const Eigen::Index n = velocities.rows();
+  const auto apply = [&](const double* in, double* out) {
+    const Net f = Eigen::Map<const Net>(in, n / 3, 3);
+    Eigen::Map<Net> u(out, n / 3, 3);
+    if (repeats_)
+      u = images_of(f);
+    else
+      u = as_net(alone_ * flat(f)) - viscosity_ * tube_->respond(f).velocity;
+  };
+  const auto precondition = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = factors_->solve(Eigen::Map<const Eigen::VectorXd>(in, n));
+  };
+  const LinearSystem system{{{"traction", n}}, apply, precondition};
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
+  for (Eigen::Index k = 0; k < all.cols(); ++k) {
+    if (velocities.col(k).isZero(0)) continue;
+    Eigen::VectorXd f = all.col(k);
+    reports_.push_back(krylov_.solve(system, velocities.col(k), f, tolerance_));
+    all.col(k) = f;
+  }
+  return all;
+}
+
+/// Amplitudes of unit motions: those that are given, and those with which force and torque are; `held`: forces and torques of bodies that stay.
+Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const Rigid& rigid = driven[p];
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    if (rigid.prescribed)
+      motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
+    else
+      given.segment<6>(first) << rigid.force, rigid.torque;
+  }
+  return motion + freed(free_, resistance, given - held - resistance * motion);
+}
+
+/// int N_A (v - v_inf - (1/mu) A f) dG, v that of these control values, v_inf at the places between the sites.
+Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
+  between_layer_.place(x);
+  Net u = Net::Zero(between_.values.rows(), 3);
+  const std::vector<int> own = ranks_.share(static_cast<int>(u.rows()));
+  between_layer_.apply(f, own, u);
+  if (tube_) {
+    Net answer(u.rows(), 3);
+    tube_->velocity_at(between_.values * x, tube_->respond(f), own, answer);
+    for (const int i : own) u.row(i) -= viscosity_ * answer.row(i);
+  }
+  ranks_.add({u.data(), static_cast<std::size_t>(u.size())});
+  return between_.weights * (between_.values * v - flow - u / viscosity_);
+}
+
+void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow) {
+  const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
+  layer_.place(x);
+  const Net at = sites_ * x;
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto column = static_cast<Eigen::Index>(6 * p);
+    set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
+    set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
+  }
+  velocities.col(m) = flat(flow.velocities(at));
+  make_regular(x, at);
+  factor();
+  const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
+
+  const Eigen::SparseMatrix<double>& mass = mass_.update(x);
+  Eigen::MatrixXd work(n, m);  // of a density with each unit motion
+  for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
+  const Eigen::MatrixXd resistance = work.transpose() * z;
+  Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
+  Eigen::VectorXd f = z * motion - of_all.col(m);
+  const Net between = flow.velocities(between_.values * x);
+  const Eigen::VectorXd v = fields * motion;
+  left_ = flat(left_over(x, as_net(f), as_net(v), between));
+  const Eigen::VectorXd lacks = of_all.transpose() * left_, lacking = lacks.head(m);
+  const Eigen::VectorXd change = freed(free_, resistance, -lacking);
+  motion += change;
+  f += z * change;
+  const Eigen::VectorXd integrals = work.transpose() * f + lacking;
+  density_ = as_net(f);
+  if (tube_ && flow.duct()) lacking_pressure_ = tube_->lacking_pressure(between_, between, flow.amplitude(), density_, lacks[m]);
+  const Net weighted = mass * density_;
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    const spline::Block& block = particles_[p].block;
+    bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
+                  block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
+  }
+  at_ = at;
+  centres_.assign(centres.begin(), centres.end());
+}
+
+Mat3 RigidTractions::moment(std::size_t p) {
+  if (tube_) return bodies_[p].moment;
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(left_.size(), strains);
+  set_unit_strains(at_, particles_[p].block, centres_[p], velocities);
+  return bodies_[p].moment + strain_of_products(viscosity_ * densities(velocities).transpose() * left_);
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,156 @@
+// Independent routes to the pressure drop, and the distance to the wall.
+
+#include <algorithm>
+
+#include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
+#include "system/collocation.hpp"
+#include "system/solids/tube_particle.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // of integrals over the wall beside large pressures: over the tolerance, and at most
+
+/// Points of a section between its centroid and its outline, as far as they are inside; `place` takes them into space.
+template <class Place>
+void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
+  const surface::Vec2 centre = outline.centroid();
+  for (int k = 0; k < outline.n_sides(); ++k)
+    for (const double u : outline.knots(k, std::max(2, 12 / outline.n_sides())))
+      for (const double share : {0.25, 0.5, 0.75, 0.9}) {
+        const surface::Vec2 p = centre + share * (outline.point(k, u) - centre);
+        if (outline.inside(p)) points.push_back(place(p));
+      }
+}
+
+/// Of both ends.
+std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
+  std::vector<Vec3> points;
+  for (const double s : {wall.start, wall.end}) {
+    if (!wall.channel) {
+      add_points_of_cap(wall.outline, [&](const surface::Vec2& p) { return Vec3(s, p[0], p[1]); }, points);
+      continue;
+    }
+    const surface::Channel::Section at = wall.channel->section(s);
+    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.across + p[1] * Vec3::UnitZ(); };
+    add_points_of_cap(wall.channel->outline(s), place, points);
+  }
+  return points;
+}
+
+std::vector<int> everybody(Eigen::Index n) {
+  std::vector<int> all(static_cast<std::size_t>(n));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  return all;
+}
+
+}  // namespace
+
+void Tube::weigh_flow() {
+  if (flow_weights_.size() > 0) return;
+  flow_weights_ = wall_->flow_weights();
+  force_weights_ = wall_->force_weights();
+  if (!wall_->iterates()) flow_of_wall_ = wall_->solve_transposed(flow_weights_);
+  own_flow_ = wall_->inlet().own_flow();
+  flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
+}
+
+/// The flow rate through the inlet is the transpose of c: of a force f at y it is f.c(y)/mu. So no point of the cap is needed.
+Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
+  Particle& particle = *particle_;
+  const double mu = viscosity(), dp = response.pressure_drop;
+  const double area = wall_->surface().outline.area();
+  const stokes::Cap& inlet = wall_->inlet();
+  weigh_flow();
+  double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
+  double force = area * dp - dot(force_weights_, response.wall_traction);
+  std::vector<double> value[3];
+  if (f.size() > 0) {
+    particle.single.values(f, value);
+    const auto& node = particle.single.nodes();
+    for (const double shift : particle.all_shifts())
+      for (std::size_t k = 0; k < value[0].size(); ++k) {
+        const Net at = (Net(1, 3) << node[0][k] + shift, node[1][k], node[2][k]).finished();
+        const Vec3 strength = particle.single.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
+        flow -= inlet.integral(at).row(0).dot(strength) / mu;
+        force -= strength[0];
+      }
+  }
+  if (v.size() > 0 && particle.dual) flow += dot(particle.flow_of_strength(inlet), particle.strength(v));
+  const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
+
+  Checks checks;
+  checks.flux = flow / flow_->flow_rate();
+  checks.force = force / (area * flow_->pressure_gradient() * flow_->radius());
+  checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
+  checks.pressure_by_flux = (dp - flow / flow_of_pressure_) / copies();
+  checks.pressure_by_force = (dp - force / force_of_pressure) / copies();
+  return checks;
+}
+
+Tube::Leak Tube::leak(const Net& f) {
+  const surface::TubeWall& wall = wall_->surface();
+  const auto [places, values, weights] = between_sites(wall.space, wall.net);
+  const Net at = values * wall.net;
+  const Response response = respond(f);
+  quadrature::Options options = particle_->parameters.quadrature;
+  options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
+  stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
+  layer.place(wall.net);
+  const std::vector<int> own = wall_->ranks().share(static_cast<int>(at.rows()));
+  Net of_wall(at.rows(), 3), of_load = of_wall, u = Net::Zero(at.rows(), 3);
+  layer.apply(response.wall_traction, own, of_wall);
+  particle_->single.apply(f, at, own, of_load);
+  for (const int i : own)
+    u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
+  wall_->ranks().add({u.data(), static_cast<std::size_t>(u.size())});
+  return {weights * u, checks(f, {}, response).flux * flow_->flow_rate()};
+}
+
+double Tube::work(const Leak& leak, const Response& of) const {
+  return dot(of.wall_traction, leak.velocity) - of.pressure_drop * leak.flow;
+}
+
+double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {
+  Particle& particle = *particle_;
+  const double mu = viscosity();
+  const std::vector<Vec3> points = points_of_caps(wall_->surface());
+  Net at(static_cast<Eigen::Index>(points.size()), 3), part = at;
+  for (std::size_t k = 0; k < points.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = points[k].transpose();
+  const std::vector<int> all = everybody(at.rows());
+  Net u = response.pressure_drop / mu * wall_->inlet().integral(at);
+  wall_->layer().apply(response.wall_traction, at, all, part);
+  u -= part / mu;
+  if (f.size() > 0) {
+    particle.single.apply(f, at, all, part);
+    particle.add_copies(particle.single, f, at, all, part);
+    u -= part / mu;
+  }
+  if (v.size() > 0 && particle.dual) {
+    particle.dual->apply(particle.strength(v), at, all, part);
+    particle.add_copies(*particle.dual, particle.strength(v), at, all, part);
+    u += part;
+  }
+  return u.rowwise().norm().maxCoeff();
+}
+
+bool Tube::inside(const Net& x, std::span<const int> rows) const {
+  const surface::TubeWall& wall = wall_->surface();
+  return std::ranges::all_of(rows, [&](int i) {
+    const Vec3 place = x.row(i).transpose();
+    return wall.channel ? wall.channel->inside(place) : wall.outline.inside(place.tail<2>());
+  });
+}
+
+double Tube::gap() const {
+  const surface::Patches patches(particle_->geometry.bezier(), particle_->shape);
+  if (fixed()) {
+    const double nearest = surface::closest_points(surface::ElementBoxes(patches), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap;
+    return inside(particle_->sites, everybody(particle_->sites.rows())) ? nearest : -nearest;
+  }
+  return surface::clearance(patches, wall_->surface().outline).gap;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,195 @@
+#include "system/solids/tube_particle.hpp"
+
+#include <span>
+
+#include "surface/partition.hpp"
+#include "system/collocation.hpp"
+
+namespace tanktread::coupling {
+
+using stokes::Layer;
+
+namespace {
+
+Net as_net(const std::vector<double> (&columns)[3]) {
+  Net net(static_cast<Eigen::Index>(columns[0].size()), 3);
+  for (int c = 0; c < 3; ++c) net.col(c) = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), net.rows());
+  return net;
+}
+
+void set_columns(const Net& net, std::vector<double> (&columns)[3]) {
+  for (int c = 0; c < 3; ++c) {
+    columns[c].resize(static_cast<std::size_t>(net.rows()));
+    Eigen::Map<Eigen::VectorXd>(columns[c].data(), net.rows()) = net.col(c);
+  }
+}
+
+}  // namespace
+
+Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& how)
+    : space(particle),
+      parameters(how),
+      geometry(particle),
+      collocation(collocation_matrix(particle)),
+      from_sites(how.direct),
+      single(Layer::Kernel::single_layer, particle, {}, how.quadrature) {
+  const surface::Symmetry& symmetry = parameters.symmetry;
+  if (symmetry.order() > 1) {
+    own = surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank()).points;
+    ranks.own(own, symmetry);
+  } else {
+    own = surface::share(space, surface::partition(space, ranks.size()), ranks.rank()).points;
+    ranks.own(own, space.n_points);
+  }
+  from_sites.factor(collocation);
+  for (int m = 1; m <= how.copies; ++m) shifts.insert(shifts.end(), {m * how.period, -m * how.period});
+  set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
+}
+
+void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
+  contrasts = of_points;
+  if (contrasts.isZero(0))
+    dual.reset();
+  else
+    dual.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
+}
+
+void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wall) {
+  centroid = wall.surface().channel ? 0 : geometry.measures(x).centroid[0];
+  shape = x;
+  shape.col(0).array() -= centroid;
+  sites = collocation * shape;
+  flow_of_strength_.resize(0, 3);
+  inlet = wall.inlet().integral(sites) / parameters.viscosity;
+  single.place(shape, measure);
+  if (dual) {
+    dual->place(shape);
+    find_nearest(wall.targets());
+    dual_on_wall = dual->near(wall.targets(), wall.own_targets());
+    wall_on_sites = wall.layer().near(sites, own);
+  }
+  weigh_pressure(flow, !wall.surface().channel);
+  pressure_of_load *= static_cast<double>(1 + shifts.size());
+  pressure_of_velocity *= static_cast<double>(1 + shifts.size());
+}
+
+void Tube::Particle::add_copies(Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u) {
+  Net part(at.rows(), 3), seen = at;
+  for (const double shift : shifts) {
+    seen.col(0) = at.col(0).array() - shift;
+    layer.apply(density, seen, rows, part);
+    for (const int i : rows) u.row(i) += part.row(i);
+  }
+}
+
+const Net& Tube::Particle::flow_of_strength(const stokes::Cap& end) {
+  if (flow_of_strength_.size() > 0) return flow_of_strength_;
+  const auto &node = dual->nodes(), &normal = dual->normals();
+  std::vector<double> flow[3];
+  for (auto& component : flow) component.assign(node[0].size(), 0.);
+  for (const double shift : all_shifts())
+    for (std::size_t k = 0; k < node[0].size(); ++k) {
+      const Vec3 one = end.double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
+      for (int c = 0; c < 3; ++c) flow[c][k] += one[c];
+    }
+  flow_of_strength_.resize(sites.rows(), 3);
+  for (int c = 0; c < 3; ++c) flow_of_strength_.col(c) = dual->moments(flow[c]);
+  return flow_of_strength_;
+}
+
+/// The weights of (2.7) over Q. In a straight tube v_inf and f_inf are those at the layers' nodes, so that no load lets the flow rate of the
+/// disturbance be other than 0; that of a channel, which takes an integral over its wall, is interpolated at the collocation points.
+void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
+  ambient = ambient_of(flow);
+  const auto n = static_cast<std::size_t>(single.n_nodes());
+  std::vector<double> flow_at[3], weighted(n);
+  if (straight) {
+    set_columns(flow.velocities(as_net(single.nodes())), flow_at);
+  } else {
+    interpolated_ambient = from_sites.solve(ambient);
+    single.values(interpolated_ambient, flow_at);
+  }
+  pressure_of_load = Net::Zero(sites.rows(), 3);
+  for (int c = 0; c < (straight ? 1 : 3); ++c) {
+    for (std::size_t k = 0; k < n; ++k) weighted[k] = single.weights()[k] * flow_at[c][k];
+    pressure_of_load.col(c) = single.moments(weighted) / flow.flow_rate();
+  }
+  if (!dual || !straight) return;
+  set_columns(flow.tractions(as_net(dual->nodes()), as_net(dual->normals())), flow_at);
+  pressure_of_velocity.resize(sites.rows(), 3);
+  for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = contrasts.cwiseProduct(dual->moments(flow_at[c])) / -flow.flow_rate();
+}
+
+/// Of a symmetric scene at the fundamental points, and their images.
+Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
+  const surface::Symmetry& symmetry = parameters.symmetry;
+  if (symmetry.order() == 1) return flow.velocities(sites);
+  const std::vector<int>& rows = symmetry.fundamental();
+  Net at(static_cast<Eigen::Index>(rows.size()), 3), all = Net::Zero(sites.rows(), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = sites.row(rows[k]);
+  const Net v = flow.velocities(at);
+  for (std::size_t k = 0; k < rows.size(); ++k) all.row(rows[k]) = v.row(static_cast<Eigen::Index>(k));
+  symmetry.complete(all);
+  return all;
+}
+
+void Tube::Particle::find_nearest(const Net& targets) {
+  nearest.resize(static_cast<std::size_t>(targets.rows()));
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    Eigen::Index at = 0;
+    (sites.rowwise() - targets.row(static_cast<Eigen::Index>(i))).rowwise().squaredNorm().minCoeff(&at);
+    nearest[i] = static_cast<int>(at);
+  }
+}
+
+Net Tube::Particle::nearest_values(const Net& v) const {
+  const Net at_sites = collocation * v;
+  Net values(static_cast<Eigen::Index>(nearest.size()), 3);
+  for (std::size_t i = 0; i < nearest.size(); ++i) values.row(static_cast<Eigen::Index>(i)) = at_sites.row(nearest[i]);
+  return values;
+}
+
+void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
+  using Targets = std::span<const int>;
+  const auto of_copies = [&](Layer& layer, const Net& at, bool itself) {
+    return [&, itself](Targets targets, stokes::Rows<float>& rows) {
+      rows.setZero(3 * static_cast<Eigen::Index>(targets.size()), 3 * space.n_points);
+      if (itself) layer.assemble(at, targets, rows);
+      stokes::Rows<float> part;
+      Net seen = at;
+      for (const double shift : shifts) {
+        seen.col(0) = at.col(0).array() - shift;
+        layer.assemble(seen, targets, part);
+        rows += part;
+      }
+    };
+  };
+  const auto on_wall = [&](Layer& layer) {
+    return [&](Targets targets, stokes::Rows<float>& rows) { wall.collocate<float>(targets, of_copies(layer, wall.targets(), true), rows); };
+  };
+  Net weights = Net::Zero(space.n_points, 3);
+  frozen.single.assemble(wall.own(), space.n_points, on_wall(single));
+  if (dual)
+    frozen.dual.assemble(wall.own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
+      on_wall(*dual)(targets, rows);
+      Eigen::Map<Eigen::RowVectorXd> sum(weights.data(), weights.size());
+      for (std::size_t k = 0; k < targets.size() && pressure_of_wall.size() > 0; ++k)
+        for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
+    });
+  if (!shifts.empty()) {
+    frozen.single_of_copies.assemble(own, space.n_points, of_copies(single, sites, false));
+    if (dual) frozen.dual_of_copies.assemble(own, space.n_points, of_copies(*dual, sites, false));
+  }
+  frozen.wall.assemble(own, wall.surface().space.n_points,
+                       [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
+  frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
+  if (pressure_of_wall.size() == 0) return;
+  ranks.add({weights.data(), static_cast<std::size_t>(weights.size())});
+  frozen.pressure_of_velocity = contrasts.asDiagonal() * weights;
+}
+
+stokes::Evaluations Tube::Particle::evaluations() const {
+  return dual ? single.evaluations() + dual->evaluations() : single.evaluations();
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,89 @@
+#include "system/solvers/block_system.hpp"
+
+#include <type_traits>
+#include <utility>
+
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// The four blocks in one array, of unknowns or of residuals.
+template <class Number>
+struct Parts {
+  using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
+  Rows velocity, wall_traction;
+  Number &pressure_drop, &multiplier;
+
+  Parts(const BlockSystem& system, Number* numbers) : Parts(numbers, system.tube.inlet_on_particle().rows(), system.tube.wall().space.n_points) {}
+  Parts(Number* numbers, Eigen::Index particle, Eigen::Index wall)
+      : velocity(numbers, particle, 3),
+        wall_traction(numbers + 3 * particle, wall, 3),
+        pressure_drop(numbers[3 * (particle + wall)]),
+        multiplier(numbers[3 * (particle + wall) + 1]) {}
+};
+using In = Parts<const double>;
+using Out = Parts<double>;
+
+/// The rows of (2.5) to (2.8).
+void product(const BlockSystem& s, const In& x, Out r) {
+  Tube& tube = s.tube;
+  const Net v = x.velocity, traction = x.wall_traction / s.unit;
+  const double drop = x.pressure_drop / s.unit;
+  Net answer = tube.wall_on_particle(traction) + drop * tube.inlet_on_particle();
+  if (tube.copies() > 1) answer += tube.copies_on_particle({}, v);
+  r.velocity = s.viscous(v) - s.control_values(answer);
+  r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.velocity_on_wall(v);
+  r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of({}, v);
+  r.multiplier = x.multiplier;
+  if (s.flux.size() == 0) return;
+  r.velocity += x.multiplier * s.normal;
+  r.multiplier = dot(s.flux, v) / dot(s.flux, s.normal);
+}
+
+/// Velocity and multiplier with B = 1; then the pressure drop and the traction, with what the ones before do to them or without.
+void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
+  x.velocity = r.velocity;
+  x.multiplier = r.multiplier;
+  if (s.flux.size() > 0) {
+    x.multiplier = dot(s.flux, r.velocity) / dot(s.flux, s.normal) - r.multiplier;
+    x.velocity -= x.multiplier * s.normal;
+  }
+  x.pressure_drop = r.pressure_drop;
+  Net on_wall = r.wall_traction;
+  if (triangular) {
+    const Net v = x.velocity;
+    x.pressure_drop += s.unit * s.tube.pressure_of({}, v);
+    on_wall += x.pressure_drop / s.unit * s.tube.inlet_on_wall() + s.tube.velocity_on_wall(v);
+  }
+  x.wall_traction = s.unit * s.tube.solve_wall(on_wall);
+}
+
+}  // namespace
+
+LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& preconditioner) const {
+  LinearSystem system{std::move(velocity), {}, {}};
+  system.blocks.push_back({"wall traction", 3 * tube.wall().space.n_points});
+  system.blocks.push_back({"pressure drop", 1});
+  system.blocks.push_back({"multiplier of the volume", 1});
+  system.product = [this](const double* in, double* out) { product(*this, In(*this, in), Out(*this, out)); };
+  const bool triangular = preconditioner == "block triangular";
+  if (triangular || preconditioner == "block diagonal")
+    system.precondition = [this, triangular](const double* in, double* out) {
+      coupling::precondition(*this, In(*this, in), Out(*this, out), triangular);
+    };
+  return system;
+}
+
+Eigen::VectorXd BlockSystem::right_hand_side(const Net& velocity, const Net& f) const {
+  Eigen::VectorXd all(3 * (velocity.rows() + tube.wall().space.n_points) + 2);
+  Out rows(*this, all.data());
+  rows.velocity = velocity;
+  if (tube.copies() > 1) rows.velocity += control_values(tube.copies_on_particle(f));
+  rows.wall_traction = tube.load_on_wall(f);
+  rows.pressure_drop = unit * tube.pressure_of(f);
+  rows.multiplier = 0;
+  return all;
+}
+
+}  // namespace tanktread::coupling

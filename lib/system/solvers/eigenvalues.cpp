@@ -1,0 +1,85 @@
+#include "system/solvers/eigenvalues.hpp"
+
+#include <algorithm>
+
+#include <AnasaziBasicEigenproblem.hpp>
+#include <AnasaziBlockKrylovSchurSolMgr.hpp>
+#include <AnasaziThyraAdapter.hpp>
+#include <Teuchos_LAPACK.hpp>
+#include <Teuchos_ParameterList.hpp>
+#include <Thyra_DefaultSpmdVectorSpace.hpp>
+
+#include "base/errors.hpp"
+#include "system/agreement.hpp"
+#include "system/solvers/thyra_blocks.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+const RunFailure not_found("the eigenvalues of the linearised motion cannot be had");
+
+/// Pairs from values and from columns that hold the real and the imaginary part of a vector and its conjugate side by side, as LAPACK has them.
+std::vector<Eigenpair> unpacked(const Eigen::VectorXcd& values, const Eigen::MatrixXd& columns) {
+  std::vector<Eigenpair> pairs;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const bool oscillates = values[k].imag() != 0, second = oscillates && k > 0 && pairs.back().value == std::conj(values[k]);
+    if (second) {
+      pairs.push_back({values[k], pairs.back().vector.conjugate()});
+      continue;
+    }
+    Eigen::VectorXcd vector = columns.col(k).cast<std::complex<double>>();
+    if (oscillates && k + 1 < columns.cols()) vector += std::complex<double>(0, 1) * columns.col(k + 1);
+    pairs.push_back({values[k], vector.normalized()});
+  }
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a) {
+  const int n = static_cast<int>(a.rows());
+  Eigen::VectorXd real(n), imaginary(n);
+  Eigen::MatrixXd columns(n, n);
+  const Teuchos::LAPACK<int, double> lapack;
+  double size = 0;
+  int info = 0;
+  const auto run = [&](double* work, int length) {
+    lapack.GEEV('N', 'V', n, a.data(), n, real.data(), imaginary.data(), nullptr, 1, columns.data(), n, work, length, nullptr, &info);
+  };
+  run(&size, -1);
+  std::vector<double> work(static_cast<std::size_t>(size));
+  if (a.allFinite()) run(work.data(), static_cast<int>(work.size()));
+  if (info != 0 || !a.allFinite()) throw not_found;
+  return unpacked(real.cast<std::complex<double>>() + std::complex<double>(0, 1) * imaginary, columns);
+}
+
+std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance) {
+  using Vectors = Thyra::MultiVectorBase<double>;
+  using Operator = Thyra::LinearOpBase<double>;
+  const auto space = vector_space({{"shape", n}});
+  const auto map = Teuchos::rcp(new FunctionOperator(space));
+  map->function = a;
+  Eigen::VectorXd start(n * block);
+  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // the same on every run
+  const Teuchos::RCP<Vectors> first = Thyra::createMembers<double>(space, block);
+  for (int k = 0; k < block; ++k) Thyra::assign(first->col(k).ptr(), *vector_of(space, start.segment(k * n, n)));
+  const auto problem = Teuchos::rcp(new Anasazi::BasicEigenproblem<double, Vectors, Operator>(map, first));
+  problem->setHermitian(false);
+  problem->setNEV(number);
+  if (!problem->setProblem()) throw not_found;
+  Teuchos::ParameterList list;
+  const int most = static_cast<int>(n) / block - 1;
+  list.set("Which", "LM").set("Block Size", block).set("Num Blocks", std::min(most, 2 * number / block + 10));
+  list.set("Maximum Restarts", 50).set("Convergence Tolerance", tolerance).set("Verbosity", static_cast<int>(Anasazi::Errors));
+  Anasazi::BlockKrylovSchurSolMgr<double, Vectors, Operator> manager(problem, list);
+  if (manager.solve() != Anasazi::Converged) throw not_found;
+  const auto& solution = problem->getSolution();
+  Eigen::VectorXcd values(solution.numVecs);
+  Eigen::MatrixXd columns(n, solution.Evecs->domain()->dim());
+  for (int k = 0; k < solution.numVecs; ++k) values[k] = {solution.Evals[k].realpart, solution.Evals[k].imagpart};
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = numbers_of(*solution.Evecs->col(k));
+  return unpacked(values, columns);
+}
+
+}  // namespace tanktread::coupling

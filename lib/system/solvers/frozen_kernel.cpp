@@ -1,0 +1,31 @@
+#include <bit>
+
+#include "base/kernel.hpp"
+#include "system/solvers/frozen_operator.hpp"
+
+namespace tanktread::coupling {
+namespace INSTRUCTIONS {
+namespace {
+
+float widened(std::uint16_t half) { return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 16); }
+
+}  // namespace
+
+void symmetric_block_row(int n, const std::uint16_t* entries, const float* f1, const float* f2, const float* f3, float* u) {
+  const std::uint16_t *e11 = entries, *e12 = e11 + n, *e13 = e12 + n, *e22 = e13 + n, *e23 = e22 + n, *e33 = e23 + n;
+  float u1 = 0, u2 = 0, u3 = 0;
+  for (int b = 0; b < n; ++b) {
+    const float a12 = widened(e12[b]), a13 = widened(e13[b]), a23 = widened(e23[b]);
+    u1 += widened(e11[b]) * f1[b] + a12 * f2[b] + a13 * f3[b];
+    u2 += a12 * f1[b] + widened(e22[b]) * f2[b] + a23 * f3[b];
+    u3 += a13 * f1[b] + a23 * f2[b] + widened(e33[b]) * f3[b];
+  }
+  u[0] += u1, u[1] += u2, u[2] += u3;
+}
+
+}  // namespace INSTRUCTIONS
+
+KERNEL(void, symmetric_block_row, (int n, const std::uint16_t* entries, const float* f1, const float* f2, const float* f3, float* u),
+       (n, entries, f1, f2, f3, u))
+
+}  // namespace tanktread::coupling

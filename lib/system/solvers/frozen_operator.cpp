@@ -1,0 +1,50 @@
+#include "system/solvers/frozen_operator.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Rounded to nearest.
+std::uint16_t narrowed(float value) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+  return static_cast<std::uint16_t>((bits + 0x7fff + (bits >> 16 & 1)) >> 16);
+}
+
+}  // namespace
+
+void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Assemble& assemble) {
+  constexpr size_t at_a_time = 64;
+  targets_ = targets;
+  n_ = n;
+  entries_.resize(6 * static_cast<size_t>(n) * targets.size());
+  stokes::Rows<float> rows;
+  for (size_t first = 0; first < targets.size(); first += at_a_time) {
+    const std::span<const int> some(targets.data() + first, std::min(at_a_time, targets.size() - first));
+    assemble(some, rows);
+    for (size_t k = 0; k < some.size(); ++k) {
+      std::uint16_t* out = entries_.data() + 6 * static_cast<size_t>(n) * (first + k);
+      for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j, out += n)
+          for (int b = 0; b < n; ++b) out[b] = narrowed(rows(3 * static_cast<Eigen::Index>(k) + i, 3 * b + j));
+    }
+  }
+}
+
+void FrozenOperator::apply(const Net& f, Net& u) const {
+  for (auto* component : {&f1_, &f2_, &f3_}) component->resize(static_cast<size_t>(n_));
+  for (int b = 0; b < n_; ++b) {
+    f1_[b] = static_cast<float>(f(b, 0));
+    f2_[b] = static_cast<float>(f(b, 1));
+    f3_[b] = static_cast<float>(f(b, 2));
+  }
+  for (size_t k = 0; k < targets_.size(); ++k) {
+    float sum[3] = {0, 0, 0};
+    symmetric_block_row(n_, entries_.data() + 6 * static_cast<size_t>(n_) * k, f1_.data(), f2_.data(), f3_.data(), sum);
+    u.row(targets_[k]) << sum[0], sum[1], sum[2];
+  }
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,218 @@
+#include "system/solvers/nonlinear.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <NOX.H>
+#include <NOX_Solver_Factory.H>
+#include <NOX_StatusTest_Generic.H>
+#include <NOX_Thyra_Group.H>
+#include <NOX_Thyra_Vector.H>
+#include <Teuchos_ParameterList.hpp>
+#include <Teuchos_oblackholestream.hpp>
+#include <Thyra_DefaultIdentityLinearOp.hpp>
+#include <Thyra_DefaultPreconditioner.hpp>
+#include <Thyra_StateFuncModelEvaluatorBase.hpp>
+
+#include "base/errors.hpp"
+#include "system/solvers/chosen_preconditioner.hpp"
+#include "system/solvers/thyra_blocks.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// NOX gets places and residuals in so small a unit: what differs by less than 1e-16, of many residuals near the solution, it takes for singular.
+constexpr double unit = 0x1p-20;
+
+Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
+
+Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
+
+/// F(x) = g(x) - x, with products F' d by differences above the noise of adaptive quadrature.
+class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
+ public:
+  using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;
+  using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<double>;
+
+  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, const Net& start, const std::string& preconditioner)
+      : g_(g), norm_(norm), space_(vector_space({{"places", start.size()}})), chosen_(preconditioner) {
+    if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new FunctionOperator(space_));
+  }
+
+  /// What Newton's systems are preconditioned with, from the right.
+  Teuchos::RCP<const Thyra::LinearOpBase<double>> preconditioner() const {
+    if (preconditioner_.is_null()) return Thyra::identity<double>(space_);
+    return preconditioner_;
+  }
+
+  Teuchos::RCP<const Space> get_x_space() const override { return space_; }
+  Teuchos::RCP<const Space> get_f_space() const override { return space_; }
+  Teuchos::RCP<Thyra::LinearOpBase<double>> create_W_op() const override { return Teuchos::rcp(new FunctionOperator(space_)); }
+  InArgs createInArgs() const override {
+    Thyra::ModelEvaluatorBase::InArgsSetup<double> in;
+    in.setModelEvalDescription("fixed point");
+    in.setSupports(IN_ARG_x);
+    return in;
+  }
+
+ private:
+  OutArgs createOutArgsImpl() const override {
+    Thyra::ModelEvaluatorBase::OutArgsSetup<double> out;
+    out.setModelEvalDescription("fixed point");
+    out.setSupports(OUT_ARG_f);
+    out.setSupports(OUT_ARG_W_op);
+    return out;
+  }
+
+  void evalModelImpl(const InArgs& in, const OutArgs& out) const override {
+    const Net x = net(numbers_of(*in.get_x()));
+    if (x_.size() == 0 || x != x_) {
+      f_ = g_(x) - x;
+      x_ = x;
+    }
+    if (!f_.allFinite()) return out.setFailed();
+    if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_)));
+    if (out.get_W_op().is_null()) return;
+    chosen_.refresh();
+    newton_ = {{{"places", x.size()}}, [this, x, f = f_](const double* in_numbers, double* out_numbers) {
+      const Net direction = Eigen::Map<const Net>(in_numbers, x.rows(), 3);
+      const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
+      const Net y = x + e * direction;
+      Eigen::Map<Net>(out_numbers, x.rows(), 3) = (g_(y) - y - f) / e;
+    }, {}};
+    const LinearSystem joined = chosen_.join(newton_);
+    dynamic_cast<FunctionOperator&>(*out.get_W_op()).function = joined.product;
+    if (!preconditioner_.is_null()) preconditioner_->function = joined.precondition;
+  }
+
+  const FixedPoint::Map& g_;
+  const FixedPoint::Norm& norm_;
+  Teuchos::RCP<const Space> space_;
+  mutable ChosenPreconditioner chosen_;
+  Teuchos::RCP<FunctionOperator> preconditioner_;
+  mutable LinearSystem newton_;
+  mutable Net x_, f_;  // where it was evaluated last
+};
+
+Net net(const NOX::Abstract::Vector& vector) { return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector())); }
+
+/// Ends at the tolerance, in our norm, or after so many iterations.
+class Test : public NOX::StatusTest::Generic {
+ public:
+  Test(const FixedPoint::Norm& norm, double tolerance, int most) : norm_(norm), tolerance_(tolerance), most_(most) {}
+  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
+    const NOX::Abstract::Group& group = solver.getSolutionGroup();
+    const double rest = group.isF() ? norm_(net(group.getF())) : std::numeric_limits<double>::quiet_NaN();
+    if (rest <= tolerance_) return status_ = NOX::StatusTest::Converged;
+    return status_ = !std::isfinite(rest) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+  }
+  NOX::StatusTest::StatusType getStatus() const override { return status_; }
+  std::ostream& print(std::ostream& stream, int) const override { return stream; }
+
+ private:
+  const FixedPoint::Norm& norm_;
+  double tolerance_;
+  int most_;
+  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
+};
+
+/// A copy of which nothing is marked as looked at.
+Teuchos::ParameterList unread_copy(const Teuchos::ParameterList& list) {
+  Teuchos::ParameterList copy(list.name());
+  for (const auto& item : list) {
+    Teuchos::ParameterEntry fresh;
+    fresh.setAnyValue(item.second.getAny(false));
+    if (item.second.isList())
+      copy.sublist(item.first) = unread_copy(list.sublist(item.first));
+    else
+      copy.setEntry(item.first, fresh);
+  }
+  return copy;
+}
+
+/// The path in `list` of a parameter of `given` that nobody has looked at; empty: none.
+std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::ParameterList& list) {
+  for (const auto& item : given) {
+    if (!item.second.isList()) {
+      if (!list.getEntry(item.first).isUsed()) return item.first;
+    } else if (const std::string inner = unread_path(given.sublist(item.first), list.sublist(item.first)); !inner.empty()) {
+      return item.first + "/" + inner;
+    }
+  }
+  return {};
+}
+
+Teuchos::ParameterList defaults(const std::string& method, int depth) {
+  Teuchos::ParameterList list("NOX");
+  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // a step that fails is tried again, shorter
+  list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
+  if (method == "anderson") {
+    list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");
+    list.sublist("Anderson Parameters").set("Storage Depth", depth);
+    return list;
+  }
+  list.set("Nonlinear Solver", "Line Search Based");
+  list.sublist("Line Search").set("Method", "Full Step");
+  auto& newton = list.sublist("Direction").sublist("Newton");
+  newton.set("Forcing Term Method", "Constant");
+  newton.sublist("Linear Solver").set("Tolerance", 0.1);
+  return list;
+}
+
+}  // namespace
+
+struct FixedPoint::Impl {
+  Teuchos::ParameterList given, list;
+  Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
+  Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver;
+  std::string preconditioner;
+};
+
+FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear, int depth)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->linear_solver = belos_factory(linear).factory;
+  impl_->preconditioner = linear.preconditioner;
+  impl_->list = defaults(method, depth);
+  if (list) impl_->list.setParameters(impl_->given = unread_copy(*list));
+}
+
+FixedPoint::~FixedPoint() = default;
+
+std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_->given, *impl_->last) : std::string(); }
+
+NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest) const {
+  using Teuchos::RCP;
+  using Weights = Thyra::VectorBase<double>;
+  const auto model = Teuchos::rcp(new Model(g, norm, x, impl_->preconditioner));
+  const auto start = vector_of(model->get_x_space(), numbers(x));
+  const RCP<Thyra::LinearOpBase<double>> derivative = model->create_W_op();
+  const auto from_right = Teuchos::rcp(new Thyra::DefaultPreconditioner<double>);
+  from_right->initializeRight(model->preconditioner());
+  const RCP<Thyra::PreconditionerBase<double>> preconditioner = from_right;
+  const RCP<Thyra::PreconditionerFactoryBase<double>> no_factory;
+  const RCP<const Weights> unweighted;
+  const bool scaled = false, updated = false;
+  const auto group =
+      Teuchos::rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model, derivative, impl_->linear_solver, preconditioner, no_factory,
+                                         unweighted, unweighted, RCP<Weights>(), scaled, updated));
+  const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
+  auto& anderson = list->sublist("Anderson Parameters");
+  if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
+  try {
+    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(rest ? rest : norm, tolerance, most)), list);
+    const bool converged = solver->solve() == NOX::StatusTest::Converged;
+    x = net(solver->getSolutionGroup().getX());
+    return {solver->getNumIterations(), converged};
+  } catch (const char*) {  // NOX's word for a function or a direction that cannot be had
+    return {0, false};
+  } catch (const Thyra::CatastrophicSolveFailure&) {
+    return {0, false};
+  } catch (const Teuchos::Exceptions::InvalidParameter& error) {
+    throw UserError(std::string("Solvers/NOX: NOX does not accept the list: ") + error.what());
+  }
+}
+
+}  // namespace tanktread::coupling

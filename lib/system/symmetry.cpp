@@ -1,0 +1,61 @@
+#include "system/symmetry.hpp"
+
+#include <algorithm>
+
+#include "deck/section.hpp"
+
+namespace tanktread::coupling {
+
+void SymmetryOptions::declare(deck::Section& section) {
+  section.key("use", use, deck::Choice{"auto", "none"},
+              "`auto`: mirror planes, half turns and the point symmetry that flow, particle and mesh have in common are found, and only the control "
+              "points that are not images of others are evaluated and solved for. The particle keeps these symmetries for the whole run: an "
+              "instability that breaks them, as wrinkles or a drift may, is left out. `none`: everything is evaluated, and rounding may grow");
+}
+
+bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net) {
+  const auto turn = image.signs.asDiagonal();
+  double defect = 0, size = 0, gradient_defect = 0, gradient_size = 0;
+  for (Eigen::Index a = 0; a < net.rows(); ++a) {
+    const Vec3 x = net.row(a).transpose(), y = net.row(image.point[static_cast<size_t>(a)]).transpose();
+    const Vec3 v = flow.velocity(x);
+    const Mat3 gradient = flow.gradient(x);
+    defect = std::max(defect, (flow.velocity(y) - turn * v).norm());
+    gradient_defect = std::max(gradient_defect, (flow.gradient(y) - turn * gradient * turn).norm());
+    size = std::max(size, v.norm());
+    gradient_size = std::max(gradient_size, gradient.norm());
+  }
+  return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
+}
+
+static bool admit(const LoadList& loads, const surface::Image& image) {
+  return std::ranges::all_of(loads, [&](const auto& load) { return load->admits(image); });
+}
+
+surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
+                           const stokes::AmbientFlow& flow, const LoadList& loads, const Vec3& wall_normal) {
+  if (options.use == "none") return surface::Symmetry(space.n_points);
+  const std::vector<stokes::AmbientFlow> flows = flow.directions();
+  return surface::symmetry(space, nets, [&](const surface::Image& image) {
+    return image.signs.cwiseProduct(wall_normal) == wall_normal && admit(loads, image) &&
+           std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
+  });
+}
+
+static Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
+
+surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
+                           const surface::TubeWall& wall, const LoadList& loads) {
+  if (options.use == "none") return surface::Symmetry(space.n_points);
+  const Net* around[] = {&wall.net};
+  return surface::symmetry(space, nets, [&](const surface::Image& image) {
+    const auto keeps_middle = [&](const Net* net) {
+      const Vec3 apart = middle(*net) - middle(wall.net);
+      return (image.signs.cwiseProduct(apart) - apart).norm() <= 1e-9 * wall.radius();
+    };
+    return image.signs[0] > 0 && admit(loads, image) &&
+           std::ranges::all_of(nets, keeps_middle) && surface::image(wall.space, around, image.signs).has_value();
+  });
+}
+
+}  // namespace tanktread::coupling

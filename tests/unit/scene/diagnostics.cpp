@@ -1,0 +1,153 @@
+#include "scene/series/diagnostics.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "base/errors.hpp"
+#include "scene/flow_plane.hpp"
+#include "scene/series/run_totals.hpp"
+#include "scene/series/series.hpp"
+#include "spline/extraction.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread {
+namespace {
+
+TEST(Series, AreDeclaredOnce) {
+  Scene deforming, free, prescribed, several;
+  free.particle.motion = Motion::free, prescribed.particle.motion = Motion::prescribed;
+  several.particles.resize(2);
+  several.particles[0].name = "a", several.particles[1].name = "b", several.particles[1].particle.motion = Motion::free;
+  for (const Scene& scene : {deforming, free, prescribed, several}) {
+    std::set<std::string> names;
+    for (const Column& one : columns(scene).all()) EXPECT_TRUE(names.insert(one.name).second) << one.name;
+    EXPECT_TRUE(names.contains(scene.particles.empty() ? "volume" : "b/volume") || scene.particle.motion == Motion::free);
+  }
+}
+
+TEST(Series, OfTheProgramComeInTheOrderOfTheManual) {
+  Columns row;
+  for (const char* name : {"of a part", "kernel_evaluations", "cell_2_x1", "axis_1_x1", "axis_3", "time"}) row.add(0, {name, "1", ""});
+  put_in_order(row);
+  std::vector<std::string> names;
+  for (const Column& one : row.all()) names.push_back(one.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"time", "axis_3", "axis_1_x1", "cell_2_x1", "kernel_evaluations", "of a part"}));
+}
+
+TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
+  DeformingRow now;
+  now.shape.inclination = std::numeric_limits<double>::quiet_NaN();
+  now.axes.lengths = Vec3(2, 1, 1);
+  now.axes.directions = Mat3::Identity();
+  Columns row;
+  now.add_columns(Scene(), row);
+  EXPECT_NO_THROW(finish(row));
+  std::set<std::string> undefined;
+  for (const Column& one : row.all())
+    if (std::isnan(row.value(one.name))) undefined.insert(one.name);
+  EXPECT_EQ(undefined, (std::set<std::string>{"inclination", "axis_1_x1", "axis_1_x2", "axis_1_x3"}));
+  now.axes.longest_defined = true;
+  Columns defined;
+  now.add_columns(Scene(), defined);
+  EXPECT_EQ(defined.value("axis_1_x1"), 1);
+  now.volume_error = std::numeric_limits<double>::quiet_NaN();
+  Columns failed;
+  now.add_columns(Scene(), failed);
+  EXPECT_THROW(finish(failed), RunFailure);
+}
+
+/// The inclination of an ellipsoid in a flow.
+double inclination(const Vec3& semi_axes, const stokes::FlowOptions& flow) {
+  const spline::TMesh mesh = spline::cube(4);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  surface::ParticleShape shape;
+  shape.shape = "ellipsoid";
+  shape.semi_axes = semi_axes;
+  const surface::Geometry geometry(space);
+  const Net x = surface::initial_shape(space, mesh, shape);
+  return deformation(geometry, flow_plane(flow), x, geometry.measures(x), coupling::Ranks()).inclination;
+}
+
+stokes::FlowOptions linear(std::initializer_list<double> rows) {
+  stokes::FlowOptions flow;
+  flow.type = "linear";
+  flow.gradient = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.begin());
+  return flow;
+}
+
+TEST(FlowPlanes, AreX1X3OfFlowsThatAreBuiltIn) {
+  for (const char* type : {"simple shear", "uniaxial extension", "quiescent"}) {
+    stokes::FlowOptions flow;
+    flow.type = type;
+    EXPECT_TRUE(flow_plane(flow).fixed()) << type;
+  }
+  EXPECT_TRUE(flow_plane(linear({0, 0, 1, 0, 0, 0, 0, 0, 0})).fixed());
+}
+
+TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
+  EXPECT_EQ(flow_plane(linear({0, 1, 0, 0, 0, 0, 0, 0, 0})).description(), "in the plane x1 x2");
+  EXPECT_EQ(flow_plane(linear({0, 0, 0, 0, 0, 1, 0, 0, 0})).description(), "in the plane x2 x3");
+  EXPECT_EQ(flow_plane(linear({1, 0.3, 0, 0.2, -1, 0, 0, 0, 0})).description(), "in the plane x1 x2");
+  // Any turn of a shear turns its plane: the vorticity stays along the normal.
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  stokes::FlowOptions flow = linear({0, 0, 1, 0, 0, 0, 0, 0, 0});
+  flow.gradient = turn * *flow.gradient * turn.transpose();
+  const FlowPlane plane = flow_plane(flow);
+  EXPECT_TRUE(plane.holds_flow);
+  EXPECT_NEAR(std::abs(plane.components(turn.col(1))[1]), 1, 1e-12);
+  EXPECT_LT((plane.axes * plane.axes.transpose() - Mat3::Identity()).norm(), 1e-14);
+}
+
+TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
+  const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
+  EXPECT_FALSE(plane.holds_flow);
+  EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // about the vorticity
+}
+
+TEST(Inclination, IsUndefinedIfThePlaneOfANonplanarFlowIs) {
+  const stokes::FlowOptions planar = linear({0, 0, 1, 0, 0, 0, 0, 0, 0}), other = linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2});
+  EXPECT_NEAR(inclination(Vec3(3, 2, 1), planar), 0, 1e-9);
+  EXPECT_NEAR(inclination(Vec3(3, 2, 1), other), 0, 1e-9);
+  EXPECT_NEAR(inclination(Vec3(2, 1, 1), planar), 0, 1e-9);
+  EXPECT_TRUE(std::isnan(inclination(Vec3(2, 1, 1), other)));
+  EXPECT_TRUE(std::isnan(inclination(Vec3(2, 2, 1), other)));
+  EXPECT_TRUE(std::isnan(inclination(Vec3(1, 2, 1), planar)));
+}
+
+// A pole has one tangent only that is not zero.
+TEST(SiteAhead, IsFoundAtAPoleToo) {
+  for (const spline::PoleRule rule : {spline::PoleRule::plain, spline::PoleRule::c1}) {
+    const spline::PolarMesh mesh{10, 4, rule};
+    const spline::Space space = spline::space(mesh);
+    surface::ParticleShape shape;
+    shape.radius = 1;
+    const Net sphere = surface::initial_shape(space, mesh, 0, shape);
+    for (const double away : {0.0, 1e-3, 0.02, 0.1}) {
+      const FlowPlane plane = plane_normal_to(Vec3(std::sin(away), 1, 0.7 * away));
+      const spline::Site site = site_ahead(space, sphere, Vec3::Zero(), plane);
+      const Vec3 y = plane.components(surface::value(space, sphere, site));
+      EXPECT_NEAR(y[0] / y.norm(), 1, 1e-9) << away;  // so that its angle is 0 to 1e-4
+    }
+  }
+}
+
+TEST(Turnings, CountPastWholeTurns) {
+  PhaseAngle turning;
+  double angle = 0;
+  for (int k = 1; k <= 40; ++k) {
+    angle += 100;  // a step of more than a quarter turn
+    turning.advance(1, 100 * std::numbers::pi / 180, std::remainder(angle, 360));
+    EXPECT_NEAR(turning.degrees, angle, 1e-9);
+  }
+  turning.advance(0.5, 100 * std::numbers::pi / 180, {});
+  EXPECT_NEAR(turning.degrees, angle + 50, 1e-9);
+}
+
+}  // namespace
+}  // namespace tanktread

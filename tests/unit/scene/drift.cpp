@@ -1,0 +1,80 @@
+#include "scene/body.hpp"
+#include "scene/free_motions.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/small_matrices.hpp"
+#include "spline/extraction.hpp"
+#include "surface/shapes.hpp"
+
+namespace tanktread {
+namespace {
+
+Scene scene(const std::string& flow) {
+  Scene s;
+  s.flow.type = flow;
+  if (flow == "four-roll") s.flow.roll_parameter = 0.6;
+  s.particle.shape.radius = 1;
+  return s;
+}
+
+TEST(Drift, AParticleIsHeldAtThePointOfRestOfAFlowThatDrawsAwayFromIt) {
+  for (const char* flow : {"planar hyperbolic", "uniaxial extension", "four-roll"}) EXPECT_TRUE(holds_centre(scene(flow))) << flow;
+  for (const char* flow : {"simple shear", "quiescent"}) EXPECT_FALSE(holds_centre(scene(flow))) << flow;
+}
+
+TEST(Drift, AParticleThatStartsElsewhereIsCarriedAway) {
+  Scene s = scene("planar hyperbolic");
+  s.particle.shape.center = {0.1, 0, 0};
+  EXPECT_FALSE(holds_centre(s));
+}
+
+TEST(Drift, TheDeckDecides) {
+  Scene s = scene("planar hyperbolic");
+  s.particle.drift = "free";
+  EXPECT_FALSE(holds_centre(s));
+  s = scene("simple shear");
+  s.particle.drift = "held";
+  EXPECT_TRUE(holds_centre(s));
+}
+
+TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
+  // Points that move with the flow alone, v = L x, have the slopes L x wherever they are.
+  const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
+  const spline::TMesh mesh = spline::cube(4);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::catmull_clark);
+  surface::ParticleShape shape;
+  shape.shape = "ellipsoid";
+  shape.semi_axes = Vec3(1.5, 1, 0.8);
+  const surface::Geometry geometry(space);
+  motion::State state;
+  state.x = surface::initial_shape(space, mesh, shape).rowwise() + Vec3(0.3, -0.2, 0.1).transpose();
+  const Mat3 l = flow.gradient(Vec3::Zero());
+  state.history = {state.x * l.transpose()};
+  hold_centre(flow, geometry, Vec3::Zero(), state);
+  EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
+  EXPECT_LT((state.history[0] - state.x * l.transpose()).norm(), 1e-13);
+}
+
+// Points that move with the flow alone were at exp(-L s) x a time s ago, wherever they are now.
+TEST(Drift, PuttingTheCentroidBackTakesEarlierPlacesAlong) {
+  const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
+  const spline::TMesh mesh = spline::cube(4);
+  const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::catmull_clark);
+  const surface::Geometry geometry(space);
+  const Vec3 center(0.3, -0.2, 0.1);
+  const Mat3 l = flow.gradient(center);
+  motion::State state;
+  state.time = 2;
+  state.x = surface::initial_shape(space, mesh, {}).rowwise() + center.transpose();
+  const auto at = [&](double time) { return Net(state.x * exponential(l * (time - state.time)).transpose()); };
+  for (const double time : {1.9, 1.7, 1.6}) state.places.push_back({time, at(time)});
+  const Net direction = state.direction = Net::Random(state.x.rows(), 3);
+  hold_centre(flow, geometry, Vec3::Zero(), state);
+  EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
+  for (const motion::Place& place : state.places) EXPECT_LT((place.x - at(place.time)).norm(), 1e-13) << place.time;
+  EXPECT_EQ(state.direction, direction);
+}
+
+}  // namespace
+}  // namespace tanktread

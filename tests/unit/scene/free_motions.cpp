@@ -1,0 +1,56 @@
+// Rigid motions that a steady search leaves free: how many, of one particle and of several.
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "deck/document.hpp"
+#include "scene/body.hpp"
+#include "scene/free_motions.hpp"
+
+namespace tanktread {
+namespace {
+
+std::size_t free_number(const std::string& lists) {
+  Scene scene;
+  deck::Document document = deck::read({}, {"Time/final time=1"}, "Tanktread:\n" + lists);
+  document.declare(scene);
+  scene.check();
+  std::vector<std::unique_ptr<Body>> bodies;
+  std::vector<coupling::Particle> particles;
+  for (const Scene& one : scene.alone()) {
+    bodies.push_back(std::make_unique<Body>(body(one)));
+    particles.emplace_back().loads = loads(one, *bodies.back(), nullptr);
+  }
+  return free_motions(scene, stokes::AmbientFlow(scene.flow), 1, particles).size();
+}
+
+const std::string still_fluid = "  Flow: {type: quiescent}\n", with_gravity = "  Flow: {type: quiescent, gravity: [0, 0, -1]}\n",
+                  capsule = "Membrane: {shear modulus: 1}",
+                  pulled = "Membrane: {shear modulus: 1, forces: {tip: {direction: [1, 0, 0], radius: 0.5, force: [1, 0, 0]}, "
+                           "tail: {direction: [-1, 0, 0], radius: 0.5, force: [-1, 0, 0]}}}";
+
+std::string one_particle(const std::string& particle, const std::string& membrane) { return "  Particle: {" + particle + "}\n  " + membrane + "\n"; }
+
+std::string with_a_second(const std::string& particle, const std::string& membrane) {
+  return "  Particles:\n    light: {center: [3, 0, 0], " + capsule + "}\n    other: {center: [0, 0, 0], " + particle + ", " + membrane + "}\n";
+}
+
+TEST(FreeMotions, InAFluidAtRestAreAll) { EXPECT_EQ(free_number(still_fluid + one_particle("", capsule)), 6u); }
+
+// Translations, and the rotation about the force.
+TEST(FreeMotions, DoNotTurnAWeight) {
+  EXPECT_EQ(free_number(with_gravity + one_particle("density difference: 1", capsule)), 4u);
+  EXPECT_EQ(free_number(with_gravity + with_a_second("density difference: 1", capsule)), 4u);
+}
+
+TEST(FreeMotions, DoNotTurnForcesOnPatches) {
+  EXPECT_EQ(free_number(still_fluid + one_particle("", pulled)), 4u);
+  EXPECT_EQ(free_number(still_fluid + with_a_second("shape: sphere", pulled)), 4u);
+}
+
+// The rotation about the axis only: a flow of one gradient does not rest elsewhere.
+TEST(FreeMotions, InAnExtensionTurnAboutItsAxis) { EXPECT_EQ(free_number("  Flow: {type: uniaxial extension}\n"), 1u); }
+
+}  // namespace
+}  // namespace tanktread

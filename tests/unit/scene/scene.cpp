@@ -1,0 +1,251 @@
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/document.hpp"
+#include "scene/member.hpp"
+#include "system/ranks.hpp"
+
+namespace tanktread {
+namespace scene_test {
+
+Scene scene(const std::string& lists) {
+  Scene out;
+  deck::Document document = deck::read({}, {"Time/final time=1"}, "Tanktread:\n" + (lists.empty() ? "  Flow: {}\n" : lists));
+  document.declare(out);
+  out.check();
+  return out;
+}
+
+std::string refusal(const std::string& lists) {
+  try {
+    scene(lists);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Scenes, WithoutAnyKeyAreASphereInShear) {
+  const Scene s = scene("");
+  EXPECT_EQ(s.flow.type, "simple shear");
+  EXPECT_EQ(s.radius(), 1.0);
+  EXPECT_NEAR(s.modulus(), 1 / 0.3, 1e-15);
+  EXPECT_EQ(s.membrane.law, "neo-Hookean");
+  EXPECT_EQ(s.volume.constraint, "exact");
+  EXPECT_EQ(s.time.scheme, "tr-bdf2");
+  EXPECT_EQ(s.snapshot_interval(), s.time.final_time / 20);
+}
+
+TEST(Scenes, SurviveTheirEffectiveDeck) {
+  for (const char* lists :
+       {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
+        "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
+        "  Flow: {type: four-roll, roll parameter: 0.6}\n  Membrane: {law: surface tension}\n", "  Surface: {mesh: polar}\n",
+        "  Surface: {mesh: polar, azimuthal elements: 8, pole axis: x2, poles: c1}\n", "  Time: {fixed step: 0.01, scheme: bs3}\n",
+        "  Flow: {type: parabolic, half width: 3}\n  Membrane: {bending number: 0.01}\n",
+        "  Flow: {history: {times: [0, 1.5, 1.5], amplitudes: [1, 1, 0], angles: [0, 30, 30]}}\n",
+        "  Flow: {history: {type: sine, frequency: 2}}\n"}) {
+    Scene first, second;
+    deck::Document once = deck::read({}, {"Time/final time=1"}, std::string("Tanktread:\n") + lists);
+    once.declare(first);
+    first.check();
+    deck::Document twice = deck::read_text(once.effective());
+    twice.declare(second);
+    second.check();
+    EXPECT_EQ(once.effective(), twice.effective());
+    EXPECT_EQ(first.modulus(), second.modulus());
+  }
+}
+
+TEST(Scenes, HaveViscosityRatiosThatRoundingLeavesSolvable) {
+  EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e6}\n"), "");
+  EXPECT_NE(refusal("  Particle: {viscosity ratio: 1.1e6}\n"), "");
+  EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e9}\n  Solvers: {tolerance: 1e-5}\n"), "");
+}
+
+TEST(Scenes, CountTheFactorsOfTheWallOnEveryRank) {
+  const std::string tube = "  Flow: {type: duct}\n  Tube: {azimuthal elements: 100, axial elements: ";
+  const bool one_rank = coupling::Ranks().size() == 1;
+  EXPECT_EQ(refusal(tube + "240}\n").empty(), one_rank);                        // 43 GB a rank
+  EXPECT_NE(refusal(tube + "300}\n").find("more than 64"), std::string::npos);  // 66 GB
+}
+
+TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
+  const Scene one = scene("  Adaptation: {enabled: true}\n"), other = scene("  Particle: {radius: 1.0e-6}\n  Adaptation: {enabled: true}\n");
+  EXPECT_DOUBLE_EQ(other.adaptation.surface_tolerance, 1e-6 * one.adaptation.surface_tolerance);
+  EXPECT_DOUBLE_EQ(other.adaptation.minimum_length, 1e-6 * one.adaptation.minimum_length);
+  EXPECT_DOUBLE_EQ(other.adaptation.coarsening_tolerance, 1e-6 * one.adaptation.coarsening_tolerance);
+  EXPECT_EQ(scene("  Particle: {radius: 2}\n  Adaptation: {enabled: true, surface tolerance: 0.5}\n").adaptation.surface_tolerance, 0.5);
+}
+
+TEST(Scenes, RefuseSnapshotsWithoutEnd) {
+  EXPECT_NE(refusal("  Time: {final time: 2}\n  Output: {interval: 1.0e-9}\n").find("Output/interval"), std::string::npos);
+}
+
+TEST(Moduli, FollowFromTheCapillaryNumber) {
+  EXPECT_DOUBLE_EQ(scene("  Flow: {viscosity: 2, shear rate: 3}\n  Particle: {radius: 4}\n  Membrane: {capillary number: 0.5}\n").modulus(),
+                   48.0);
+  EXPECT_DOUBLE_EQ(scene("  Membrane: {shear modulus: 7}\n").modulus(), 7.0);
+  // The largest singular value of the gradient of shear is the shear rate, of hyperbolic flow its rate.
+  EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [0, 0, 2.5, 0, 0, 0, 0, 0, 0]}\n").flow.rate(), 2.5);
+  EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [2, 0, 0, 0, 0, 0, 0, 0, -2]}\n").flow.rate(), 2.0);
+}
+
+TEST(Moduli, FollowFromTheRateOfAParabolicFlowAndFromTheBendingNumber) {
+  const Scene s = scene("  Flow: {type: parabolic, half width: 8, maximum velocity: 2}\n  Particle: {radius: 4}\n"
+                        "  Membrane: {capillary number: 0.5, bending number: 0.1}\n");
+  EXPECT_DOUBLE_EQ(s.modulus(), 2);            // rate 2/8 times radius over Ca
+  EXPECT_DOUBLE_EQ(s.bending_modulus(), 3.2);  // 0.1 G_s R_C^2
+}
+
+TEST(EquivalentRadii, AreThoseOfTheSphereOfEqualVolume) {
+  EXPECT_DOUBLE_EQ(scene("  Particle: {shape: ellipsoid, semi-axes: [1, 2, 4]}\n").radius(), 2.0);
+  EXPECT_DOUBLE_EQ(scene("  Particle: {shape: spheroid, semi-axes: [8, 8, 1]}\n").radius(), 4.0);
+  // Volume of the disc by the midpoint rule: outline z = (R/2) sqrt(1 - r^2)(0.21 + 2.0 r^2 - 1.12 r^4).
+  double volume = 0;
+  const int steps = 200000;
+  for (int i = 0; i < steps; ++i) {
+    const double r = (i + 0.5) / steps;
+    volume += 2 * std::numbers::pi * r * std::sqrt(1 - r * r) * (0.21 + 2.0 * r * r - 1.12 * std::pow(r, 4)) / steps;
+  }
+  EXPECT_NEAR(scene("  Particle: {shape: red cell, radius: 2}\n").radius(), 2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)),
+              1e-6);  // the rule's error
+}
+
+TEST(Orientations, TurnTheAxesOfTheParticle) {
+  const Scene s = scene("  Particle: {shape: spheroid, semi-axes: [2, 2, 1], orientation: [0, -45, 0]}\n");
+  EXPECT_TRUE(s.particle.shape.rotation().col(0).isApprox(Vec3(1, 0, 1).normalized(), 1e-15)) << "along the direction of extension";
+  EXPECT_TRUE(scene("").particle.shape.rotation().isIdentity(0));
+}
+
+TEST(Contradictions, OfFlowsAreOneSentenceEach) {
+  EXPECT_EQ(refusal("  Flow: {type: parabolic}\n"), "Flow/type `parabolic` needs Flow/half width.");
+  EXPECT_EQ(refusal("  Flow: {half width: 2}\n"), "Flow/half width belongs to Flow/type `parabolic`, but Flow/type is `simple shear`.");
+  EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2, shear rate: 3}\n"),
+            "Flow/shear rate and Flow/type `parabolic` contradict each other: give Flow/maximum velocity.");
+  EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2}\n  Particle: {drift: held}\n"),
+            "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [0, 1]}}\n"),
+            "Flow/history/type `table` needs Flow/history/amplitudes or Flow/history/angles.");
+  EXPECT_EQ(refusal("  Flow: {history: {amplitudes: [0, 1]}}\n"), "Flow/history/type `table` needs Flow/history/times or Flow/history/file.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2, 1], amplitudes: [0, 1, 2]}}\n"),
+            "Flow/history/times must be in order, the earliest first.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2], amplitudes: [0, 1, 2]}}\n"),
+            "Flow/history/amplitudes must hold as many numbers as Flow/history/times, 2, but holds 3.");
+  EXPECT_EQ(refusal("  Flow: {history: {times: [-1, 2], amplitudes: [0, 1]}}\n").find("Flow/history/times must be one number or more"), 0u);
+  EXPECT_EQ(refusal("  Flow: {history: {type: sine}}\n"), "Flow/history/type `sine` needs Flow/history/frequency.");
+  EXPECT_EQ(refusal("  Flow: {history: {type: sine, frequency: 1, times: [1]}}\n"),
+            "Flow/history/times belongs to the type `table`, but is given with Flow/history/type `sine`.");
+  EXPECT_EQ(refusal("  Flow: {history: {type: sine, frequency: 1}}\n  Particle: {motion: prescribed}\n"), "");
+  EXPECT_EQ(refusal("  Flow: {type: quiescent, history: {type: sine, frequency: 1}}\n  Membrane: {shear modulus: 1}\n"),
+            "Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has nothing to change.");
+  EXPECT_EQ(refusal("  Membrane: {bending modulus: 0, bending number: 0.1}\n"),
+            "Membrane/bending modulus and Membrane/bending number contradict each other: give one of them.");
+}
+
+TEST(Contradictions, AreOneSentenceEach) {
+  EXPECT_EQ(refusal("  Membrane: {capillary number: 0.3, shear modulus: 1}\n"),
+            "Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
+  EXPECT_EQ(refusal("  Membrane: {area dilatation: 2}\n"),
+            "Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `neo-Hookean`.");
+  EXPECT_EQ(refusal("  Membrane: {surface tension: 2}\n"),
+            "Membrane/surface tension and Membrane/law `neo-Hookean` contradict each other: give Membrane/shear modulus.");
+  EXPECT_EQ(refusal("  Membrane: {law: surface tension, load measure: reference}\n"),
+            "Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
+  EXPECT_EQ(refusal("  Particle: {semi-axes: [1, 1, 2]}\n"),
+            "Particle/semi-axes and Particle/shape `sphere` contradict each other: give Particle/radius.");
+  EXPECT_EQ(refusal("  Particle: {shape: ellipsoid}\n"), "Particle/shape `ellipsoid` needs Particle/semi-axes, three lengths.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, elements per side: 6}\n"),
+            "Surface/elements per side and Surface/mesh `polar` contradict each other: it belongs to `cube`.");
+  EXPECT_EQ(refusal("  Surface: {poles: c1}\n"), "Surface/poles and Surface/mesh `cube` contradict each other: it belongs to `polar`.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, poles: plain, pole subdivisions: 1}\n"),
+            "Surface/pole subdivisions and Surface/poles `plain` contradict each other: it belongs to `bezier transform`.");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar}\n  Adaptation: {enabled: true}\n"), "");
+  EXPECT_EQ(refusal("  Surface: {mesh: polar, azimuthal elements: 8, meridional elements: 4}\n"
+                    "  Adaptation: {enabled: true, minimum length: 0.7}\n"),
+            "Adaptation/minimum length must be below the length of the elements that the run starts with, 0.627, or nothing is ever cut, "
+            "but is 0.7.");
+  EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"),
+            "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
+  EXPECT_EQ(refusal("  Flow: {type: four-roll}\n"), "Flow/type `four-roll` needs Flow/roll parameter.");
+  EXPECT_EQ(refusal("  Flow: {roll parameter: 0.5}\n"),
+            "Flow/roll parameter belongs to Flow/type `four-roll`, but Flow/type is `simple shear`.");
+  EXPECT_EQ(refusal("  Time: {fixed step: 0.1, initial step: 0.1}\n"),
+            "Time/fixed step and Time/initial step contradict each other: give one of them.");
+  EXPECT_EQ(refusal("  Volume: {constraint: none}\n")
+                .find("Volume/constraint `none` and Membrane/load measure `reference` contradict each other"),
+            0u);
+  EXPECT_EQ(refusal("  Volume: {constraint: none}\n  Membrane: {load measure: current}\n"), "");
+}
+
+TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
+  const std::string assembled = "  Solvers: {frozen operator: assembled}\n";
+  EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"), "");  // nothing is kept but what is near
+  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 110}\n"), "");
+  EXPECT_EQ(
+      refusal(assembled + "  Surface: {elements per side: 120}\n"),
+      "Surface/elements per side must be at most 110, but is 120: the layers of 86402 control points take 90 GB assembled, more than 64.");
+  EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 120}\n  Time: {scheme: bs3}\n"), "");
+  EXPECT_EQ(
+      refusal(assembled + "  Surface: {mesh: polar, azimuthal elements: 400, meridional elements: 200}\n"),
+      "Surface/azimuthal elements and Surface/meridional elements must give at most 73029 control points: the layers of 80402 control "
+      "points take 78 GB assembled, more than 64.");
+  EXPECT_EQ(
+      refusal("  Particle: {motion: free}\n  Surface: {elements per side: 80}\n"),
+      "Surface/elements per side must be at most 70, but is 80: the layers of 38402 control points take 106 GB assembled, more than 64.");
+  const double of_wall = 72.0 * coupling::Ranks().size();  // factors on every rank
+  EXPECT_EQ(refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
+            formatted("Tube/azimuthal elements and Tube/axial elements must give at most %.0f control points: the layers of 40600 control points "
+                      "take %.0f GB assembled, more than 64.",
+                      std::floor(std::sqrt(64e9 / of_wall)), of_wall * 40600. * 40600. / 1e9));
+  EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
+}
+
+/// A list of a particle at a place along x1, with these lists.
+std::string particle(const std::string& name, double x1, const std::string& lists = "") {
+  return formatted("    %s: {center: [%g, 0, 0], Surface: {elements per side: 3}%s}\n", name.c_str(), x1, lists.c_str());
+}
+
+TEST(Members, ThatAreEqualShareTheirTables) {
+  const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("softer", 3, ", Membrane: {capillary number: 0.1}") +
+                          particle("equal", 6.1) + particle("flatter", 9, ", shape: ellipsoid, semi-axes: [1, 1, 0.9]") + "  Contact: {}\n");
+  std::vector<Member> members = tanktread::members(all);
+  arrange(members);
+  ASSERT_EQ(members.size(), 4u);
+  for (std::size_t p = 1; p < members.size(); ++p) EXPECT_EQ(members[p].geometry, members[0].geometry);
+  EXPECT_EQ(members[2].membrane, members[0].membrane);
+  EXPECT_NE(members[1].membrane, members[0].membrane);
+  EXPECT_NE(members[3].membrane, members[0].membrane);
+  for (const Member& member : members) EXPECT_EQ(member.scene.particles.capacity(), 0u);
+}
+
+TEST(Members, HaveTheMeshAndTheShapeThatTheyHaveAlone) {
+  const std::string flat = ", shape: ellipsoid, semi-axes: [1, 1, 0.9]";
+  const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("turned", 3, ", orientation: [0, 40, 10]") + particle("flat", 6, flat) +
+                          particle("flat and turned", 9, flat + ", orientation: [20, 0, 30]") + particle("large", 15, ", radius: 2") +
+                          "    fine: {center: [20, 0, 0], Surface: {elements per side: 4}}\n  Contact: {}\n");
+  for (const Member& member : tanktread::members(all)) {
+    const Body alone = body(member.scene);
+    ASSERT_EQ(member.body->rest.rows(), alone.rest.rows()) << member.name;
+    EXPECT_LT((member.body->rest - alone.rest).cwiseAbs().maxCoeff(), 1e-13) << member.name;
+    EXPECT_EQ(member.body->space.n_points, alone.space.n_points) << member.name;
+    EXPECT_NEAR(member.body->volume, alone.volume, 1e-12) << member.name;
+  }
+}
+
+TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
+  for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
+    EXPECT_TRUE(may_change_on_resume(path)) << path;
+  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side"})
+    EXPECT_FALSE(may_change_on_resume(path)) << path;
+}
+
+}  // namespace scene_test
+}  // namespace tanktread

@@ -1,0 +1,120 @@
+#include "scene/particles/warnings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "deck/document.hpp"
+
+namespace tanktread {
+namespace {
+
+struct Told {
+  Scene scene;
+  Warnings warnings{scene};
+  explicit Told(const std::vector<std::string>& settings) {
+    deck::Document deck = deck::read({}, settings, "Tanktread: {Time: {final time: 1}}\n");
+    deck.declare(scene);
+    scene.check();
+  }
+  std::string first(const StepFindings& signs) {
+    const auto sentences = warnings.sentences(signs);
+    return sentences.empty() ? std::string() : sentences.front();
+  }
+};
+
+bool names(const std::string& sentence, const char* what) { return sentence.find(what) != std::string::npos; }
+
+StepFindings at(double step, double tension, double element = 0.13) {
+  StepFindings signs;
+  signs.time = 1;
+  signs.step = step;
+  signs.smallest_tension = tension;
+  signs.compressed_area = tension < 0 ? 0.5 : 0;
+  signs.element = element;
+  return signs;
+}
+
+TEST(Warnings, AreSilentAboutAHealthyRun) {
+  Told run({"Membrane/capillary number=0.3"});
+  for (int k = 0; k < 100; ++k)
+    EXPECT_EQ(run.first(at(0.1, k < 10 ? -0.19 : -0.05)), "");  // the start and the steady state of a run that
+                                                                // agrees with other methods to five digits
+}
+
+TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
+  Told run({"Membrane/capillary number=0.1"});
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // they take their time
+  for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
+  ASSERT_EQ(run.warnings.memory().said.size(), 1u);
+  const std::string sentence = run.warnings.memory().said.front().sentence;
+  EXPECT_TRUE(names(sentence, "Membrane/bending modulus") && names(sentence, "at time 1 ")) << sentence;
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(run.first(at(0.1, -0.14)), "");
+  EXPECT_EQ(run.warnings.memory().said.size(), 1u);
+}
+
+TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
+  Told stiff({"Membrane/capillary number=0.1", "Membrane/bending modulus=0.02"});
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // k = 4.7, of 24 on the mesh
+  Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
+  for (int k = 0; k < 50; ++k) soft.first(at(0.1, -0.13));
+  EXPECT_TRUE(names(soft.warnings.memory().said.at(0).sentence, "too little resistance"));
+}
+
+TEST(Warnings, TellOfAFixedStepBeyondTheLimit) {
+  Told run({"Time/scheme=bs3", "Time/fixed step=0.2"});  // rho is 80 on these elements at Ca = 0.3
+  EXPECT_TRUE(names(run.first(at(0.2, 0)), "Time/scheme"));
+  Told implicit({"Time/scheme=tr-bdf2", "Time/fixed step=0.2"});
+  EXPECT_EQ(implicit.first(at(0.2, 0)), "");
+}
+
+TEST(Warnings, TellOfStepsThatStabilityKeepsShort) {
+  Told run({"Time/scheme=bs3"});
+  for (int k = 0; k < 9; ++k) EXPECT_EQ(run.first(at(0.03, 0)), "");
+  EXPECT_TRUE(names(run.first(at(0.03, 0)), "Time/tolerance"));
+}
+
+TEST(Warnings, TellOfAnElementThatFoldsWithTheCureOfTheScene) {
+  StepFindings signs = at(0.1, 0);
+  signs.jacobian_ratio = 0.01;
+  EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(signs), "Adaptation/enabled"));
+  EXPECT_TRUE(names(Told({"Membrane/law=surface tension", "Interface/motion=material"}).first(signs), "Interface/motion"));
+}
+
+TEST(Warnings, TellOfADropThatTheFlowMayDrawOutWithoutEnd) {
+  StepFindings signs = at(0.1, 0);
+  signs.jacobian_ratio = 0.01;
+  EXPECT_TRUE(names(Told({"Flow/type=uniaxial extension", "Membrane/law=surface tension"}).first(signs), "no steady shape"));
+  EXPECT_FALSE(names(Told({"Flow/type=uniaxial extension"}).first(signs), "no steady shape"));
+}
+
+TEST(Warnings, TellOfVolumeGapsAndSlimElements) {
+  StepFindings lost = at(0.1, 0), slim = lost, narrow = lost;
+  lost.volume_error = -0.01;
+  slim.aspect_ratio = 12;
+  narrow.gap = 0.02;
+  EXPECT_TRUE(names(Told({"Volume/constraint=flux"}).first(lost), "Volume/constraint"));
+  EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(slim), "Adaptation/enabled"));
+  EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(narrow), "gap"));
+}
+
+TEST(Warnings, TellFromTheStartOfChoicesThatAreKnownToFail) {
+  EXPECT_TRUE(names(Told({"Membrane/load=strong"}).first(at(0.01, 0)), "Membrane/load"));
+  EXPECT_TRUE(names(Told({"Surface/mesh=polar", "Surface/poles=plain", "Quadrature/rule=fixed"}).first(at(0.01, 0)), "poles"));
+}
+
+TEST(Soundness, EndsARunWhoseElementFolds) {
+  Scene scene;
+  deck::Document deck = deck::read({}, {"Surface/elements per side=4"});
+  deck.declare(scene);
+  const Body sphere = body(scene);
+  const surface::BezierMap map(sphere.space);
+  const coupling::Ranks ranks;
+  EXPECT_GT(soundness(map, sphere.rest, ranks).jacobian_ratio, 0.4);
+  Net folded = sphere.rest;
+  const std::vector<int>& points = sphere.space.elements[14].points;
+  folded.row(points[5]) += 3 * (folded.row(points[6]) - folded.row(points[5]));  // pulled over its neighbour
+  EXPECT_THROW(soundness(map, folded, ranks), RunFailure);
+}
+
+}  // namespace
+}  // namespace tanktread

@@ -1,0 +1,153 @@
+// A capsule in a tube: the forms of the block system, the Jacobian, the moving frame.
+
+#include <numbers>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "base/timing.hpp"
+#include "membrane/laws.hpp"
+#include "spline/extraction.hpp"
+#include "surface/shapes.hpp"
+#include "surface/tube_wall.hpp"
+#include "system/capsule.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+/// A capsule of a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube; or a drop whose control points move as `interface` says.
+struct Confined {
+  Ranks ranks;
+  Phases phases;
+  spline::Space space;
+  Net unstressed, x;
+  surface::TubeOptions options;
+  std::shared_ptr<const stokes::DuctFlow> duct;
+  std::optional<surface::TubeWall> wall;
+  std::unique_ptr<Capsule> capsule;
+
+  Confined(double viscosity_ratio, const std::string& form, const std::string& interface = {}) {
+    const spline::TMesh mesh = spline::cube(3);
+    space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+    const surface::LeastSquaresFit fit(space);
+    const Net sphere = surface::unit_sphere(mesh, fit);
+    const Eigen::RowVector3d centre(0, 0.05, -0.15);
+    unstressed = (0.6 * sphere).rowwise() + centre;
+    x = unstressed;
+    x.col(0) += 0.1 * unstressed.col(2);
+    options.radius = 1;
+    options.azimuthal_elements = 8;
+    options.axial_elements = 6;
+    duct = std::make_shared<const stokes::DuctFlow>(options, 1.3, 1.0);
+    wall.emplace(surface::tube_wall(duct->outline(), options, 2 * std::numbers::pi));
+    stokes::FlowOptions flow;
+    flow.type = "duct";
+    flow.viscosity = 1.3;
+    flow.mean_velocity = 1;
+    CapsuleParameters parameters;
+    parameters.solvers.frozen_operator = "assembled";  // the sum over nodes is good to 3 per cent on so few
+    parameters.viscosity = 1.3;
+    parameters.particles.front().viscosity_ratio = viscosity_ratio;
+    parameters.particles.front().radius = 0.6;
+    parameters.particles.front().material.law = membrane::NeoHookean{10};
+    parameters.solvers.tube = form;
+    parameters.solvers.tolerance = 1e-11;
+    parameters.quadrature.tolerance = 1e-7;  // differences of velocities are looked at
+    TubeParameters in_tube;
+    if (!interface.empty()) {
+      parameters.particles.front().material.law = membrane::SurfaceTension{10};
+      parameters.particles.front().measure = stokes::Measure::current;
+      parameters.particles.front().interface_motion = interface;
+      parameters.particles.front().interface_speed = 1;
+    }
+    in_tube.viscosity = 1.3;
+    in_tube.viscosity_ratio = viscosity_ratio;
+    capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
+                                        std::make_unique<Tube>(*wall, *duct, space, in_tube, phases));
+  }
+};
+
+TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplement) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined schur(ratio, "schur");
+    const Net v = schur.capsule->velocity(schur.x);
+    for (const char* form : {"block triangular", "block diagonal"}) {
+      Confined blocks(ratio, form);
+      EXPECT_LT((blocks.capsule->velocity(blocks.x) - v).norm(), 1e-8 * v.norm()) << form;  // residuals of 1e-11, conditions of 1e3
+      EXPECT_GT(blocks.capsule->work().velocity_iterations, 0);
+    }
+  }
+}
+
+// The wall answers to the fluid on the interface, and what the mesh does along it is no matter.
+TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove) {
+  for (const double ratio : {0.2, 4.0}) {
+    Confined material(ratio, "schur", "material");
+    const double drop = material.capsule->response(material.x).pressure_drop;
+    for (const char* motion : {"normal", "relaxed"}) {
+      Confined sliding(ratio, "schur", motion);
+      EXPECT_NEAR(sliding.capsule->response(sliding.x).pressure_drop, drop, 1e-8 * std::abs(drop)) << ratio << " " << motion;  // residuals as above
+      EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
+    }
+  }
+}
+
+TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined known(ratio, "schur"), fresh(ratio, "schur");
+    const Net elsewhere = known.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0.02);
+    known.capsule->velocity(elsewhere);
+    const Net v = known.capsule->velocity(known.x);
+    EXPECT_EQ(known.capsule->velocity(known.x), v);
+    EXPECT_EQ(known.capsule->work().evaluations, 2);
+    known.capsule->freeze(elsewhere);  // takes the tube there
+    const Tube::Response response = known.capsule->response(known.x);
+    EXPECT_EQ(known.capsule->work().evaluations, 2);
+
+    EXPECT_EQ(fresh.capsule->velocity(fresh.x), v);
+    const Net f = fresh.capsule->load(fresh.x);
+    fresh.capsule->tube()->place(fresh.x);
+    const Tube::Response again = fresh.capsule->tube()->respond(f, v);
+    EXPECT_EQ(response.wall_traction, again.wall_traction);
+    EXPECT_EQ(response.pressure_drop, again.pressure_drop);
+  }
+}
+
+TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
+  Confined plain(4, "schur"), helped(4, "schur");
+  const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
+  EXPECT_LT((helped.capsule->velocity(helped.x, start) - v).norm(), 1e-8 * v.norm());  // residuals as above
+  EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
+}
+
+TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
+  Confined scene(1, "schur");
+  Capsule& capsule = *scene.capsule;
+  Net delta = Net::Zero(scene.x.rows(), 3);
+  for (Eigen::Index a = 0; a < delta.rows(); ++a) delta(a, 1) = 0.3 * scene.unstressed(a, 2) * scene.unstressed(a, 0);
+  const double e = 1e-4;
+  // Without a load the derivative of the operators does not count, and (4.3) is the whole one, but for the volume constraint.
+  const Net difference = (capsule.velocity(scene.unstressed + e * delta) - capsule.velocity(scene.unstressed - e * delta)) / (2 * e);
+  capsule.freeze(scene.unstressed);
+  const Net jacobian = capsule.derivative(scene.unstressed, Net::Zero(delta.rows(), 3), delta);
+  EXPECT_LT((jacobian - difference).norm(), 0.01 * difference.norm());  // the volume constraint is 1 per cent of it
+}
+
+TEST(CapsuleInTube, NothingDependsOnThePlaceAlongTheTube) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined scene(ratio, "schur");
+    const Net v = scene.capsule->velocity(scene.x), there = scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(17, 0, 0));
+    EXPECT_LT((there - v).norm(), 1e-6 * v.norm());  // rules of 1e-7 are chosen anew
+    Net along = Net::Zero(v.rows(), 3);
+    along.col(0).setConstant(3);
+    EXPECT_NEAR(scene.capsule->norm(along), 0, 1e-12);
+  }
+}
+
+TEST(CapsuleInTube, OutsideOfTheTubeThereIsNoVelocity) {
+  Confined scene(1, "schur");
+  EXPECT_FALSE(scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(0, 0.5, 0)).allFinite());
+}
+
+}  // namespace
+}  // namespace tanktread::coupling

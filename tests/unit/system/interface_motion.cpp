@@ -1,0 +1,204 @@
+// Control points of a drop: what moves across the interface is physics, what moves along it is a choice.
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "system/collocation.hpp"
+#include "tests/unit/system/sphere_in_flow.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+struct Drop : SphereInFlow {
+  Drop() : SphereInFlow(3, "planar hyperbolic") {
+    parameters.particles.front().material.law = membrane::SurfaceTension{5};
+    parameters.particles.front().measure = stokes::Measure::current;
+    parameters.particles.front().interface_speed = 1;
+  }
+  Net velocity(const std::string& motion, const Net& x) {
+    parameters.particles.front().interface_motion = motion;
+    return capsule().velocity(x);
+  }
+  /// Largest normal and tangential component at the sites.
+  std::pair<double, double> components(const Net& x, const Net& v) const {
+    double across = 0, along = 0;
+    for (const auto& sites : space.collocation) {
+      const Vec3 n = surface::point(space, x, sites.front()).n, u = surface::value(space, v, sites.front());
+      across = std::max(across, std::abs(n.dot(u)));
+      along = std::max(along, (u - n * n.dot(u)).norm());
+    }
+    return {across, along};
+  }
+};
+
+TEST(InterfaceMotion, AllMotionsCrossTheInterfaceAlike) {
+  Drop drop;
+  drop.parameters.volume.constraint = "none";
+  Net x = drop.sphere;
+  x.col(0) *= 1.2, x.col(2) *= 0.9;
+  const Net material = drop.velocity("material", x);
+  for (const char* motion : {"normal", "relaxed"}) {
+    const Net difference = drop.velocity(motion, x) - material;
+    const auto [across, along] = drop.components(x, difference);
+    EXPECT_LT(across, 1e-13) << motion;  // projected and interpolated at the very sites that are looked at
+    EXPECT_GT(along, 1e-2) << motion;
+  }
+}
+
+TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
+  Drop drop;
+  drop.parameters.volume.constraint = "none";
+  const Net v = drop.velocity("normal", drop.sphere);
+  const auto [across, along] = drop.components(drop.sphere, v);
+  EXPECT_GT(across, 0.1);
+  EXPECT_LT(along, 1e-10);  // round-off of interpolation, and, over the 1e-3 that holds it, of a rotation that vanishes
+}
+
+// Tension alone leaves a sphere to the flow as a blob of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970, section 5.
+TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
+  SphereInFlow drop(6, "planar hyperbolic");
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
+  drop.parameters.particles.front().measure = stokes::Measure::current;
+  drop.parameters.particles.front().interface_speed = 1;
+  drop.parameters.quadrature.tolerance = 1e-6;
+  for (const double ratio : {0.1, 10.0})
+    for (const char* motion : {"material", "normal", "relaxed"}) {
+      drop.parameters.particles.front().viscosity_ratio = ratio;
+      drop.parameters.particles.front().interface_motion = motion;
+      Capsule capsule = drop.capsule();
+      const Mat3 s = capsule.stresslet(drop.sphere, capsule.velocity(drop.sphere));
+      const double exact = 2 * 4 * std::numbers::pi / 3 * 5 * (ratio - 1) / (2 * ratio + 3);
+      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << motion;  // the sphere's mesh
+      EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << motion;
+    }
+}
+
+TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
+  Drop drop;
+  const spline::PolarMesh polar{8, 6, spline::PoleRule::plain};
+  drop.space = spline::space(polar);
+  drop.sphere = surface::initial_shape(drop.space, polar, 2, {});
+  drop.parameters.volume.constraint = "none";
+  for (const char* motion : {"normal", "relaxed"}) {
+    const Net v = drop.velocity(motion, drop.sphere);
+    ASSERT_TRUE(v.allFinite()) << motion;
+    for (const auto& sites : drop.space.collocation)
+      if (sites.size() > 4) {  // a pole, about which the flow is (x1, 0, -x3)
+        const Vec3 x = surface::value(drop.space, drop.sphere, sites.front()), u = surface::value(drop.space, v, sites.front());
+        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << motion;  // round-off over the 1e-3 that holds the rotation of a sphere
+        EXPECT_LT(u[2] * x[2], -0.1) << motion;
+      }
+  }
+}
+
+// Where the particle is in an affine flow, and how fast the observer is, changes its velocity by that of the frame and nothing else.
+TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
+  Net x = drop.sphere;
+  x.col(0) *= 1.2, x.col(2) *= 0.9;
+  const Eigen::RowVector3d away(2, -3, 10), carried = away * drop.flow.gradient->transpose();
+  for (const char* motion : {"material", "normal", "relaxed"}) {
+    const Net here = drop.velocity(motion, x), there = drop.velocity(motion, x.rowwise() + away);
+    EXPECT_LT(((there.rowwise() - carried) - here).norm(), 1e-12 * there.norm()) << motion;  // round-off
+  }
+}
+
+// An observer who turns sees the velocity of his frame on top, and nothing else.
+TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
+  Drop drop;
+  drop.flow.type = "linear";
+  const Mat3 strain = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
+  const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
+  Net x = drop.sphere;
+  x.col(0) *= 1.2, x.col(2) *= 0.9;
+  x = x.rowwise() + Eigen::RowVector3d(0.4, -1, 2);
+  for (const Net& shape : {drop.sphere, x})
+    for (const char* motion : {"material", "normal", "relaxed"}) {
+      drop.flow.gradient = strain;
+      const Net held = drop.velocity(motion, shape);
+      drop.flow.gradient = strain + turns;
+      const Net turned = drop.velocity(motion, shape);
+      EXPECT_LT((turned - shape * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << motion;  // round-off
+    }
+}
+
+// A velocity along the surface alone is that of a steady shape.
+TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
+  Drop drop;
+  Net x = drop.sphere;
+  x.col(0) *= 1.5;
+  drop.flow.type = "linear";
+  const Mat3 shear = (Mat3() << 0, 0, 2.25, 0, 0, 0, -1, 0, 0).finished();  // round and round this ellipsoid
+  drop.flow.gradient = shear;
+  drop.parameters.volume.constraint = "none";
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+  EXPECT_LT(drop.velocity("normal", x).norm(), 0.04 * (x * shear.transpose()).norm());  // what the second term of (4.14) leaves
+}
+
+TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
+  const Net moved = Eigen::RowVector3d(0.3, -0.1, 0.2).replicate(drop.sphere.rows(), 1);
+  for (const char* motion : {"normal", "relaxed"}) {
+    drop.parameters.particles.front().interface_motion = motion;
+    Capsule capsule = drop.capsule();
+    capsule.freeze(drop.sphere);
+    const Net change = capsule.derivative(drop.sphere, Net::Zero(moved.rows(), 3), moved);
+    EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-12 * change.norm()) << motion;  // round-off
+  }
+}
+
+// Flow and shape are symmetric about the axes, so that no rigid motion is shared, and without tension the fluid's own change is known.
+TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.flow.gradient = Vec3(1, 0.5, -1.5).asDiagonal();
+  drop.parameters.volume.constraint = "none";
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+  Net x = drop.sphere, delta = x;
+  x.col(0) *= 1.5, x.col(2) *= 0.8;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) delta.row(i) *= std::pow(drop.sphere(i, 0), 2);
+  for (const char* motion : {"normal", "relaxed"}) {
+    drop.parameters.particles.front().interface_motion = motion;
+    Capsule capsule = drop.capsule();
+    capsule.freeze(x);
+    constexpr double aside = 1e-4;
+    const Net change = (capsule.velocity(x + aside * delta) - capsule.velocity(x - aside * delta)) / (2 * aside);
+    const Net v = capsule.velocity(x), known = capsule.derivative(x, v, delta);
+    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << motion;  // of the differences
+  }
+}
+
+// A bag that is larger or smaller in equal parts is under a tension that is the same everywhere: it pulls nowhere along the interface.
+TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
+  Drop drop;
+  drop.flow.type = "quiescent";
+  drop.parameters.volume.constraint = "none";
+  drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+  drop.sphere.col(0) *= 2;
+  const Net drawn = drop.velocity("relaxed", drop.sphere * Vec3(1.25, 1, 1).asDiagonal());
+  for (const double size : {0.8, 1.25})
+    EXPECT_LT(drop.velocity("relaxed", size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // the error of this coarse mesh
+}
+
+TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
+  Drop drop;
+  drop.flow.type = "quiescent";
+  // Slide the control points of a sphere along it: the surface is a sphere still, and the fluid at rest but for the error of the mesh.
+  Net x = drop.sphere;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double turn = 0.2 * drop.sphere(i, 2);
+    x.row(i) << std::cos(turn) * drop.sphere(i, 0) - std::sin(turn) * drop.sphere(i, 1),
+        std::sin(turn) * drop.sphere(i, 0) + std::cos(turn) * drop.sphere(i, 1), drop.sphere(i, 2);
+  }
+  const membrane::Membrane mesh(drop.space, drop.sphere, membrane::NeoHookean{1});
+  EXPECT_LT(mesh.load(x).cwiseProduct(drop.velocity("relaxed", x)).sum(), 0);  // the mesh's energy falls
+}
+
+}  // namespace
+}  // namespace tanktread::coupling

@@ -1,0 +1,267 @@
+// Belos behind one function, and replicated rows, on any number of ranks.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include <Eigen/LU>
+#include <Teuchos_ParameterList.hpp>
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "system/ranks.hpp"
+#include "system/solvers/krylov.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+Eigen::MatrixXd nonsymmetric(int n) {
+  Eigen::MatrixXd a(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) a(i, j) = (i == j ? 3 : 0) + std::sin(1.0 + i + 2 * j) / n;
+  return a;
+}
+
+SolveReport solve(const Krylov& krylov, const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance,
+                  const Apply& precondition = {}) {
+  return krylov.solve({{{"unknowns", b.size()}}, apply, precondition}, b, x, tolerance);
+}
+
+TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  for (const char* name : {"GMRES", "BICGSTAB"})
+    for (const double tolerance : {1e-3, 1e-10}) {
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+      const SolveReport report = solve(Krylov(name, nullptr), apply, b, x, tolerance);
+      EXPECT_TRUE(report.converged);
+      EXPECT_GT(report.iterations, 0);
+      EXPECT_LT((a * x - b).norm(), 2 * tolerance * b.norm()) << name;  // Belos measures the same residual by recurrence
+    }
+}
+
+TEST(Krylov, TheInverseAsPreconditionerLeavesOneIteration) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n), inverse = a.inverse();
+  const auto product = [](const Eigen::MatrixXd& m) {
+    return [&m](const double* in, double* out) { Eigen::Map<Eigen::VectorXd>(out, n) = m * Eigen::Map<const Eigen::VectorXd>(in, n); };
+  };
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const char* name : {"GMRES", "BICGSTAB"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    const SolveReport report = solve(Krylov(name, nullptr), product(a), b, x, 1e-10, product(inverse));
+    EXPECT_TRUE(report.converged) << name;
+    EXPECT_EQ(report.iterations, 1) << name;
+    EXPECT_LT((a * x - b).norm(), 1e-10 * b.norm()) << name;
+  }
+}
+
+TEST(Krylov, MultipliesOnceAnIteration) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  int products = 0;
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+    ++products;
+  };
+  const Krylov krylov("GMRES", nullptr);
+  for (const double tolerance : {1e-3, 1e-8}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    products = 0;
+    EXPECT_EQ(solve(krylov, apply, Eigen::VectorXd::LinSpaced(n, -1, 2), x, tolerance).iterations, products);
+  }
+}
+
+TEST(Krylov, TellsWhenItStopsShort) {
+  const int n = 40;
+  const Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before step n
+    for (int i = 0; i < n; ++i) out[i] = in[(i + 1) % n];
+  };
+  Eigen::VectorXd b = Eigen::VectorXd::Unit(n, 0), x = Eigen::VectorXd::Zero(n);
+  const Krylov krylov("GMRES", nullptr);
+  EXPECT_TRUE(solve(krylov, shift, b, x, 1e-8).converged);
+  const Apply singular = [&](const double*, double* out) { std::fill(out, out + n, 0.0); };
+  x.setZero();
+  const SolveReport report = solve(krylov, singular, b, x, 1e-8);
+  EXPECT_FALSE(report.converged);
+  EXPECT_THROW(require_convergence(report, "nothing", 1e-8), RunFailure);
+}
+
+TEST(Krylov, TellsTheResidualOfEachBlockWhereItStopsShort) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  const auto list = std::make_shared<Teuchos::ParameterList>();
+  list->set("Maximum Iterations", 1);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const char* name : {"GMRES", "Block GMRES", "BICGSTAB"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    const SolveReport report = Krylov(name, list).solve({{{"velocity", n - 1}, {"pressure drop", 1}}, apply, {}}, b, x, 1e-10);
+    EXPECT_EQ(report.iterations, 1) << name;
+    ASSERT_EQ(report.residuals.size(), 2u) << name;
+    EXPECT_NEAR(report.residuals[0].second, (a * x - b).head(n - 1).norm() / b.norm(), 1e-14) << name;
+    EXPECT_NEAR(report.residuals[1].second, std::abs((a * x - b)[n - 1]) / b.norm(), 1e-14) << name;
+    try {
+      require_convergence(report, "both", 1e-10);
+      FAIL() << name;
+    } catch (const RunFailure& failure) {
+      EXPECT_NE(std::string(failure.what()).find("of the pressure drop"), std::string::npos) << failure.what();
+    }
+  }
+}
+
+// Blocks are but names of parts of the array.
+TEST(Krylov, SolvesTheSameInOneBlockAndInSeveral) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const std::string& name : Krylov::names()) {
+    if (name.find("CG") != std::string::npos || name == "MINRES" || name == "FIXED POINT") continue;  // for symmetric systems, or small ones
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n), y = x;
+    const Krylov krylov(name, nullptr);
+    EXPECT_TRUE(krylov.solve({{{"all", n}}, apply, {}}, b, x, 1e-10).converged) << name;
+    EXPECT_TRUE(krylov.solve({{{"one", 40}, {"two", 19}, {"three", 1}}, apply, {}}, b, y, 1e-10).converged) << name;
+    EXPECT_LT((a * x - b).norm(), 2e-10 * b.norm()) << name;
+    EXPECT_LT((x - y).norm(), 1e-12 * x.norm()) << name;
+  }
+}
+
+// A preconditioner changes the way to the solution, not the solution.
+TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
+  const int n = 60;
+  Eigen::MatrixXd a = nonsymmetric(n);
+  a.diagonal() += Eigen::VectorXd::LinSpaced(n, 0, 2);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  for (const char* name : {"GMRES", "BICGSTAB", "TFQMR"}) {
+    std::map<std::string, int> iterations;
+    for (const char* preconditioner : {"own", "none", "neumann", "recycled"}) {
+      const Krylov krylov(IterativeOptions{name, nullptr, preconditioner});
+      for (int repeated = 0; repeated < 2; ++repeated) {
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+        const SolveReport report = krylov.solve({{{"unknowns", n}}, apply, {}}, b, x, 1e-6);
+        EXPECT_TRUE(report.converged) << name << ", " << preconditioner;
+        EXPECT_LT((a * x - b).norm(), 2e-6 * b.norm()) << name << ", " << preconditioner;
+        iterations[preconditioner] = report.iterations;
+      }
+    }
+    EXPECT_EQ(iterations["own"], iterations["none"]) << name;
+    EXPECT_LT(iterations["neumann"], iterations["none"]) << name;
+    EXPECT_LE(iterations["recycled"], 1) << name;  // the solution is a sum of what was multiplied before
+  }
+}
+
+TEST(Krylov, NumbersThatAreNotFiniteAreASolveThatStoppedShort) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Apply broken = [&](const double* in, double* out) { std::fill(out, out + 5, nan * in[0]); };
+  for (const char* name : {"GMRES", "BICGSTAB", "TFQMR"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(5);
+    EXPECT_FALSE(solve(Krylov(name, nullptr), broken, Eigen::VectorXd::Ones(5), x, 1e-8).converged) << name;
+    x.setZero();
+    EXPECT_FALSE(solve(Krylov(name, nullptr), [](const double*, double*) {}, Eigen::VectorXd::Constant(5, nan), x, 1e-8).converged) << name;
+  }
+}
+
+// Ranks whose products differ by more than round-off still end in the same iteration.
+TEST(Krylov, EndsInTheSameIterationOnAllRanks) {
+  const int n = 60;
+  const Ranks ranks;
+  const Eigen::MatrixXd a = nonsymmetric(n) * (1 + 0.3 * ranks.rank()) + ranks.rank() * Eigen::MatrixXd::Identity(n, n);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  for (const char* name : {"GMRES", "BICGSTAB"}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    const int iterations = solve(Krylov(name, nullptr), apply, Eigen::VectorXd::LinSpaced(n, -1, 2), x, 1e-6).iterations;
+    EXPECT_EQ(iterations, ranks.first(iterations)) << name;
+  }
+}
+
+// The residual is one of the right-hand side, not of the start, which may leave nothing but rounding.
+TEST(Krylov, AStartThatIsTheSolutionIsLeftAsItIs) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2), solution = a.partialPivLu().solve(b);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  for (const char* name : {"GMRES", "Flexible GMRES", "BICGSTAB", "TFQMR"}) {
+    Eigen::VectorXd x = solution;
+    const SolveReport report = solve(Krylov(name, nullptr), apply, b, x, 1e-8);
+    EXPECT_TRUE(report.converged) << name;
+    EXPECT_LE(report.iterations, 1) << name;
+    EXPECT_LT((x - solution).norm(), 1e-8 * solution.norm()) << name;
+  }
+}
+
+TEST(Krylov, ZeroRightHandSideCostsNothing) {
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(5);
+  const SolveReport report = solve(Krylov("GMRES", nullptr), [](const double*, double*) { FAIL(); }, Eigen::VectorXd::Zero(5), x, 1e-8);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_EQ(x.norm(), 0);
+}
+
+TEST(Krylov, ASolverThatBelosDoesNotKnowIsTheUsersMistake) { EXPECT_THROW(Krylov("WISHFUL", nullptr), UserError); }
+
+TEST(Ranks, EveryRankGetsAllRows) {
+  Ranks ranks;
+  const int n = 23;
+  std::vector<int> mine;
+  for (int i = 0; i < n; ++i)
+    if (i * 7 % 11 % ranks.size() == ranks.rank()) mine.push_back(i);
+  ranks.own(mine, n);
+  Net net = Net::Constant(n, 3, -1);
+  for (const int i : mine) net.row(i) << i, 10 * i, 100 * i;
+  ranks.replicate(net);
+  for (int i = 0; i < n; ++i) EXPECT_EQ(net.row(i), Eigen::RowVector3d(i, 10 * i, 100 * i));
+}
+
+TEST(Ranks, WhatTheyHaveAddsUp) {
+  Ranks ranks;
+  ranks.own(ranks.rank() == 0 ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{}, 5);
+  Net a = Net::Constant(5, 3, 1 + ranks.rank()), b = Net::Zero(5, 3);
+  int owners = 0;
+  for (int k = 0; k < 15; ++k) {
+    if (ranks.owner(k, 15) == ranks.rank()) b(k / 3, k % 3) = 0.1 * k;
+    if (k > 0) owners += ranks.owner(k, 15) != ranks.owner(k - 1, 15);
+  }
+  Net* const both[] = {&a, &b};
+  ranks.add(both);
+  EXPECT_EQ(owners, std::min(ranks.size(), 15) - 1);
+  for (int k = 0; k < 15; ++k) {
+    EXPECT_EQ(a(k / 3, k % 3), ranks.size() * (ranks.size() + 1) / 2);
+    EXPECT_EQ(b(k / 3, k % 3), 0.1 * k);
+  }
+}
+
+TEST(Ranks, EveryItemIsDoneByOneRankAndNumbersAddUpInPlace) {
+  const Ranks ranks;
+  std::vector<double> done(7, 0), weight(3, 1);
+  for (const int k : ranks.share(7)) done[static_cast<std::size_t>(k)] = 0.1 * k;
+  ranks.add_all({done, weight});
+  for (std::size_t k = 0; k < done.size(); ++k) EXPECT_EQ(done[k], 0.1 * static_cast<double>(k));  // one number and zeros
+  for (const double w : weight) EXPECT_EQ(w, ranks.size());
+}
+
+TEST(Ranks, OneRankSpeaksForAll) {
+  Ranks ranks;
+  EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));
+  EXPECT_FALSE(ranks.any(false));
+  EXPECT_EQ(ranks.first(3.5 + ranks.rank()), 3.5);
+}
+
+}  // namespace
+}  // namespace tanktread::coupling

@@ -1,0 +1,63 @@
+// Fixed points by NOX.
+
+#include <cmath>
+#include <limits>
+
+#include <Teuchos_ParameterList.hpp>
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "system/solvers/nonlinear.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+double norm(const Net& x) { return x.norm(); }
+
+/// Ten points; g stretches by up to 1.5, so that plain iteration runs away from the fixed point.
+Net stretched(const Net& x) {
+  Net y = x;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double rate = -1.5 * static_cast<double>(i + 1) / static_cast<double>(x.size());
+    y.data()[i] = 1 + rate * x.data()[i] + 0.1 * std::sin(x.data()[i]);
+  }
+  return y;
+}
+
+TEST(FixedPoint, IsFoundWherePlainIterationDiverges) {
+  const Net start = Net::Zero(10, 3);
+  Net plain = start;
+  for (int k = 0; k < 40; ++k) plain = stretched(plain);
+  EXPECT_GT(norm(stretched(plain) - plain), 1);
+  for (const char* method : {"anderson", "newton-krylov"}) {
+    Net x = start;
+    int evaluations = 0;
+    const auto g = [&](const Net& y) {
+      ++evaluations;
+      return stretched(y);
+    };
+    const NonlinearReport report = FixedPoint(method, nullptr).solve(g, norm, 1e-8, 60, x);
+    EXPECT_TRUE(report.converged) << method;
+    EXPECT_LE(norm(stretched(x) - x), 1e-8) << method;
+    EXPECT_GE(evaluations, report.iterations);
+  }
+}
+
+TEST(FixedPoint, EndsUnconvergedAtTheLastIterationOrAtAValueThatIsNotFinite) {
+  for (const char* method : {"anderson", "newton-krylov"}) {
+    Net x = Net::Zero(10, 3);
+    EXPECT_FALSE(FixedPoint(method, nullptr).solve(stretched, norm, 1e-14, 1, x).converged) << method;
+    const auto broken = [](const Net& y) -> Net { return Net::Constant(y.rows(), 3, std::numeric_limits<double>::quiet_NaN()); };
+    EXPECT_FALSE(FixedPoint(method, nullptr).solve(broken, norm, 1e-8, 10, x).converged) << method;
+  }
+}
+
+TEST(FixedPoint, AListThatNoxDoesNotTakeIsTheUsersMistake) {
+  const auto list = std::make_shared<Teuchos::ParameterList>();
+  list->sublist("Anderson Parameters").set("Storage Deep", 3);
+  Net x = Net::Zero(10, 3);
+  EXPECT_THROW(FixedPoint("anderson", list).solve(stretched, norm, 1e-8, 10, x), UserError);
+}
+
+}  // namespace
+}  // namespace tanktread::coupling

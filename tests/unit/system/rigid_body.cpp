@@ -1,0 +1,151 @@
+// Free rigid bodies in affine flows: Jeffery's motion, and what every body must do.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+#include "system/solids/rigid_body.hpp"
+
+namespace tanktread::coupling {
+namespace rigid_body_test {
+
+using std::numbers::pi;
+constexpr double viscosity = 1.7;
+
+Mat3 some_gradient() {
+  Mat3 l;
+  l << 0.5, 0.3, 1.0, -0.4, 0.2, 0.6, 0.1, -0.8, -0.7;
+  return l;
+}
+
+/// A free body on the cube mesh of six elements a side, in the linear flow above.
+struct Fixture {
+  spline::TMesh mesh = spline::cube(6);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  surface::ParticleShape shape;
+  Ranks ranks;
+  Phases phases;
+  std::unique_ptr<Resistance> resistance;
+  std::unique_ptr<FreeBody> body;
+
+  explicit Fixture(const Vec3& semi_axes) {
+    shape.shape = "ellipsoid";
+    shape.semi_axes = semi_axes;
+    shape.center = Vec3(0.3, -0.1, 0.2);
+    quadrature::Options quadrature;
+    quadrature.tolerance = 1e-7;
+    SolverOptions solvers;
+    solvers.tolerance = 1e-12;  // symmetry and balance hold as far as the system is solved
+    resistance =
+        std::make_unique<Resistance>(space, surface::initial_shape(space, mesh, shape), viscosity, quadrature, solvers, ranks, phases);
+    stokes::FlowOptions flow;
+    flow.type = "linear";
+    flow.gradient = some_gradient();
+    body = std::make_unique<FreeBody>(*resistance, shape.center, shape.equivalent_radius(), stokes::AmbientFlow(flow));
+  }
+
+  Net turned(double angle, const Vec3& axis) const {
+    Net place = placed(shape.center);
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, axis.normalized()));
+    place.row(1) = q.vec().transpose();
+    place(2, 0) = q.w();
+    return place;
+  }
+};
+
+TEST(FreeBody, SphereGoesWithTheFlow) {
+  const Fixture f(Vec3::Constant(0.8));
+  const RigidMotion motion = f.body->motion(f.turned(0.7, Vec3(1, 2, 3)));
+  const Mat3 l = some_gradient();
+  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-9);  // the mesh is symmetric, its system is solved to 1e-12
+  EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-9);
+  const Mat3 strain = 0.5 * (l + l.transpose()), exact = 20 * pi / 3 * viscosity * 0.8 * 0.8 * 0.8 * strain;  // Einstein 1906
+  EXPECT_LT((f.body->stresslet(placed(f.shape.center)) - exact).norm() / exact.norm(), 5e-5);  // fourth order: 2.4e-5
+}
+
+TEST(FreeBody, SpheroidTurnsAsJefferyFound) {
+  const double ratio = 1.6, b = (ratio * ratio - 1) / (ratio * ratio + 1);
+  const Fixture f(Vec3(0.7, 0.7, 0.7 * ratio));
+  const Mat3 l = some_gradient(), e = 0.5 * (l + l.transpose()), w = 0.5 * (l - l.transpose());
+  for (const Net& place : {placed(f.shape.center), f.turned(0.7, Vec3(1, 2, 3)), f.turned(2.5, Vec3(0, 1, -1))}) {
+    const Vec3 p = rotation_of(place) * Vec3(0, 0, 1);
+    const Vec3 exact = w * p + b * (e * p - p * p.dot(e * p));
+    EXPECT_LT((f.body->motion(place).angular_velocity.cross(p) - exact).norm(), 1e-5);  // the fit of the surface at six elements a side
+  }
+}
+
+stokes::FlowOptions parabolic() {
+  stokes::FlowOptions flow;
+  flow.type = "parabolic", flow.profile = "round", flow.maximum_velocity = 2, flow.half_width = 1.6;
+  return flow;
+}
+
+TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
+  const Fixture f(Vec3::Constant(0.8));
+  const stokes::AmbientFlow flow(parabolic());
+  const FreeBody body(*f.resistance, f.shape.center, 0.8, flow);
+  const RigidMotion motion = body.motion(f.turned(0.7, Vec3(1, 2, 3)));
+  const Vec3 c = f.shape.center, laplacian(2 * flow.curvature().trace(), 0, 0);
+  const Mat3 l = flow.gradient(c);
+  EXPECT_LT((motion.velocity - flow.velocity(c) - 0.64 / 6 * laplacian).norm() / motion.velocity.norm(), 2e-5);  // the mesh of six elements a side
+  EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-5);
+}
+
+// At one place the modes must give what a solve there gives, which FreeBodyInTube does without a tube just as well.
+TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
+  Fixture f(Vec3(0.7, 0.9, 1.2));
+  stokes::FlowOptions options = parabolic();
+  options.history.emplace();
+  options.history->times = {0, 2}, options.history->amplitudes = {1, 3}, options.history->angles = {0, 60}, options.history->axis = "x3";
+  const stokes::AmbientFlow flow(options);
+  FreeBody modes(*f.resistance, f.shape.center, 0.9, flow);
+  FreeBodyInTube solve(*f.resistance, f.shape.center, 0.9, flow, viscosity, {});
+  const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  for (const double time : {0.0, 1.0}) {
+    modes.at(time, 0);
+    solve.at(time, 0);
+    const RigidMotion one = modes.motion(place), other = solve.motion(place);
+    EXPECT_LT((one.velocity - other.velocity).norm(), 1e-6 * other.velocity.norm());  // solves to 1e-8; a quadratic field turns between its sites
+    EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 1e-6 * other.angular_velocity.norm());
+    EXPECT_LT((modes.stresslet(place) - solve.stresslet(place)).norm(), 1e-5 * solve.stresslet(place).norm());
+  }
+}
+
+TEST(FreeBody, IsFreeOfForceAndTorque) {
+  const Fixture f(Vec3(0.7, 0.9, 1.2));
+  const Net f0 = f.body->force_density(placed(f.shape.center));
+  const double scale = viscosity * some_gradient().norm();
+  EXPECT_LT(f.resistance->force(f0).norm(), 1e-9 * scale);  // residuals of 1e-12, conditions of 1e2
+  EXPECT_LT(f.resistance->torque(f0, f.shape.center).norm(), 1e-9 * scale);
+}
+
+TEST(FreeBody, MovesAsItsSurfaceDoes) {
+  Fixture f(Vec3(0.7, 0.9, 1.2));
+  const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  const RigidMotion motion = f.body->motion(place);
+  const double h = 1e-5;
+  const Net slope = f.body->velocity(place);
+  const Net rate = (f.body->surface(place + h * slope) - f.body->surface(place - h * slope)) / (2 * h);
+  const Net exact = rigid_velocity(f.body->surface(place), motion, centre_of(place));
+  EXPECT_LT((rate - exact).norm() / exact.norm(), 1e-8);  // h^2 and round-off over h
+}
+
+TEST(FreeBody, KeepsItsQuaternionOfUnitLength) {
+  Fixture f(Vec3(0.7, 0.9, 1.2));
+  Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  const Mat3 before = rotation_of(place);
+  place.bottomRows<2>() *= 1.3;
+  EXPECT_LT((rotation_of(place) - before).norm(), 1e-15);
+  f.body->restore_volume(place);
+  EXPECT_NEAR(place.bottomRows<2>().norm(), 1, 1e-15);
+}
+
+}  // namespace rigid_body_test
+}  // namespace tanktread::coupling

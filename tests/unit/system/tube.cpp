@@ -1,0 +1,192 @@
+// What a tube answers: linear, the same wherever along it the particle is, consistent with its parts, with its frozen copy and with its checks.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "quadrature/gauss.hpp"
+#include "spline/extraction.hpp"
+#include "spline/t_mesh.hpp"
+#include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
+#include "system/solids/rigid_body.hpp"
+#include "system/solids/tube.hpp"
+
+namespace tanktread::coupling {
+namespace tube_test {
+
+using std::numbers::pi;
+constexpr double viscosity = 1.7;
+
+/// A sphere of radius 0.5 off the axis of the unit tube, coarse all over.
+struct Fixture {
+  spline::TMesh mesh = spline::cube(3);
+  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
+  Ranks ranks;
+  Phases phases;
+  surface::ParticleShape shape;
+  Net x, f, v;
+  std::shared_ptr<const stokes::DuctFlow> flow;
+  std::unique_ptr<Tube> tube;
+
+  explicit Fixture(double ratio) {
+    shape.radius = 0.5;
+    shape.center = Vec3(0, 0.1, -0.05);
+    x = surface::initial_shape(space, mesh, shape);
+    f = Net(x.rows(), 3), v = f;
+    for (Eigen::Index i = 0; i < f.rows(); ++i) {
+      f.row(i) << x(i, 1) * x(i, 1), x(i, 0), std::sin(3 * x(i, 2));
+      v.row(i) << 1 + x(i, 2), x(i, 0) * x(i, 0), -x(i, 1);
+    }
+    surface::TubeOptions options;
+    options.radius = 1;
+    options.azimuthal_elements = 12, options.axial_elements = 10;
+    flow = std::make_shared<stokes::DuctFlow>(options, viscosity, 1.3);
+    TubeParameters parameters;
+    parameters.viscosity = viscosity, parameters.viscosity_ratio = ratio;
+    parameters.quadrature.tolerance = 1e-6;
+    tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
+    tube->set_reference(x);
+    tube->place(x);
+  }
+};
+
+TEST(Tube, AnswersLinearly) {
+  Fixture s(5);
+  const Tube::Response both = s.tube->respond(s.f, s.v), load = s.tube->respond(s.f), velocity = s.tube->respond({}, s.v);
+  EXPECT_LT((both.velocity - load.velocity - velocity.velocity).norm() / both.velocity.norm(), 1e-12);
+  EXPECT_LT((both.wall_traction - load.wall_traction - velocity.wall_traction).norm() / both.wall_traction.norm(), 1e-11);
+  EXPECT_NEAR(both.pressure_drop, load.pressure_drop + velocity.pressure_drop, 1e-12 * std::abs(both.pressure_drop));
+}
+
+TEST(Tube, SolvesTheBlockSystem) {
+  Fixture s(5);
+  const Tube::Response r = s.tube->respond(s.f, s.v);
+  EXPECT_NEAR(r.pressure_drop, s.tube->pressure_of(s.f, s.v), 1e-12 * std::abs(r.pressure_drop));  // round-off
+  const Net wall = s.tube->wall_on_wall(r.wall_traction) - r.pressure_drop * s.tube->inlet_on_wall(),
+            particle = s.tube->load_on_wall(s.f) + s.tube->velocity_on_wall(s.v);
+  EXPECT_LT((wall - particle).norm() / particle.norm(), 1e-11);
+  const Net answer = s.tube->wall_on_particle(r.wall_traction) + r.pressure_drop * s.tube->inlet_on_particle();
+  EXPECT_LT((answer - r.velocity).norm() / answer.norm(), 1e-12);
+}
+
+TEST(Tube, HasThePressureDropOfTheFlowOnTheSurfaceHoweverCoarse) {
+  Fixture s(1);
+  const Net along = Eigen::RowVector3d(1, 0, 0).replicate(s.x.rows(), 1);
+  const auto& rule = quadrature::tensor_gauss(12);
+  constexpr double h = 1e-4;
+  double work = 0;  // of this force and the tube's flow
+  for (int e = 0; e < static_cast<int>(s.space.elements.size()); ++e)
+    for (int q = 0; q < rule.size(); ++q) {
+      const auto at = [&](double du, double dv) -> Vec3 { return surface::value(s.space, s.x, {e, rule.s[q] + du, rule.t[q] + dv}); };
+      const double area = (at(h, 0) - at(-h, 0)).cross(at(0, h) - at(0, -h)).norm() / (4 * h * h);
+      work += rule.weights[q] * area * s.flow->velocity(at(0, 0))[0];
+    }
+  EXPECT_NEAR(s.tube->pressure_of(along) * s.flow->flow_rate() / work, 1, 1e-7);  // differences over h; 1.1e-4 where the flow is interpolated
+}
+
+TEST(Tube, TakesNoAccountOfVelocitiesWhenTheViscositiesAreEqual) {
+  Fixture s(1);
+  EXPECT_EQ((s.tube->respond(s.f, s.v).velocity - s.tube->respond(s.f).velocity).norm(), 0);
+  EXPECT_EQ(s.tube->pressure_of({}, s.v), 0);
+}
+
+TEST(Tube, IsTheSameEverywhereAlongItsAxis) {
+  Fixture s(5);
+  const Net here = s.tube->respond(s.f, s.v).velocity;
+  const double gap = s.tube->gap();
+  s.tube->place(s.x.rowwise() + Eigen::RowVector3d(123, 0, 0));
+  EXPECT_LT((s.tube->respond(s.f, s.v).velocity - here).norm() / here.norm(), 1e-9);  // round-off of 123
+  EXPECT_NEAR(s.tube->gap(), gap, 1e-10);
+}
+
+TEST(Tube, MeasuresTheGap) {
+  Fixture s(1);
+  EXPECT_NEAR(s.tube->gap(), 1 - 0.5 - std::hypot(0.1, 0.05), 2e-3);  // the fits of sphere and circle
+}
+
+TEST(Tube, KeepsItsAnswerFrozen) {
+  Fixture s(5);
+  s.tube->freeze();
+  const Net now = s.tube->respond(s.f, s.v).velocity;
+  s.tube->place(0.8 * s.x);
+  EXPECT_LT((s.tube->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits an entry
+  EXPECT_GT((s.tube->respond(s.f, s.v).velocity - now).norm() / now.norm(), 0.1);
+}
+
+TEST(Tube, ServesAnotherMeshOfTheParticle) {
+  Fixture s(5);
+  const spline::TMesh finer = spline::cube(4);
+  const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
+  const Net x = surface::initial_shape(space, finer, s.shape);
+  Tube other(*s.tube, space);
+  other.set_reference(x);
+  other.place(x);
+  const auto work = [](Tube& tube, const Net& net) {  // of a constant load and a rigid velocity: mesh-independent
+    const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);
+    return tube.respond(load, net).pressure_drop;
+  };
+  EXPECT_NEAR(work(other, x) / work(*s.tube, s.x), 1, 1e-3);
+}
+
+TEST(Tube, GivesItsAnswerAnywhere) {
+  Fixture s(5);
+  s.tube->place(s.x.rowwise() + Eigen::RowVector3d(7, 0, 0));
+  const Tube::Response r = s.tube->respond(s.f, s.v);
+  Net u(s.x.rows(), 3), sites(s.x.rows(), 3);
+  std::vector<int> all;
+  for (int i = 0; i < s.space.n_points; ++i) {
+    all.push_back(i);
+    sites.row(i) =
+        surface::value(s.space, s.x, s.space.collocation[static_cast<std::size_t>(i)].front()).transpose() + Eigen::RowVector3d(7, 0, 0);
+  }
+  s.tube->velocity_at(sites, r, all, u);
+  EXPECT_LT((u - r.velocity).norm() / u.norm(), 1e-12);
+}
+
+TEST(Tube, HasChecksThatAgreeForAForceFreeFlow) {
+  // A load that exerts no force and a rigid velocity: both a small share of what they are made of.
+  Fixture s(5);
+  const Net v = Eigen::RowVector3d(1, 0, 0).replicate(s.x.rows(), 1);
+  const Tube::Response r = s.tube->respond({}, v);
+  const Tube::Checks c = s.tube->checks({}, v, r);
+  EXPECT_NEAR(r.pressure_drop, 0, 1e-12);  // f_inf has no force on what is closed, however coarse
+  EXPECT_NEAR(c.flux, 0, 1e-3);
+  EXPECT_NEAR(c.force, 0, 1e-3);
+  const Tube::Response pushed = s.tube->respond(s.f);
+  const Tube::Checks routes = s.tube->checks(s.f, {}, pushed);
+  EXPECT_NEAR(routes.pressure_by_flux / pushed.pressure_drop, 1, 0.02);  // a coarse wall
+  EXPECT_NEAR(routes.pressure_by_force / pushed.pressure_drop, 1, 0.02);
+}
+
+TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
+  Fixture s(1);
+  SolverOptions solvers;
+  solvers.tolerance = 1e-9;
+  quadrature::Options quadrature;
+  quadrature.tolerance = 1e-6;
+  Resistance resistance(s.space, s.x, viscosity, quadrature, solvers, s.ranks, s.phases, s.tube.get());
+  stokes::FlowOptions options;
+  options.type = "duct", options.mean_velocity = 1.3;
+  const FreeBodyInTube body(resistance, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity, solvers);
+  const Net here = placed(s.shape.center);
+  const RigidMotion motion = body.motion(here);
+  const double drop = body.pressure_drop(here);
+  EXPECT_GT(motion.velocity[0], 1.3);
+  EXPECT_NEAR(motion.angular_velocity.dot(s.shape.center), 0, 1e-4);  // turns as the profile shears
+  Net there = here;
+  there.row(0) += Eigen::RowVector3d(-4, 0, 0);
+  there(2, 0) = std::cos(pi / 4), there(1, 0) = std::sin(pi / 4);  // a quarter about x1: the cube's mesh looks the same
+  const double rules = 1e-5;  // of 1e-6, chosen anew; other meshes differ by 1e-3
+  EXPECT_LT((body.motion(there).velocity - motion.velocity).norm(), rules);
+  EXPECT_LT((body.motion(there).angular_velocity - motion.angular_velocity).norm(), rules);
+  EXPECT_NEAR(body.pressure_drop(there) / drop, 1, rules);
+  there(0, 1) = 0.6;  // a trial of a step that would take it into the wall
+  EXPECT_FALSE(body.motion(there).velocity.allFinite());
+  EXPECT_TRUE(body.motion(here).velocity.allFinite());
+}
+
+}  // namespace tube_test
+}  // namespace tanktread::coupling
