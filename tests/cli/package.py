@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# ranks: 2
 # The Python package is installed, has exact surfaces, gives results to pandas, xarray, meshio and VTK, and draws every figure.
 import importlib.util
 import os
