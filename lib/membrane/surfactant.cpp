@@ -17,7 +17,7 @@ constexpr int most_area_points = 144, most_functions = 64;  // of an element
 }  // namespace
 
 Surfactant::Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity)
-    : space_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space), known_mass_(space) {
+    : space_(space), bezier_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space), known_mass_(space) {
   constexpr int order = 4;  // Gauss points a direction at degree 3, as the membrane's
   for (const spline::Element& element : space.elements) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(order + std::max(0, element.degree - 3));
@@ -54,7 +54,7 @@ void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
   Net content = Net::Zero(x.rows(), 3);  // of which the solver takes three columns
   content.col(0) = share_.cwiseProduct(q);
   concentration_ = solver_.solve(mass_.update(x), content).col(0);
-  smallest_ = INFINITY, largest_ = -INFINITY;
+  double largest = -INFINITY;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
@@ -67,11 +67,10 @@ void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
     sample(4, at.n, at.functions, at.by_t.data(), own, at.t.data());
     sample(1, at.n, at.functions, at.value.data(), c, at.c.data());
     membrane::metric(at.n, at.s.data(), at.t.data(), at.weight.data(), at.metric.data());
-    const auto [least, most] = std::ranges::minmax(at.c);
-    smallest_ = std::min(smallest_, least), largest_ = std::max(largest_, most);
+    largest = std::max(largest, std::ranges::max(at.c));
   }
-  if (!(options_.tension(largest_) > 0))
-    throw RunFailure(formatted("the surfactant leaves no surface tension where its concentration is %.4g of the initial one", largest_));
+  if (!(options_.tension(largest) > 0))
+    throw RunFailure(formatted("the surfactant leaves no surface tension where its concentration is %.4g of the initial one", largest));
 }
 
 Net Surfactant::load() const {
@@ -122,6 +121,12 @@ Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const
     for (std::size_t a = 0; a < points.size(); ++a) rate[points[a]] += rows[a];
   }
   return rate.cwiseQuotient(share_);
+}
+
+surface::Range Surfactant::extremes() const {
+  Net values = Net::Zero(space_.n_points, 3);
+  values.col(0) = concentration_;
+  return surface::coordinate_range(surface::Patches(bezier_, values), 0);
 }
 
 double Surfactant::energy() const {

@@ -13,6 +13,7 @@
 #include "membrane/mass_solver.hpp"
 #include "membrane/surfactant_options.hpp"
 #include "spline/space.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread::membrane {
 
@@ -43,8 +44,7 @@ class Surfactant : public Field {
   double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< int c dG, an area
   /// int (f(c) - sigma(0)) dG of the free energy f of the surface: what the surfactant adds to that of the clean interface.     (3.21)
   double energy() const override;
-  double smallest() const { return smallest_; }                          ///< c at the Gauss points
-  double largest() const { return largest_; }
+  surface::Range extremes() const;  ///< smallest and largest c on the surface, to round-off
 
   void linearise(const Net& slip) override;
   Eigen::VectorXd value_change(const Net& dx, const Eigen::VectorXd& dq) const override;
@@ -83,13 +83,13 @@ class Surfactant : public Field {
   Eigen::SparseMatrix<double> stiffness() const;
 
   const spline::Space& space_;
+  surface::BezierMap bezier_;
   SurfactantOptions options_;
   double clean_tension_, diffusivity_;
   std::vector<ElementPoints> elements_;
   mutable MassMatrix mass_;
   mutable MassSolver solver_;
   Eigen::VectorXd share_, concentration_;  // int N_A dG of the initial surface
-  double smallest_ = 1, largest_ = 1;
   Eigen::VectorXd q_;                                     // set last
   Net x_, known_x_;                                       // shapes set last and linearised at
   std::vector<ElementPoints> known_;                      // as linearised

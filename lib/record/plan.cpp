@@ -100,9 +100,9 @@ std::string membrane_line(const Scene& scene) {
   return load + " per current area (3.6), mass matrix factored every evaluation";
 }
 
-std::string surfactant_line(const Scene& scene, int n_points) {
-  return formatted("%s equation of state, tension %.6g of that of the clean interface at the start: %d unknowns",
-                   scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1), n_points);
+std::string surfactant_line(const Scene& scene) {
+  return formatted("%s equation of state, tension %.6g of that of the clean interface at the start: an unknown a control point",
+                   scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1));
 }
 
 std::string mesh_line(const Scene& scene) {
@@ -197,14 +197,38 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   return lines;
 }
 
-/// What one of several particles is; alike ones share a line.
-std::string particle_line(const Scene& one, int n_points, bool tree) {
-  if (!one.particle.rigid()) return membrane_line(one) + "; " + viscosity_line(one, n_points, tree) + "; mesh " + mesh_line(one);
+/// What a particle of the coupled system is. `n_points`: control points of all.
+Lines particle_lines(const Scene& one, int n_points, bool tree) {
+  if (!one.particle.rigid()) {
+    Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
+    if (one.surfactant) lines.emplace_back("surfactant", surfactant_line(one));
+    lines.emplace_back("mesh", mesh_line(one));
+    return lines;
+  }
   const bool first_kind = one.solvers.rigid_bodies == "first kind", around = one.tube.present || one.domain.present;
   const char* by_traction = around ? "its traction, by GMRES around factors of the bodies alone, in a system" : "its traction, in a factored system";
-  return formatted("rigid, %s: no membrane, no mesh that moves; %s of %d unknowns a velocity %s",
-                   one.particle.motion == Motion::free ? "free" : "moving as told",
-                   first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)");
+  return {{"body", formatted("rigid, %s: no membrane, no mesh that moves; %s of %d unknowns a velocity %s",
+                             one.particle.motion == Motion::free ? "free" : "moving as told",
+                             first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
+}
+
+/// Adds the lines of every particle: of one alone as they are, of several one line each, which equal ones share.
+void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
+  std::string last;
+  for (const Scene& one : alone) {
+    const Lines own = particle_lines(one, n_points, tree);
+    if (alone.size() == 1) {
+      lines.insert(lines.end(), own.begin(), own.end());
+      return;
+    }
+    std::string line;
+    for (const auto& [what, how] : own) line += (line.empty() ? "" : "; ") + what + ": " + how;
+    if (lines.back().second == line)
+      last = " … " + one.name;
+    else
+      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name, line);
+  }
+  lines.back().first += last;
 }
 
 std::string far_sum_line(const Scene& scene, bool tree) {
@@ -212,61 +236,37 @@ std::string far_sum_line(const Scene& scene, bool tree) {
   return sum + (scene.quadrature.far_in_single() ? ", terms in single precision" : "");
 }
 
-Lines plan_of_several(const Scene& scene, const Body& all, int ranks) {
-  const bool tree = stokes::sums_by_tree(all.space, scene.quadrature, scene.domain.present ? 27 : 1);
-  const double n = all.space.n_points;
-  const std::vector<Scene> alone = scene.alone();
-  Lines lines = {{"particles", formatted("%zu, in one system", alone.size())},
-                 {"surface", formatted("%.0f control points, %zu elements in all", n, all.space.elements.size())}};
-  add_fluid(lines, scene, all, ranks);
-  lines.emplace_back("far sum", far_sum_line(scene, tree));
-  lines.emplace_back("kernels", instructions());
-  lines.emplace_back("contact", formatted(scene.contact.limiter ? "gaps between particles are held at %g R_C by forces that never pull (4.23)"
-                                                                : "a gap between particles below %g R_C ends the run; no force but the fluid's",
-                                          scene.contact.limit));
-  lines.emplace_back("volume", scene.volume.constraint + ", of each");
-  if (scene.runs_in_time())
-    lines.emplace_back("time", time_line(scene, n * n, ranks));
-  else
-    add_steady(lines, scene, all);
-  lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("symmetry", "none looked for among several particles");
-  std::string last;
-  for (const Scene& one : alone) {
-    const std::string line = particle_line(one, all.space.n_points, tree);
-    if (lines.back().second == line)
-      last = " … " + one.name;
-    else
-      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name.empty() ? "particle" : one.name, line);
-  }
-  lines.back().first += last;
-  return lines;
-}
-
 }  // namespace
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
-  if (scene.has_gaps() || (scene.in_system() && scene.particle.rigid())) return plan_of_several(scene, body, ranks);
   if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
-  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature);
+  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present ? 27 : 1);
+  const std::vector<Scene> alone = scene.alone();
+  const bool several = alone.size() > 1;
   const int n = body.space.n_points;
-  Lines lines = {{"surface", surface_line(body)}, {"unknowns", formatted("%d positions", 3 * n)}};
+  Lines lines;
+  if (several) lines.emplace_back("particles", formatted("%zu, in one system", alone.size()));
+  lines.emplace_back("surface", several ? formatted("%d control points, %zu elements in all", n, body.space.elements.size()) : surface_line(body));
+  lines.emplace_back("unknowns", formatted("%d positions", 3 * n));
   add_fluid(lines, scene, body, ranks);
-  lines.emplace_back("viscosity", viscosity_line(scene, n, tree));
-  lines.emplace_back("membrane", membrane_line(scene));
-  if (scene.surfactant) lines.emplace_back("surfactant", surfactant_line(scene, n));
-  lines.emplace_back("deformation", body.plane.description());
-  lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
+  if (!several && !alone.front().particle.rigid()) {
+    lines.emplace_back("deformation", body.plane.description());
+    lines.emplace_back("numbers", numbers_text(numbers(alone.front(), body)));
+  }
   lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());
-  lines.emplace_back("volume", scene.volume.constraint);
+  if (scene.has_gaps())
+    lines.emplace_back("contact", formatted(scene.contact.limiter ? "gaps between particles are held at %g R_C by forces that never pull (4.23)"
+                                                                  : "a gap between particles below %g R_C ends the run; no force but the fluid's",
+                                            scene.contact.limit));
+  lines.emplace_back("volume", scene.volume.constraint + (several ? ", of each" : ""));
   if (scene.runs_in_time())
     lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
   else
     add_steady(lines, scene, body);
   lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("mesh", mesh_line(scene));
-  lines.emplace_back("symmetry", symmetry_line(scene, body));
+  lines.emplace_back("symmetry", several ? "none looked for among several particles" : symmetry_line(scene, body));
+  add_particles(lines, alone, n, tree);
   return lines;
 }
 

@@ -157,10 +157,9 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
          tube});
 }
 
-TubeRow tube_row(coupling::Capsule& capsule, const Net& x) {
-  const coupling::Tube& tube = *capsule.tube();
-  const coupling::Tube::Checks checks = capsule.checks(x);
-  return with_channel(tube, {.pressure_drop = capsule.response(x).pressure_drop / tube.copies(), .gap = tube.gap(), .checks = checks});
+TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e) {
+  const coupling::Tube::Checks checks = e.checks();
+  return with_channel(tube, {.pressure_drop = e.response().pressure_drop / tube.copies(), .gap = tube.gap(), .checks = checks});
 }
 
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop) {

@@ -30,7 +30,7 @@ struct TubeRow {
 };
 
 /// Returns the row's part for the particles at x. Collective.
-TubeRow tube_row(coupling::Capsule& capsule, const Net& x);
+TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e);
 
 /// Returns it for a rigid body where the tube has it placed, with this force density on the fluid and this pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop);

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "base/formatted.hpp"
 #include "base/small_matrices.hpp"
-#include "surface/symmetry.hpp"
 #include "system/collocation.hpp"
 #include "system/label_rotations.hpp"
 #include "system/solvers/block_system.hpp"
@@ -18,139 +16,14 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Every particle with its space and its rows.
-CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
-  if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
-  place(parameters.particles);
-  return parameters;
-}
-
-bool slides(const Particle& particle) { return particle.slides(); }
-
-std::optional<VelocityProjection> chosen_projection(const spline::Space& space, const Net& unstressed, const CapsuleParameters& of,
-                                                    const Ranks& ranks) {
-  if (of.solvers.projection == "collocation") return {};
-  return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
-}
-
-/// By how much a control point gives way to a force, in waves between the longest of a surface and the shortest of a mesh, of wave number k: a sheet
-/// in a fluid does by 1/(4 mu k) of velocity over force per area, or less where it is viscous itself.
-Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
-  for (const Particle& one : particles) {
-    const auto own = areas.segment(one.block.first_point, one.block.n_points);
-    const double element = std::sqrt(own.sum() / one.block.n_elements), k = std::sqrt(std::numbers::pi / (2 * element * one.radius));
-    if (!one.rigid)
-      result.segment(one.block.first_point, one.block.n_points) = (4 * viscosity * k + one.material.viscosity.shear * k * k) * own;
-  }
-  return result.unaryExpr([](double m) { return m > 0 ? 1 / m : 0; });
-}
-
 bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
 
-Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
-                 const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
-    : space_(space),
-      unstressed_(unstressed),
-      rest_(initial),
-      flow_(flow),
-      parameters_(placed(parameters, space)),
-      ranks_(ranks),
-      phases_(phases),
-      geometry_(space),
-      mass_matrix_(space),
-      membrane_(space, unstressed, materials(parameters_.particles)),
-      tangent_(membrane_),
-      projection_(chosen_projection(space, unstressed, parameters, ranks)),
-      layer_(stokes::Layer::Kernel::single_layer, space, projection_ ? projection_->sites() : space.collocation, parameters.quadrature),
-      collocation_(parameters.solvers.direct, parameters.symmetry),
-      mass_(parameters.solvers.direct, parameters.symmetry),
-      velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
-      inner_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature, !by_tractions()),
-      tube_(std::move(tube)) {
-  surface::Symmetry& symmetry = parameters_.symmetry;
-  if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
-  const surface::Share share =
-      surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank());
-  own(share);
-  ranks_.own(own_points_, symmetry);
-  collocation_.factor(collocation_matrix(space));
-  mass_.factor(mass_matrix_.update(unstressed));
-  if (measure() == stokes::Measure::reference) mass_matrix_.release();
-  nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
-  make_layers();
-  if (by_tractions())
-    tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.solvers, parameters.wall, tube_.get(),
-                       ranks);
-  if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
-    viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
-  if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {
-    const Eigen::VectorXd areas = mass_matrix_.row_sums(unstressed);
-    area_.emplace(membrane_, mobilities(particles(), areas, parameters_.viscosity));
-    if (area_->empty()) area_.reset();
-  }
-  loads_ = Loads(particles(), own_elements_);
-  if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
-  if (parameters_.cell) deform_cell(0);
-  if (tube_) {
-    if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
-    tube_->set_reference(unstressed, measure(), measured_on_present(particles()));
-    if (!tractions_ && (particles().size() > 1 || !rigid_.empty())) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
-  }
-  for (const Particle& particle : particles())
-    volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
-  if (std::ranges::any_of(particles(), coupling::slides))
-    interface_.emplace(space, unstressed, particles(), parameters.quadrature, own_points_, share.elements, collocation_, mass_.reference(), ranks_,
-                       projection_ ? &*projection_ : nullptr);
-}
-
-Capsule::~Capsule() = default;
-
-/// The layers of velocities, and those of the Jacobian where they are at other places.
-void Capsule::make_layers() {
-  using stokes::Layer;
-  const surface::Symmetry& symmetry = parameters_.symmetry;
-  const std::vector<double> contrasts = by_tractions() ? std::vector<double>() : viscosity_contrasts(particles());
-  const auto make = [&](std::optional<Layer>& layer, Layer::Kernel kernel, const stokes::Sites& sites, const std::vector<double>& factor) {
-    layer.emplace(kernel, space_, sites, parameters_.quadrature, factor);
-  };
-  layer_.set_reference(unstressed_, measured_on_present(particles()));
-  layer_.set_symmetry(symmetry);
-  if (projection_) {
-    make(site_layer_, Layer::Kernel::single_layer, space_.collocation, {});
-    site_layer_->set_reference(unstressed_);
-  }
-  if (!contrasts.empty()) make(double_layer_, Layer::Kernel::double_layer, projection_ ? projection_->sites() : space_.collocation, contrasts);
-  if (!contrasts.empty() && projection_) make(site_double_layer_, Layer::Kernel::double_layer, space_.collocation, contrasts);
-  std::vector<int> everybody = symmetry.fundamental();
-  if (projection_) everybody.resize(projection_->sites().size()), std::iota(everybody.begin(), everybody.end(), 0);
-  if (parameters_.wall) layer_.set_wall(*parameters_.wall);
-  if (parameters_.wall && double_layer_) double_layer_->set_wall(*parameters_.wall);
-  layer_.share(ranks_.rank(), ranks_.size(), everybody);
-  if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
-}
-
-/// Sums for the own points run over fundamental elements, those that touch the points or their images; or, where an element is an image of itself,
-/// over all that touch the points.
-void Capsule::own(const surface::Share& share) {
-  const surface::Symmetry& symmetry = parameters_.symmetry;
-  const auto points = [&](int e) { return std::span<const int>(space_.elements[static_cast<std::size_t>(e)].points); };
-  surface::FundamentalElements found = surface::fundamental_elements(symmetry, static_cast<int>(space_.elements.size()), points);
-  const auto mine = [&](int a) { return std::ranges::binary_search(share.points, symmetry.source()[a]); };
-  std::erase_if(found.element, [&](int e) { return std::ranges::none_of(points(e), mine); });
-  own_points_ = share.points;
-  folded_ = found.whole();
-  own_elements_ = folded_ ? std::move(found.element) : share.elements;
-}
-
 /// What was evaluated stands as long as the flow is the same.
 void Capsule::at(double time, double start) {
   const bool other_flow = flow_.at(time, start), other_cell = parameters_.cell && deform_cell(time);
-  if (other_flow || other_cell) latest_ = {};
+  if (other_flow || other_cell) latest_.reset();
 }
 
 /// dH/dt = L H. Whether the cell is another one then.
@@ -203,6 +76,54 @@ void Capsule::gather_targets(bool shared, Net& net) {
   ranks_.add({net.data(), static_cast<std::size_t>(net.size())});
 }
 
+/// dE/dx of all loads less the work of forces; `sums`: the complete sums of the loads.
+Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
+  Net work(x.rows(), 3);
+  membrane_.load(x, own_elements_, work);
+  sums = complete_work(x, work);
+  for (const Net& of_forces : forces_)
+    if (of_forces.size() > 0) work -= of_forces;
+  rigid_.clear(work);  // push_bodies has theirs
+  return work;
+}
+
+/// Adds the loads' work at x to the work of own elements, and completes it. Returns the complete sums of the loads.
+std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
+  std::vector<Net> sums = loads_.add_work(x, work);
+  replicate_sums(work);
+  for (Net& sum : sums) replicate_sums(sum);
+  loads_.add_global_work(x, sums, work);
+  return sums;
+}
+
+void Capsule::set_forces(Forces of, Net work) {
+  Net& known = forces_[static_cast<std::size_t>(of)];
+  if (same(work, known)) return;
+  known = std::move(work);
+  latest_.reset();
+}
+
+Net Capsule::response(Evaluation& at, const Net& work) {
+  Net& contacts = forces_[static_cast<std::size_t>(Forces::contacts)];
+  const Net base = at.velocity(), before = contacts;
+  set_forces(Forces::contacts, before.size() > 0 ? Net(before + work) : work);
+  const Net change = velocity(at.x()) - base;
+  set_forces(Forces::contacts, before);
+  return change;
+}
+
+/// Contacts and loads push bodies, beside what is given.
+void Capsule::push_bodies(const Net& x) {
+  if (rigid_.empty()) return;
+  Net push = forces_[static_cast<std::size_t>(Forces::contacts)];
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return one.rigid && !one.loads.empty(); })) {
+    Net work = Net::Zero(x.rows(), 3);
+    complete_work(x, work);
+    push = push.size() > 0 ? Net(push - work) : Net(-work);
+  }
+  rigid_.push(push);
+}
+
 /// A^-1 of each field, in place; ranks share the columns.
 void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
   const std::vector<int> components = a.components();
@@ -222,55 +143,9 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
   return field;
 }
 
-/// Kept until another shape is asked about: a row of the series asks for the last velocity's.
-const Net& Capsule::energy_gradient(const Net& x) {
-  if (same(x, gradient_at_)) return gradient_;
-  gradient_.resize(x.rows(), 3);
-  membrane_.load(x, own_elements_, gradient_);
-  load_sums_ = loads_.add_work(x, gradient_);
-  replicate_sums(gradient_);
-  for (Net& sum : load_sums_) replicate_sums(sum);
-  loads_.add_global_work(x, load_sums_, gradient_);
-  for (const Net& work : external_)
-    if (work.size() > 0) gradient_ -= work;
-  rigid_.clear(gradient_);  // push_bodies has theirs
-  gradient_at_ = x;
-  return gradient_;
-}
-
-/// Returns the complete sums of the loads at x.
-const std::vector<Net>& Capsule::load_sums(const Net& x) {
-  if (loads_.n_sums() > 0) energy_gradient(x);
-  return load_sums_;
-}
-
-void Capsule::press(Net work, External kind) {
-  Net& known = external_[static_cast<std::size_t>(kind)];
-  if (same(work, known)) return;
-  if (kind == External::contacts) rigid_.push(work);
-  known = std::move(work), latest_ = {}, gradient_at_ = {};
-}
-
-/// Contacts and loads push bodies, beside what is given.
-void Capsule::push_bodies(const Net& x) {
-  const auto pushed = [](const Particle& particle) { return particle.rigid && !particle.loads.empty(); };
-  if (std::ranges::none_of(particles(), pushed)) return;  // contacts do since `press`
-  Net push = Net::Zero(x.rows(), 3);
-  std::vector<Net> sums = loads_.add_work(x, push);
-  replicate_sums(push);
-  for (Net& sum : sums) replicate_sums(sum);
-  loads_.add_global_work(x, sums, push);
-  const Net& contacts = external_[static_cast<std::size_t>(External::contacts)];
-  rigid_.push(contacts.size() > 0 ? Net(contacts - push) : Net(-push));
-}
-
-Net Capsule::load(const Net& x) {
-  if (!rigid_.empty() || viscous_) velocity(x);  // the load is part of what the velocity is solved from
-  return same(x, latest_.x) ? latest_.load : membrane_load(x, nullptr);
-}
-
-/// The load at x, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than twice three.
-Net Capsule::membrane_load(const Net& x, Net* other) {
+/// The load at x, the shape of `e` or its image in the cell, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than
+/// twice three.
+Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && measure() == stokes::Measure::reference;
   if (other && !together) *other = solved(mass_.reference(), std::move(*other));
@@ -280,7 +155,8 @@ Net Capsule::membrane_load(const Net& x, Net* other) {
     replicate(t);
     return solved(collocation_, std::move(t));
   }
-  Net d = energy_gradient(x);
+  if (e.work_.size() == 0) e.work_ = work_of_loads(x, e.load_sums_);
+  Net d = e.work_;
   if (!together) return measured_load(x, std::move(d));
   const auto projection = phases_.time("projection");
   Net* const both[] = {&d, other};
@@ -327,41 +203,22 @@ Net Capsule::symmetric(Net field) const {
   return field;
 }
 
-Net Capsule::velocity(const Net& x, const Net& guess) {
-  if (same(x, latest_.x)) return latest_.velocity;
+std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess) {
+  if (latest_ && same(x, latest_->x())) return latest_;
   ++work_.evaluations;
-  latest_ = {};
-  Net v = symmetric(evaluate(x, guess));
-  if (!v.allFinite()) return v;
-  latest_.x = x;
-  return latest_.velocity = std::move(v);
+  latest_.reset();
+  const auto e = std::make_shared<Evaluation>(*this, x);
+  e->velocity_ = symmetric(in_cell(*e, guess));
+  e->solved_ = true;
+  if (!rigid_.empty()) e->rigid_ = rigid_;
+  if (e->velocity_.allFinite()) latest_ = e;
+  return e;
 }
 
-bool Capsule::adopt(const Net& x, const Net& v) {
-  if (interface_ || tractions_ || !rigid_.empty()) return false;
-  if (same(x, latest_.x)) return true;
-  Net load = membrane_load(x, nullptr);
-  if (viscous_) viscous_->update(x, own_elements_), load += viscous_load(x, v);
-  latest_ = {};
-  latest_.x = x, latest_.load = std::move(load), latest_.velocity = latest_.unknowns = v;
-  return true;
-}
-
-Net Capsule::fluid_velocity(const Net& x, const Net& guess) {
-  const Net v = velocity(x, guess);
-  return interface_ ? latest_.fluid : v;
-}
-
-const Tube::Response& Capsule::response(const Net& x) {
-  velocity(x);
-  place(x);
-  if (!latest_.response) latest_.response = tube_->respond(latest_.load, latest_.unknowns);
-  return *latest_.response;
-}
-
-Tube::Checks Capsule::checks(const Net& x) {
-  const Tube::Response& known = response(x);
-  return tube_->checks(latest_.load, latest_.unknowns, known);
+std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocity, double distance) {
+  if (!latest_ || !same(x, latest_->x())) return std::make_shared<Evaluation>(*this, x, velocity, evaluated_about(x, distance) ? latest_ : nullptr);
+  if (velocity.size() > 0) latest_->known_ = velocity;
+  return latest_;
 }
 
 void Capsule::place(const Net& x) {
@@ -371,14 +228,18 @@ void Capsule::place(const Net& x) {
 }
 
 /// On a lattice where the means of the particles are in the cell.
-Net Capsule::evaluate(Net x, const Net& guess) {
-  if (!cell_ || !x.allFinite()) return evaluate_here(std::move(x), guess);
+Net Capsule::in_cell(Evaluation& e, const Net& guess) {
+  if (!cell_ || !e.x().allFinite()) return solve(e, e.x(), guess);
+  Net x = e.x();
   const std::vector<Vec3> shifts = put_into_cell(x);
   rigid_.enter(shifts, flow_.gradient(Vec3::Zero()));
-  Net v = evaluate_here(std::move(x), {});
+  Net slower = guess;
+  const auto faster_by = [&](std::size_t p) -> Vec3 { return flow_.gradient(Vec3::Zero()) * shifts[p]; };
+  for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();
+  Net v = solve(e, std::move(x), slower);
   for (std::size_t p = 0; p < shifts.size(); ++p) {
-    const Vec3 faster = flow_.gradient(Vec3::Zero()) * shifts[p];
-    for (Net* net : {&v, &latest_.fluid})
+    const Vec3 faster = faster_by(p);
+    for (Net* net : {&v, &e.fluid_})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
     rigid_.carry(p, shifts[p], faster);
   }
@@ -388,33 +249,33 @@ Net Capsule::evaluate(Net x, const Net& guess) {
 /// (4.2), station by station: the load of membranes (membrane_load) and of bodies, what it drives through the layers and the ambient flow
 /// (explicit_velocity), the volumes' conditions (constrain), and where viscosities differ, bodies are rigid or a tube's blocks are asked for, the
 /// system of all (solve_velocity).
-Net Capsule::evaluate_here(Net x, const Net& guess) {
+Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   push_bodies(x);
-  if (tractions_) return evaluate_tractions(x);
+  if (tractions_) return solve_tractions(e, x);
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
-  Net f = membrane_load(x, constrained ? &c : nullptr);
+  Net f = membrane_load(e, x, constrained ? &c : nullptr);
   rigid_.add_load(f);
-  latest_.load = f;
-  Net v = explicit_velocity(x, f);
+  e.load_ = f;
+  Net v = explicit_velocity(x, f, {}, &e.response_);
   rigid_.add_lacking(v);
   rigid_.subtract_prescribed(v);
   if (constrained) constrain(v, b, c);
   if (viscous_) viscous_->update(x, own_elements_);
   if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
-  latest_.unknowns = v;
-  if (viscous_) latest_.load += viscous_load(x, symmetric(v));
+  e.unknowns_ = v;
+  if (viscous_) e.load_ += viscous_load(x, symmetric(v));
   if (!rigid_.empty()) {
-    latest_.unknowns = symmetric(v);
-    latest_.load += rigid_.completing_load(v);
+    e.unknowns_ = symmetric(v);
+    e.load_ += rigid_.completing_load(v);
     rigid_.move(v);
   }
   if (!interface_) return v;
-  latest_.fluid = symmetric(v);
+  e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
   if (constrained) constrain(v, b, c);  // interpolation of the normal motion lets a little flux in
@@ -422,7 +283,7 @@ Net Capsule::evaluate_here(Net x, const Net& guess) {
 }
 
 /// Of rigid bodies and nothing else (2.40).
-Net Capsule::evaluate_tractions(const Net& x) {
+Net Capsule::solve_tractions(Evaluation& e, const Net& x) {
   const auto clock = phases_.time("tractions");
   std::vector<Vec3> centres;
   std::vector<Rigid> driven;
@@ -433,10 +294,10 @@ Net Capsule::evaluate_tractions(const Net& x) {
     const RigidTractions::Body& body = tractions_->bodies()[p];
     rigid_.move(p, body.motion, body.force, body.torque, v);
   }
-  latest_.load = -tractions_->density();
-  latest_.unknowns = v;
-  note_tractions();
-  if (tube_) latest_.response = tube_->respond(latest_.load, {}, tractions_->lacking_pressure());
+  e.load_ = -tractions_->density();
+  e.unknowns_ = v;
+  note_tractions(v);
+  if (tube_) e.response_ = tube_->respond(e.load_, {}, tractions_->lacking_pressure());
   return v;
 }
 
@@ -466,8 +327,9 @@ Net Capsule::double_layer_of(const Net& v) {
   return hv;
 }
 
-/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle.
-Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves) {
+/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle;
+/// `answer` keeps it if it is final.
+Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
     const bool known = tube_ && flow_.duct();
@@ -476,7 +338,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves) {
     if (tube_ && schur()) {
       Tube::Response response = tube_->respond(f, moves);
       u += response.velocity;
-      if (!has_velocity_system()) latest_.response = std::move(response);
+      if (answer && !has_velocity_system()) *answer = std::move(response);
     }
     const auto clock = phases_.time("projection");
     return control_values(std::move(u));
@@ -524,8 +386,7 @@ Net Capsule::viscous_work(const membrane::ViscousLoad& c, const Net& v) {
   return work;
 }
 
-void Capsule::note_tractions() {
-  const Net& v = latest_.unknowns;
+void Capsule::note_tractions(const Net& v) {
   for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
 }
 
@@ -674,47 +535,6 @@ void Capsule::restore_volume(Net& x) {
 
 double Capsule::volume_error(const Net& x) const {
   return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
-}
-
-Mat3 Capsule::stresslet(const Net& x, const Net& slope, std::size_t p) {
-  const Particle& particle = particles()[p];
-  const auto own = [&](const Net& net) { return particle.block.rows(net); };
-  Mat3 moment;
-  if (tractions_) {
-    moment = -tractions_->moment(p);
-    note_tractions();
-  } else if (rigid_.holds(p)) {
-    moment = rigid_.load_moment(p);
-  } else {
-    Net work = own(energy_gradient(x));
-    if (viscous_) work += own(viscous_work(x, interface_ ? fluid_velocity(x) : slope));
-    moment = work.transpose() * own(x);  // int df x dG, x = sum N_A x_A
-    if (!particle.loads.empty() || pressed())  // about the centroid
-      moment -= work.colwise().sum().transpose() * surface::measures(*particle.space, own(x)).centroid.transpose();
-  }
-  if (const double contrast = viscosity_contrast(particle); contrast != 0 && !tractions_) {
-    const Net v = rigid_.holds(p) ? rigid_.density(p) : Net(own(interface_ ? fluid_velocity(x) : slope));
-    std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
-    std::iota(elements.begin(), elements.end(), particle.block.first_element);
-    Net flux;
-    geometry_.volume_gradient(x, elements, flux);
-    moment -= 2 * contrast * parameters_.viscosity * v.transpose() * own(flux);
-  }
-  return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
-}
-
-/// Returns C v at x, which is kept until another x or v is asked for: every particle of a row of the series asks for the same.
-const Net& Capsule::viscous_work(const Net& x, const Net& v) {
-  if (same(x, viscous_at_) && same(v, viscous_of_)) return viscous_work_;
-  viscous_->update(x, own_elements_);
-  viscous_at_ = x, viscous_of_ = v;
-  return viscous_work_ = viscous_work(*viscous_, v);
-}
-
-double Capsule::membrane_dissipation(const Net& x, const Net& slope, std::size_t p) {
-  if (!viscous_) return 0;
-  const Net v = interface_ ? fluid_velocity(x) : slope;
-  return particles()[p].block.rows(v).cwiseProduct(particles()[p].block.rows(viscous_work(x, v))).sum();
 }
 
 stokes::Evaluations Capsule::kernel_evaluations() const {

@@ -10,21 +10,22 @@
 
 #include "base/timing.hpp"
 #include "base/types.hpp"
-#include "system/solvers/corotation.hpp"
 #include "system/dynamics.hpp"
-#include "system/solids/film_inverses.hpp"
-#include "system/solvers/frozen_operator.hpp"
+#include "system/evaluation.hpp"
 #include "system/interface_motion.hpp"
-#include "system/solvers/krylov.hpp"
 #include "system/loads.hpp"
-#include "system/solvers/nodal_operator.hpp"
-#include "system/solids/one_body.hpp"
-#include "system/solvers/options.hpp"
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
+#include "system/solids/film_inverses.hpp"
+#include "system/solids/one_body.hpp"
 #include "system/solids/rigid_particles.hpp"
 #include "system/solids/rigid_tractions.hpp"
 #include "system/solids/tube.hpp"
+#include "system/solvers/corotation.hpp"
+#include "system/solvers/frozen_operator.hpp"
+#include "system/solvers/krylov.hpp"
+#include "system/solvers/nodal_operator.hpp"
+#include "system/solvers/options.hpp"
 #include "system/velocity_projection.hpp"
 #include "membrane/area_constraint.hpp"
 #include "membrane/field.hpp"
@@ -100,14 +101,17 @@ class Capsule : public Dynamics {
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
-  /// Of the latest place nothing is evaluated again. A system starts from `guess`, where there is one.
-  Net velocity(const Net& x) override { return velocity(x, {}); }
-  Net velocity(const Net& x, const Net& guess);
+  /// Everything that the shape x determines. A system starts from `guess`, where there is one. Of the shape that was asked about last, under the same
+  /// forces and flow, it is what was returned then.
+  std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
+
+  /// The same of a shape whose velocity is known, or not (no rows). It solves for the unknowns only where they are asked for and do not follow from
+  /// velocity. Those of the shape asked about last stand for them if it is within `distance` (in `norm`).
+  std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
+
+  Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
   void at(double time, double start) override;
 
-  /// Stores v as the velocity at x, as if it had been evaluated: the slope of an implicit scheme, whose error is known. Returns false if the unknowns
-  /// do not follow from v: control points that slide, rigid bodies.
-  bool adopt(const Net& x, const Net& v);
   double next_kink(double time) const override { return flow_.next_kink(time); }
   void freeze(const Net& x) override;
   double frozen_bytes() const override;
@@ -127,10 +131,13 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
   Net symmetric(Net field) const override;
 
-  /// Sets the virtual work of forces from outside of the membranes, one row per control point, from now on: of contacts, which keep directions and
-  /// points, or of the fields on surfaces, minus what they add to dE/dx. An empty net: none.
-  enum class External { contacts, fields };
-  void press(Net work, External kind = External::contacts);
+  /// Sets the virtual work of forces, one row per control point, from now on: of contacts, which keep directions and points, or of the fields on
+  /// surfaces, minus what they add to dE/dx. An empty net: none.
+  enum class Forces { contacts, fields };
+  void set_forces(Forces of, Net work);
+
+  /// The change of the velocity at the shape of `at` by forces of this virtual work in addition to those that act: linear in `work`.
+  Net response(Evaluation& at, const Net& work);
 
   Eigen::Index n_points() const { return space_.n_points; }
 
@@ -154,29 +161,14 @@ class Capsule : public Dynamics {
     if (parameters_.symmetry.order() > 1) field.symmetrise(parameters_.symmetry, q);
   }
 
-  /// Load of the fluids on the membrane, as control values: per unstressed or per current area, as its particle says. Of a rigid body the load of
-  /// its equation (2.23), a rigid field with the force and torque on the fluid, not the traction.
-  Net load(const Net& x);
-
   /// Whether control points slide along the interface, so that their velocity is not the fluids'.
   bool slides() const { return interface_.has_value(); }
 
   /// Returns whether a membrane or interface is viscous, so that the load depends on the velocity.
   bool viscous() const { return viscous_.has_value(); }
 
-  /// The fluids' velocity on the surface at x: `velocity`, unless control points slide.
-  Net fluid_velocity(const Net& x, const Net& guess = {});
-
   /// Whether the latest place that was asked about is within `distance` (in `norm`) of x.
-  bool evaluated_about(const Net& x, double distance) const { return latest_.x.rows() == x.rows() && norm(x - latest_.x) <= distance; }
-
-  /// The fluids' velocity there, if it is, otherwise at x: for a row of the series, at no cost.
-  Net fluid_velocity_about(const Net& x, double distance) { return fluid_velocity(evaluated_about(x, distance) ? latest_.x : x); }
-
-  /// Stresslet of particle p (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force x length.
-  /// The fluids' velocity v is `slope`, that of the control points, or is evaluated where it matters and they slide along an interface.
-  /// Batchelor 1970; Pozrikidis 1992, section 5.1.
-  Mat3 stresslet(const Net& x, const Net& slope, std::size_t p = 0);
+  bool evaluated_about(const Net& x, double distance) const { return latest_ && norm(x - latest_->x()) <= distance; }
 
   /// The rigid bodies among the particles, placed as x says.
   RigidParticles rigid_at(Net x) const {
@@ -185,18 +177,6 @@ class Capsule : public Dynamics {
     return rigid;
   }
 
-  /// The rigid bodies among the particles, at the latest place that was asked about, if that is within `distance` (in `norm`) of x.
-  const RigidParticles& rigid_about(const Net& x, double distance) {
-    fluid_velocity_about(x, distance);
-    return rigid_;
-  }
-
-  /// Returns v.C v of particle p, the power that the viscosity (3.10) of its membrane or interface turns into heat at x. The fluids' velocity v is
-  /// `slope`, or is evaluated if control points slide along an interface. Collective.
-  double membrane_dissipation(const Net& x, const Net& slope, std::size_t p = 0);
-
-  /// Returns the energy that the membrane of particle p stores by its loads, without elasticity and bending, at x. Collective.
-  double load_energy(const Net& x, std::size_t p) { return loads_.energy(x, load_sums(x), p); }
   const Loads& loads() const { return loads_; }
 
   const std::vector<Particle>& particles() const { return parameters_.particles; }
@@ -206,9 +186,6 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< at the time told last
 
-  /// What the tube answers to load and velocity at x; the tube is left placed there.
-  const Tube::Response& response(const Net& x);
-  Tube::Checks checks(const Net& x);  ///< of that answer
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< none: velocities are collocated
@@ -221,19 +198,20 @@ class Capsule : public Dynamics {
   Work& work() { return work_; }
 
  private:
+  friend class Evaluation;
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;
-  Net evaluate(Net x, const Net& guess);
-  Net evaluate_here(Net x, const Net& guess);
-  Net evaluate_tractions(const Net& x);
+  Net in_cell(Evaluation& e, const Net& guess);
+  Net solve(Evaluation& e, Net x, const Net& guess);
+  Net solve_tractions(Evaluation& e, const Net& x);
   bool deform_cell(double time);
   std::vector<Vec3> put_into_cell(Net& x) const;
   Net single_layer_of(const Net& x, const Net& f);
   Net double_layer_of(const Net& v);
-  Net membrane_load(const Net& x, Net* other);
+  Net membrane_load(Evaluation& e, const Net& x, Net* other);
   void place(const Net& x);
-  Net explicit_velocity(const Net& x, const Net& f, const Net& moves = {});
+  Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
   void own(const surface::Share& share);
   void make_layers();
@@ -246,10 +224,10 @@ class Capsule : public Dynamics {
   Net control_values(Net at_targets);
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
-  const Net& energy_gradient(const Net& x);
+  Net work_of_loads(const Net& x, std::vector<Net>& sums);
+  std::vector<Net> complete_work(const Net& x, Net& work);
   void push_bodies(const Net& x);
-  bool pressed() const { return external_[0].size() > 0 || external_[1].size() > 0; }
-  const std::vector<Net>& load_sums(const Net& x);
+  bool pressed() const { return forces_[0].size() > 0 || forces_[1].size() > 0; }
   Net flux_vector(const Net& x);
   void constrain(Net& v, const Net& b, const Net& c) const;
   Net energy_part(const Net& delta, const Net& work = {});
@@ -259,7 +237,6 @@ class Capsule : public Dynamics {
   Net measured_load(const Net& x, Net d);
   Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }  // where C was updated
   Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
-  const Net& viscous_work(const Net& x, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta, const Net& work = {});
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
@@ -267,11 +244,12 @@ class Capsule : public Dynamics {
   Blocks velocity_blocks() const;
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
-  void note_tractions();
+  void note_tractions(const Net& v);
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool flows_by_system() const;
+  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // from the velocity of the control points
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
@@ -318,17 +296,8 @@ class Capsule : public Dynamics {
   std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised
   std::vector<double> volume0_;         // of each particle
   Work work_;
-  struct Latest {
-    Net x, load, velocity;
-    Net unknowns;  // of the velocity system: the fluids' velocity, of rigid bodies w
-    Net fluid;  // of an interface whose control points slide along it
-    std::optional<Tube::Response> response;
-  };
-  Latest latest_;  // evaluation
-  Net gradient_at_, gradient_;  // x and dE/dx there
-  std::vector<Net> load_sums_;  // of the loads there
-  std::array<Net, 2> external_;  // work of contacts and of fields on what deforms; empty nets: none
-  Net viscous_at_, viscous_of_, viscous_work_;  // x, v and C v there
+  std::shared_ptr<Evaluation> latest_;
+  std::array<Net, 2> forces_;  // their work, of contacts and of fields on what deforms; empty nets: none
   Net placed_;     // the tube's particle
 };
 

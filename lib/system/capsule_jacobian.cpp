@@ -58,7 +58,7 @@ void Capsule::linearise(const Net& x) {
   ++work_.tangents;
   tangent_.update(x, own_elements_);
   if (frozen_at_.rows() == x.rows()) corotation_ = Corotation(particles(), frozen_at_, x);
-  loads_.linearise(x, load_sums(x));
+  loads_.linearise(x, evaluation(x, {}, 0)->load_sums());
   if (viscous_) linearised_viscous_->update(x, own_elements_);
   if (area_) area_->place(x);
   if (interface_) {
@@ -198,13 +198,14 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
   const bool constrained = parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b, inside = u;
-  Net f = membrane_load(x, constrained ? &c : nullptr);
+  Evaluation e(*this, x);
+  Net f = membrane_load(e, x, constrained ? &c : nullptr);
   if (constrained) constrain(inside, b, c);
   if (viscous_) {
     viscous_->update(x, own_elements_);
     f += viscous_load(x, inside);
   }
-  Net lacking = explicit_velocity(x, f, double_layer_ ? inside : Net()) - inside;
+  Net lacking = explicit_velocity(x, f, double_layer_ ? inside : Net(), nullptr) - inside;
   if (double_layer_) {
     const auto clock = phases_.time("velocity system");
     double_layer_->place(x);

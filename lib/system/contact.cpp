@@ -33,7 +33,8 @@ void add_work(std::span<const Particle> particles, const Contact& contact, doubl
 }
 
 Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::Index n_points) {
-  Net sum = Net::Zero(n_points, 3);
+  Net sum;
+  if (!contacts.all.empty()) sum.setZero(n_points, 3);
   for (const Contact& one : contacts.all) add_work(particles, one, one.force, sum);
   return sum;
 }

@@ -34,7 +34,7 @@ struct Contacts {
 /// Adds the virtual work of a contact of this force for a unit displacement of each control point, +-force N_A normal, to rows of all particles.
 void add_work(std::span<const Particle> particles, const Contact& contact, double force, Net& work);
 
-/// The same of all contacts with their forces, shape (n_points, 3).
+/// The same of all contacts with their forces, shape (n_points, 3); an empty net if there are none.
 Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::Index n_points);
 
 /// The f of f >= 0, A f + q >= 0, f.(A f + q) = 0, for a positive definite A: what holds gaps that are short by -q, where a unit of f_j opens gap k

@@ -53,7 +53,7 @@ void CoupledMotion::set_state(const Net& y) {
   set_fields(y);
   Net load = Net::Zero(n_, 3);
   for (const Block& block : blocks_) block.rows.rows(load) -= block.on.field->load();
-  capsule_.press(std::move(load), Capsule::External::fields);
+  capsule_.set_forces(Capsule::Forces::fields, std::move(load));
 }
 
 Net CoupledMotion::velocity(const Net& y) {
@@ -68,7 +68,11 @@ Net CoupledMotion::velocity(const Net& y) {
 }
 
 /// Velocity of the fluids minus that of the control points; empty if none slides.
-Net CoupledMotion::slip_at(const Net& x) { return capsule_.slides() ? Net(capsule_.fluid_velocity(x) - capsule_.velocity(x)) : Net(); }
+Net CoupledMotion::slip_at(const Net& x) {
+  if (!capsule_.slides()) return {};
+  const std::shared_ptr<Evaluation> e = capsule_.evaluate(x);
+  return e->fluid_velocity() - e->velocity();
+}
 
 Net CoupledMotion::defect(const Net& y, const Net& u) {
   if (!defect_spares_system()) return Dynamics::defect(y, u);

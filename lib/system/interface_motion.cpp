@@ -29,6 +29,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   for (const Particle& particle : particles) {
     if (!particle.slides()) continue;
     const spline::Block& block = particle.block;
+    radius_ = std::min(radius_, particle.radius);
     drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
     const auto holds = [&](int e) { return e >= block.first_element && e < block.first_element + block.n_elements; };
@@ -230,7 +231,7 @@ void InterfaceMotion::linearise(const Net& x, const Net& b) {
 Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
   const double most = delta.cwiseAbs().maxCoeff();
   const bool turns = known_.x.size() > 0 && most > 0;
-  const double aside = 1e-6 * x_.cwiseAbs().maxCoeff() / most;
+  const double aside = 1e-6 * radius_ / most;
   Net there, change, density, rest;
   if (turns) there = x_ + aside * delta, change = (normals_at(there) - normals_) / aside;
   if (relaxed_) {

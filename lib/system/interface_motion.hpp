@@ -1,6 +1,7 @@
 #pragma once
 // How control points move along a fluid interface, where only the motion across it is physics.
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -71,6 +72,7 @@ class InterfaceMotion {
   const spline::Space& space_;
   std::vector<Drop> drops_;
   bool relaxed_ = false;           // any of them
+  double radius_ = std::numeric_limits<double>::infinity();  // R_C of the smallest
   std::vector<int> own_elements_;  // of those
   Eigen::SparseMatrix<double> sites_;  // R
   const VelocityProjection* projection_;

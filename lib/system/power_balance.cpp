@@ -51,12 +51,14 @@ PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const N
 }
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
-  const Net load = capsule_.load(x), v = capsule_.slides() || capsule_.viscous() ? capsule_.fluid_velocity(x) : slope;
+  const std::shared_ptr<Evaluation> e = capsule_.evaluation(x, slope, 0);
+  if (capsule_.slides() || capsule_.viscous()) e->solve();
+  const Net load = e->load(), v = e->fluid_velocity();
   const RigidParticles rigid = capsule_.rigid_at(x);
   const Net measured = capsule_.measured_net(x);
   const Net work = mass_.update(measured) * load, inside = density(v, rigid);
   Powers powers;
-  powers.flow = of_flow(x, work, inside);
+  powers.flow = of_flow(*e, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
   std::vector<int> all(space_.elements.size());
   std::iota(all.begin(), all.end(), 0);
@@ -65,24 +67,25 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
     const Particle& particle = capsule_.particles()[p];
     if (particle.rigid) continue;
-    powers.membranes += capsule_.membrane_dissipation(x, v, p);
+    powers.membranes += e->membrane_dissipation(p);
     powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
   }
   const double done = product(work, v);  // to all surfaces by the fluids
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
-  powers.left_over = left_over(load, missed(x, v, inside, load), x, measured);
+  powers.left_over = left_over(load, missed(*e, v, inside, load), x, measured);
   return powers;
 }
 
 /// In a duct's flow the pressure drop that the particles add does the work (2.7); others are of one gradient, as the walls of their tube move.
-double PowerBalance::of_flow(const Net& x, const Net& work, const Net& inside) {
+double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {
     const Tube& tube = *capsule_.tube();
-    const double drop = capsule_.response(x).pressure_drop;
+    const double drop = e.response().pressure_drop;
     return flow.amplitude() * tube.flow_rate(drop) * drop / tube.copies();
   }
+  const Net& x = e.x();
   const Net flux = capsule_.geometry().volume_gradient(x);
   const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
   double power = product(work, flow.velocities(x));
@@ -123,7 +126,8 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
 }
 
 /// v less the right-hand side of (2.22), at the places.
-Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
+Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
+  Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell()) {
     single_.repeat(*cell);
@@ -148,7 +152,7 @@ Net PowerBalance::missed(Net x, Net v, Net density, const Net& load) {
   const Net at = values_ * x;
   if (Tube* tube = capsule_.tube()) {
     Net answer(u.rows(), 3);
-    tube->velocity_at(at, capsule_.response(x), own, answer);
+    tube->velocity_at(at, e.response(), own, answer);
     for (const int i : own) u.row(i) += answer.row(i);
   }
   ranks_.add({u.data(), static_cast<std::size_t>(u.size())});

@@ -44,9 +44,9 @@ class PowerBalance {
 
  private:
   double left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const;
-  Net missed(Net x, Net v, Net density, const Net& load);
+  Net missed(Evaluation& e, Net v, Net density, const Net& load);
   Net density(const Net& v, const RigidParticles& rigid) const;
-  double of_flow(const Net& x, const Net& work, const Net& inside);
+  double of_flow(Evaluation& e, const Net& work, const Net& inside);
 
   Capsule& capsule_;
   const spline::Space& space_;

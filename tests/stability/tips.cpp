@@ -54,7 +54,7 @@ Steady steady(int n, const std::vector<std::string>& settings) {
   const auto area = [&](const Net& net) {
     return surface::jacobian(surface::jet(surface::ElementPoints(space, net, site.element).patch(), site.s, site.t));
   };
-  double traction = surface::value(space, run.capsule->load(run.state.x), site).norm();
+  double traction = surface::value(space, run.capsule->evaluate(run.state.x)->load(), site).norm();
   if (run.capsule->measure() == stokes::Measure::reference) traction *= area(run.body().unstressed) / area(run.state.x);
   return {traction, run.deformation().taylor_inertia};
 }

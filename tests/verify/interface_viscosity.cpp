@@ -85,7 +85,7 @@ class Drop {
  private:
   /// The mesh and the fluids move across the interface alike; along it the fluids' velocity is asked for.
   Coefficients of(const Net& x) {
-    return {coefficients(scene_.capsule->velocity(x)).normal, coefficients(scene_.capsule->fluid_velocity(x)).tangential};
+    return {coefficients(scene_.capsule->velocity(x)).normal, coefficients(scene_.capsule->evaluate(x)->fluid_velocity()).tangential};
   }
 
   Evolution scene_;

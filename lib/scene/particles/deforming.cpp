@@ -108,7 +108,8 @@ class Deforming : public ParticleSystem {
     motion::State own = fields_->of_shape(state);
     placed_ = capsule_->rigid_at(own.x);
     std::vector<Net> loads;
-    for (const Member& member : members_) loads.push_back(member.own(capsule_->load(own.x)));
+    const auto here = capsule_->evaluation(own.x, {}, 0);
+    for (const Member& member : members_) loads.push_back(member.own(here->load()));
     for (std::size_t p = 0; p < members_.size(); ++p)
       if (due(members_[p])) adapt(p, loads[p], own, totals);
     if (before_.empty()) return false;
@@ -145,11 +146,13 @@ class Deforming : public ParticleSystem {
   Columns row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
-    const Net v = material_velocity(state);
+    const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
+    if (body().wall && !accurate(state)) here->solve();  // the tube's response depends on the velocity
+    const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
     std::vector<std::unique_ptr<ParticleRow>> rows;
-    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, state, whole_state.x, columns[p]));
+    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, *here, state, whole_state.x, columns[p]));
     add_treading(state.x, v, rows);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
     Together whole;
@@ -169,12 +172,12 @@ class Deforming : public ParticleSystem {
     whole.add_columns(scene_, row);
     if (body().wall) {
       check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
-      tube_row(*capsule_, state.x).add_columns(scene_, row);
+      tube_row(*capsule_->tube(), *here).add_columns(scene_, row);
     }
     if (const auto& cell = capsule_->cell()) {
       DomainRow now{.cell = cell->vectors()};
       if (cell->n() == 3)
-        now.set_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(state.x));
+        now.set_stress(scene_, *cell, body().plane.axes, capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(*here));
       now.add_columns(scene_, row);
     }
     if (scene_.has_gaps()) smallest_gap(members_, state.x, ranks_, capsule_->cell()).add_columns(row);
@@ -190,8 +193,8 @@ class Deforming : public ParticleSystem {
   SurfacePicture picture(const motion::State& whole_state) override {
     const motion::State& state = pictured_ = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x);
-    const Net load = capsule_->load(state.x);
-    const Net velocity = capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.empty() ? Net() : state.history.front();
+    const auto here = capsule_->evaluation(state.x, state.history.empty() ? Net() : state.history.front(), 0);
+    const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
     return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
               fields_->add_to(nodes, state.x, fields);
@@ -214,13 +217,13 @@ class Deforming : public ParticleSystem {
     if (!power_)
       power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
     coupling::Powers powers = (*power_)(state.x, state.history.front());
-    if (!fields_->empty()) powers.forces += fields_->power(capsule_->slides() ? capsule_->fluid_velocity(state.x) : state.history.front());
+    if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluation(state.x, state.history.front(), 0)->fluid_velocity());
     return powers;
   }
 
   /// The contacts' forces act from now on.
   void press() {
-    capsule_->press(contacts_.all.empty() ? Net() : coupling::work(capsule_->particles(), contacts_, body().space.n_points));
+    capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
   /// That of the forces of a contact at the centroids, beside those of its particles about these.
@@ -249,36 +252,31 @@ class Deforming : public ParticleSystem {
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
-  /// Returns the velocity of the fluids on the surface. In a tube, whose response depends on it, the slope is evaluated if it errs by more than
-  /// the tolerance.
-  Net material_velocity(const motion::State& state) {
-    const Net& slope = state.history.front();
-    const double rate = capsule_->flow().amplitude() * scene_.rate();
-    const bool accurate = state.slope_error <= scene_.time.tolerance * std::abs(rate);
-    if (body().wall && !(accurate && capsule_->adopt(state.x, slope))) return capsule_->fluid_velocity(state.x, slope);
-    return capsule_->slides() ? capsule_->fluid_velocity_about(state.x, scene_.time.tolerance) : state.history.front();
+  /// Whether the slope errs by no more than the tolerance.
+  bool accurate(const motion::State& state) const {
+    return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
   /// Of all particles.
-  Vec3 force_on_fluid(const Net& x) {
+  Vec3 force_on_fluid(coupling::Evaluation& here) {
     Vec3 force = Vec3::Zero();
     for (std::size_t p = 0; p < members_.size(); ++p)
-      force += members_[p].scene.particle.rigid() ? capsule_->rigid_about(x, scene_.time.tolerance).force(p)
+      force += members_[p].scene.particle.rigid() ? here.rigid().force(p)
                                                   : Vec3(members_[p].body->volume * members_[p].scene.body_force() +
                                                          members_[p].scene.membrane.forces.total());
     return force;
   }
 
   /// Returns what the row of particle p is made of, but for its tank-treading. Adds the columns of its fields.
-  std::unique_ptr<ParticleRow> particle_row(std::size_t p, const motion::State& state, const Net& y, Columns& to) {
+  std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
-    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, state));
+    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));
     const Net x = member.own(state.x), slope = member.own(state.history.front());
     DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
-    now.stresslet = capsule_->stresslet(state.x, state.history.front(), p);
-    now.energy += capsule_->load_energy(state.x, p);
-    if (member.scene.viscous_membrane()) now.dissipation = capsule_->membrane_dissipation(state.x, state.history.front(), p);
+    now.stresslet = here.stresslet(p);
+    now.energy += here.load_energy(p);
+    if (member.scene.viscous_membrane()) now.dissipation = here.membrane_dissipation(p);
     now.intrinsic_viscosity = intrinsic_viscosity(*member.body, scene_.flow.viscosity, now);
     fields_->add_to(p, y, now, to);
     return std::make_unique<DeformingRow>(now);
@@ -314,11 +312,11 @@ class Deforming : public ParticleSystem {
     now.phase = member.phase_angle.degrees;
   }
 
-  RigidRow rigid_row(std::size_t p, const motion::State& state) {
+  RigidRow rigid_row(std::size_t p, coupling::Evaluation& here) {
     const Member& member = members_[p];
-    const coupling::RigidParticles& rigid = capsule_->rigid_about(state.x, scene_.time.tolerance);
-    RigidRow now = tanktread::rigid_row(member.scene, *member.body, geometry(member), member.own(state.x), rigid.motion(p),
-                                        Eigen::Quaterniond(rigid.turn(p)), capsule_->stresslet(state.x, state.history.front(), p), ranks_);
+    const coupling::RigidParticles& rigid = here.rigid();
+    RigidRow now = tanktread::rigid_row(member.scene, *member.body, geometry(member), member.own(here.x()), rigid.motion(p),
+                                        Eigen::Quaterniond(rigid.turn(p)), here.stresslet(p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
     return now;
   }

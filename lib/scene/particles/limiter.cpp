@@ -27,8 +27,8 @@ Vec3 place(const std::vector<Member>& members, const Net& x, const coupling::Con
 
 bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contacts) {
   const Net start = state.x;
-  step_ = step, held_.clear(), base_ = {};
-  load_ = contacts.all.empty() ? Net() : coupling::work(capsule_.particles(), contacts, start.rows());
+  step_ = step, held_.clear(), base_.reset();
+  load_ = coupling::work(capsule_.particles(), contacts, start.rows());
   for (const coupling::Contact& one : contacts.all) {
     const Approach now = approach(members_, start, one);
     held_.push_back(held(now, target(now)));
@@ -39,12 +39,12 @@ bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contac
     holds = round < most_rounds && respond(state) && (x = moved(start)).allFinite() && find(x);
   }
   if (!holds || (held_.empty() && contacts.all.empty())) {
-    capsule_.press(load_);
+    capsule_.set_forces(coupling::Capsule::Forces::contacts, load_);
     return holds;
   }
   contacts = with_forces(x, contacts.impulse);
   state.x = x;
-  capsule_.press(contacts.all.empty() ? Net() : coupling::work(capsule_.particles(), contacts, x.rows()));
+  capsule_.set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_.particles(), contacts, x.rows()));
   state.history = {capsule_.velocity(x)};
   state.places.clear();
   return state.history.front().allFinite();
@@ -102,15 +102,14 @@ bool Limiter::respond(const motion::State& state) {
   const bool stiff = state.frozen.size() > 0;
   for (Held& one : held_) {
     if (one.response.size() > 0) continue;
-    if (base_.size() == 0) {
-      capsule_.press(load_);
-      base_ = capsule_.velocity(start);
-      if (stiff && base_.allFinite()) capsule_.linearise(start);
+    if (!base_) {
+      capsule_.set_forces(coupling::Capsule::Forces::contacts, load_);
+      base_ = capsule_.evaluate(start);
+      if (stiff && base_->velocity().allFinite()) capsule_.linearise(start);
     }
     one.work = Net::Zero(start.rows(), 3);
     coupling::add_work(capsule_.particles(), one.contact, unit_, one.work);
-    capsule_.press(load_.size() > 0 ? Net(load_ + one.work) : one.work);
-    const Net rate = capsule_.velocity(start) - base_;
+    const Net rate = capsule_.response(*base_, one.work);
     if (!rate.allFinite()) return false;
     one.response = step_ * (stiff ? capsule_.solve(step_, rate, 1e-6, {}) : rate);
   }

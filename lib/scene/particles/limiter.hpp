@@ -1,6 +1,7 @@
 #pragma once
 // The limiter of gaps between particles: `Contact/limiter`.
 
+#include <memory>
 #include <vector>
 
 #include "motion/integrator.hpp"
@@ -52,7 +53,8 @@ class Limiter {
   double limit_, unit_, rate_;
   double step_ = 0;
   std::vector<Held> held_;
-  Net load_, base_;  // the contacts' so far, and the velocity with it
+  Net load_;                                  // the contacts' so far
+  std::shared_ptr<coupling::Evaluation> base_;  // with it
 };
 
 }  // namespace tanktread

@@ -104,9 +104,10 @@ void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Colum
     now.dissipation += one.field->dissipation();
     if (one.part) one.part->add_columns(one.field->values(), to);
     if (!one.surfactant) continue;
-    now.tension.smallest = members_[p].scene.surfactant->tension(one.surfactant->largest());
+    const auto [smallest, largest] = one.surfactant->extremes();
+    now.tension.smallest = members_[p].scene.surfactant->tension(largest);
     const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;
-    SurfactantRow{mass, one.surfactant->smallest(), one.surfactant->largest()}.add_columns(to);
+    SurfactantRow{mass, smallest, largest}.add_columns(to);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "membrane/surfactant.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
@@ -31,9 +32,30 @@ TEST(Surfactant, OfAnEvenConcentrationLowersTheTensionOfTheInterface) {
   Surfactant surfactant(s.space, s.net, linear(0.2), 1.3, 0);
   surfactant.set_state(s.net, Eigen::VectorXd::Ones(s.net.rows()));
   EXPECT_LT((surfactant.load() + 0.2 * load).norm(), 1e-12 * load.norm());
-  EXPECT_NEAR(surfactant.smallest(), 1, 1e-12);
-  EXPECT_NEAR(surfactant.largest(), 1, 1e-12);
+  EXPECT_NEAR(surfactant.extremes().smallest, 1, 1e-12);
+  EXPECT_NEAR(surfactant.extremes().largest, 1, 1e-12);
   EXPECT_LT(surfactant.rate(Net::Zero(s.net.rows(), 3)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+/// c = 1 + 0.3 Y(n), Y = a x^2 + b y^2 - (a + b) z^2 with axes that no control or Gauss point lies on; -(a + b) and a are the extremes of Y. A
+/// sample of points spaced by h misses them by h^2 at any order of the interpolation, which has the order 4.
+TEST(Surfactant, HasTheExtremesOfTheSplineSurface) {
+  const double a = 1, b = 0.4;
+  const Mat3 axes = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const auto error = [&](int n) {
+    const Sphere& s = sphere(n);
+    const Net fitted = surface::LeastSquaresFit(s.space).fit_image(s.net, [&](const Vec3& x) {
+      const Vec3 y = axes * x.normalized();
+      return Vec3(1 + 0.3 * (a * y[0] * y[0] + b * y[1] * y[1] - (a + b) * y[2] * y[2]), 0, 0);
+    });
+    Surfactant surfactant(s.space, s.net, linear(0.2), 1, 0);
+    surfactant.set_state(s.net, surfactant.contents(s.net, fitted.col(0)));
+    const auto [smallest, largest] = surfactant.extremes();
+    return std::max(std::abs(smallest - 1 + 0.3 * (a + b)), std::abs(largest - 1 - 0.3 * a));
+  };
+  const double coarse = error(4), fine = error(8);
+  EXPECT_LT(fine, coarse / 12) << coarse << ' ' << fine;  // between the orders 3 and 4
+  EXPECT_LT(fine, 1e-4);
 }
 
 TEST(Surfactant, HasTheEquationsOfStateOfItsName) {

@@ -214,7 +214,7 @@ TEST(Capsule, StressletOfASmallStrainIsThatOfTheMembrane) {
   e(0, 2) = e(2, 0) = 0.7;
   const auto stresslet = [&](double s) {
     const Net x = f.sphere * (Mat3::Identity() + s * e);
-    return capsule.stresslet(x, Net::Zero(x.rows(), 3));
+    return Evaluation(capsule, x, Net::Zero(x.rows(), 3)).stresslet();
   };
   const Mat3 s = (stresslet(strain) - stresslet(-strain)) / (2 * strain);
   const double exact = 4 * std::numbers::pi * 1.2 * 2.5;

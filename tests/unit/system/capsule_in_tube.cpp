@@ -83,10 +83,11 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
 TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove) {
   for (const double ratio : {0.2, 4.0}) {
     Confined material(ratio, "schur", "material");
-    const double drop = material.capsule->response(material.x).pressure_drop;
+    const double drop = material.capsule->evaluate(material.x)->response().pressure_drop;
     for (const char* motion : {"normal", "relaxed"}) {
       Confined sliding(ratio, "schur", motion);
-      EXPECT_NEAR(sliding.capsule->response(sliding.x).pressure_drop, drop, 1e-8 * std::abs(drop)) << ratio << " " << motion;  // residuals as above
+      EXPECT_NEAR(sliding.capsule->evaluate(sliding.x)->response().pressure_drop, drop, 1e-8 * std::abs(drop))
+          << ratio << " " << motion;  // residuals as above
       EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
     }
   }
@@ -101,11 +102,11 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
     EXPECT_EQ(known.capsule->velocity(known.x), v);
     EXPECT_EQ(known.capsule->work().evaluations, 2);
     known.capsule->freeze(elsewhere);  // takes the tube there
-    const Tube::Response response = known.capsule->response(known.x);
+    const Tube::Response response = known.capsule->evaluate(known.x)->response();
     EXPECT_EQ(known.capsule->work().evaluations, 2);
 
     EXPECT_EQ(fresh.capsule->velocity(fresh.x), v);
-    const Net f = fresh.capsule->load(fresh.x);
+    const Net f = fresh.capsule->evaluate(fresh.x)->load();
     fresh.capsule->tube()->place(fresh.x);
     const Tube::Response again = fresh.capsule->tube()->respond(f, v);
     EXPECT_EQ(response.wall_traction, again.wall_traction);
@@ -116,7 +117,7 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
 TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
   Confined plain(4, "schur"), helped(4, "schur");
   const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
-  EXPECT_LT((helped.capsule->velocity(helped.x, start) - v).norm(), 1e-8 * v.norm());  // residuals as above
+  EXPECT_LT((helped.capsule->evaluate(helped.x, start)->velocity() - v).norm(), 1e-8 * v.norm());  // residuals as above
   EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
 }
 

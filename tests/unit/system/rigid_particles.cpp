@@ -87,10 +87,10 @@ TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
   const Eigen::Quaterniond q(turn);
   place.row(1) = q.vec().transpose(), place(2, 0) = q.w();
   const RigidMotion expected = body.motion(place);
-  const RigidParticles& found = system.rigid_about(x, 0);
+  const RigidParticles found = system.evaluate(x)->rigid();
   EXPECT_LT((found.motion(0).velocity - expected.velocity).norm(), 2e-5);  // n = 6: collocation errs by 1e-5 of the velocity
   EXPECT_LT((found.motion(0).angular_velocity - expected.angular_velocity).norm(), 5e-5);
-  EXPECT_LT((system.stresslet(x, {}, 0) - body.stresslet(place)).norm(), 1e-4 * body.stresslet(place).norm());
+  EXPECT_LT((system.evaluate(x)->stresslet() - body.stresslet(place)).norm(), 1e-4 * body.stresslet(place).norm());
 }
 
 TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
@@ -98,11 +98,11 @@ TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
   Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
   Bodies held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{true, {}}}}, 4, some_gradient());
   Capsule system = held.system();
-  const RigidParticles& forced = system.rigid_about(held.rest, 0);
+  const RigidParticles forced = system.evaluate(held.rest)->rigid();
   Bodies free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), Rigid{false, {}, forced.force(0), forced.torque(0)}},
                {away, Vec3::Ones(), Rigid{false, {}, forced.force(1), forced.torque(1)}}}, 4, some_gradient());
   Capsule other = free.system();
-  const RigidParticles& moved = other.rigid_about(free.rest, 0);
+  const RigidParticles moved = other.evaluate(free.rest)->rigid();
   // What both leave over between the collocation sites is not the same.
   EXPECT_LT((moved.motion(0).velocity - told.motion.velocity).norm(), 5e-4);
   EXPECT_LT((moved.motion(0).angular_velocity - told.motion.angular_velocity).norm(), 5e-4);
@@ -114,16 +114,16 @@ TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
   const Rigid pulled{true, {Vec3(1, 0, 0), Vec3::Zero()}}, held{true, {}};
   Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), held}}, 4, Mat3::Zero());
   Capsule system = pair.system();
-  const RigidParticles& along = system.rigid_about(pair.rest, 0);
+  const RigidParticles along = system.evaluate(pair.rest)->rigid();
   const double unit = 6 * pi * viscosity;
   EXPECT_NEAR(along.force(0)[0] / unit, 1.3684796, 2e-4);  // n = 4; order four in the element size
   EXPECT_NEAR(along.force(1)[0] / unit, -0.670175042, 2e-4);
   EXPECT_LT(along.torque(0).norm() + along.torque(1).norm(), 1e-6);
   Bodies free({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
   Capsule in_strain = free.system();
-  const RigidParticles& moved = in_strain.rigid_about(free.rest, 0);
+  const RigidParticles moved = in_strain.evaluate(free.rest)->rigid();
   EXPECT_NEAR(1 - (moved.motion(1).velocity - moved.motion(0).velocity)[0] / 3, 0.186662636, 1e-4);  // A
-  EXPECT_NEAR(in_strain.stresslet(free.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 2e-4);  // S0
+  EXPECT_NEAR(in_strain.evaluate(free.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 2e-4);  // S0
 }
 
 /// The surface is a hair higher where it is collocated than between, which made 1.3e-4 of the torque.
@@ -131,15 +131,14 @@ TEST(RigidParticles, ALoadDrivesItsOwnBodyBetweenSitesToo) {
   const Rigid turned{true, {Vec3::Zero(), Vec3(0, 0, 1)}};
   Bodies one({{Vec3::Zero(), Vec3::Ones(), turned}}, 4, Mat3::Zero());
   Capsule system = one.system();
-  EXPECT_NEAR(system.rigid_about(one.rest, 0).torque(0)[2] / (8 * pi * viscosity), 1, 1e-5);  // the volume is a sphere's to 1e-6
+  EXPECT_NEAR(system.evaluate(one.rest)->rigid().torque(0)[2] / (8 * pi * viscosity), 1, 1e-5);  // the volume is a sphere's to 1e-6
 }
 
 /// So does its density; collocated, the stresslet errs by 1.4e-4.
 TEST(RigidParticles, ADensityDrivesItsOwnBodyBetweenSitesToo) {
   Bodies one({{Vec3::Zero(), Vec3::Ones(), Rigid{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
   Capsule system = one.system();
-  system.rigid_about(one.rest, 0);
-  EXPECT_NEAR(system.stresslet(one.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1, 1e-5);
+  EXPECT_NEAR(system.evaluate(one.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1, 1e-5);
 }
 
 /// What each is alone takes 41 iterations at the narrower gap.
@@ -200,7 +199,7 @@ TEST(RigidTractions, ErrLessThanDoubleLayers) {
   const Rigid one{true, {Vec3(1, 0, 0), Vec3::Zero()}}, other{true, {Vec3(-1, 0, 0), Vec3::Zero()}};
   const auto error = [&](auto pair) {
     Capsule system = pair->system();
-    return std::abs(system.rigid_about(pair->rest, 0).force(0)[0] / (6 * pi * viscosity) - (1.3684796 + 0.670175042));
+    return std::abs(system.evaluate(pair->rest)->rigid().force(0)[0] / (6 * pi * viscosity) - (1.3684796 + 0.670175042));
   };
   const std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), one}, {Vec3(3, 0, 0), Vec3::Ones(), other}};
   EXPECT_LT(10 * error(std::make_unique<ByTractions>(bodies, 4, Mat3::Zero())), error(std::make_unique<Bodies>(bodies, 4, Mat3::Zero())));
@@ -210,9 +209,9 @@ TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
   const Mat3 strain = Vec3(1, -0.5, -0.5).asDiagonal();
   ByTractions free({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 4, strain);
   Capsule system = free.system();
-  const RigidParticles& moved = system.rigid_about(free.rest, 0);
+  const RigidParticles moved = system.evaluate(free.rest)->rigid();
   EXPECT_NEAR(1 - (moved.motion(1).velocity - moved.motion(0).velocity)[0] / 3, 0.186662636, 2e-6);  // the surfaces are spheres to 1e-6
-  EXPECT_NEAR(system.stresslet(free.rest, {}, 0)(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 3e-5);  // 1.8e-4 without the correction
+  EXPECT_NEAR(system.evaluate(free.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 3e-5);  // 1.8e-4 without the correction
 }
 
 TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
@@ -220,11 +219,11 @@ TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
   const Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
   ByTractions held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
   Capsule system = held.system();
-  const RigidParticles& forced = system.rigid_about(held.rest, 0);
+  const RigidParticles forced = system.evaluate(held.rest)->rigid();
   const Rigid driven{false, {}, forced.force(0), forced.torque(0)};
   ByTractions free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), driven}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
   Capsule other = free.system();
-  const RigidParticles& moved = other.rigid_about(free.rest, 0);
+  const RigidParticles moved = other.evaluate(free.rest)->rigid();
   // What is left is what collocation lacks of the correction itself.
   EXPECT_LT((moved.motion(0).velocity - told.motion.velocity).norm(), 1e-5);
   EXPECT_LT((moved.motion(1).velocity - forced.motion(1).velocity).norm(), 1e-5);
@@ -235,7 +234,7 @@ TEST(RigidTractions, AWallResists) {
   ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.wall = stokes::PlaneWall(Vec3::Zero(), Vec3(0, 0, 1));
   Capsule system = one.system();
-  EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
+  EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
 }
 
 /// Drag of a simple cubic array at the volume fraction 0.2: multipoles with Ewald sums.
@@ -244,7 +243,7 @@ TEST(RigidTractions, AnArrayResists) {
   one.parameters.cell = stokes::PeriodicCell(2.7564674676 * Mat3::Identity(), 3);
   one.parameters.quadrature.tolerance = 1e-6, one.parameters.solvers.tolerance = 1e-8;
   Capsule system = one.system();
-  EXPECT_NEAR(system.rigid_about(one.rest, 0).force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-5);  // 3e-4 by double layers
+  EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-5);  // 3e-4 by double layers
 }
 
 }  // namespace rigid_particles_test

@@ -1,0 +1,119 @@
+#include "system/evaluation.hpp"
+
+#include <numeric>
+#include <utility>
+
+#include "system/capsule.hpp"
+
+namespace tanktread::coupling {
+
+Evaluation::Evaluation(Capsule& system, Net x, Net velocity, std::shared_ptr<Evaluation> near)
+    : system_(&system), x_(std::move(x)), known_(std::move(velocity)), near_(std::move(near)) {}
+
+void Evaluation::solve() {
+  if (solved_) return;
+  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, known_);
+  Net known = std::move(known_);
+  *this = *found;
+  known_ = std::move(known);
+}
+
+const Net& Evaluation::velocity() {
+  if (solved_ || known_.size() == 0) return solve(), velocity_;
+  return known_;
+}
+
+const Net& Evaluation::fluid_velocity() {
+  if (!system_->slides()) return velocity();
+  if (!solved_ && near_) return near_->fluid_velocity();
+  solve();
+  return fluid_;
+}
+
+const Net& Evaluation::work() {
+  if (work_.size() == 0) work_ = system_->work_of_loads(x_, load_sums_);
+  return work_;
+}
+
+const std::vector<Net>& Evaluation::load_sums() {
+  if (system_->loads_.n_sums() > 0) work();
+  return load_sums_;
+}
+
+const Net& Evaluation::load() {
+  if (load_.size() == 0) {
+    if (!system_->rigid_.empty() || system_->viscous()) solve();  // the load is part of what the velocity is solved from
+    else load_ = system_->membrane_load(*this, x_, nullptr);
+  }
+  return load_;
+}
+
+const RigidParticles& Evaluation::rigid() {
+  if (!solved_ && near_) return near_->rigid();
+  solve();
+  return rigid_ ? *rigid_ : system_->rigid_;
+}
+
+const Tube::Response& Evaluation::response() {
+  if (!response_ && (known_.size() == 0 || !system_->unknowns_follow())) solve();
+  system_->place(x_);
+  if (!response_ && !solved_) {
+    unknowns_ = known_;
+    load_ = system_->membrane_load(*this, x_, nullptr);
+    if (system_->viscous()) load_ += system_->measured_load(x_, viscous_work());
+  }
+  if (!response_) response_ = system_->tube_->respond(load_, unknowns_);
+  return *response_;
+}
+
+Tube::Checks Evaluation::checks() {
+  const Tube::Response& known = response();
+  return system_->tube_->checks(load_, unknowns_, known);
+}
+
+const Net& Evaluation::viscous_work() {
+  if (viscous_work_.size() == 0) {
+    system_->viscous_->update(x_, system_->own_elements_);
+    viscous_work_ = system_->viscous_work(*system_->viscous_, fluid_velocity());
+  }
+  return viscous_work_;
+}
+
+Mat3 Evaluation::stresslet(std::size_t p) {
+  Capsule& system = *system_;
+  const Particle& particle = system.particles()[p];
+  const auto own = [&](const Net& net) { return particle.block.rows(net); };
+  Mat3 moment;
+  if (system.tractions_) {
+    rigid();
+    moment = -system.tractions_->moment(p);
+    system.note_tractions(x_);
+  } else if (particle.rigid) {
+    moment = rigid().load_moment(p);
+  } else {
+    Net of_particle = own(work());
+    if (system.viscous()) of_particle += own(viscous_work());
+    moment = of_particle.transpose() * own(x_);  // int df x dG, x = sum N_A x_A
+    if (!particle.loads.empty() || system.pressed())  // about the centroid
+      moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
+  }
+  if (const double contrast = viscosity_contrast(particle); contrast != 0 && !system.tractions_) {
+    const Net v = particle.rigid ? rigid().density(p) : Net(own(fluid_velocity()));
+    std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
+    std::iota(elements.begin(), elements.end(), particle.block.first_element);
+    Net flux;
+    system.geometry_.volume_gradient(x_, elements, flux);
+    moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
+  }
+  return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+}
+
+double Evaluation::membrane_dissipation(std::size_t p) {
+  if (!system_->viscous()) return 0;
+  const spline::Block& block = system_->particles()[p].block;
+  return block.rows(fluid_velocity()).cwiseProduct(block.rows(viscous_work())).sum();
+}
+
+double Evaluation::load_energy(std::size_t p) { return system_->loads_.energy(x_, load_sums(), p); }
+
+}  // namespace tanktread::coupling
