@@ -1,4 +1,4 @@
-# cmake --install, and a Debian package by cpack: the program, its manual page and completion, decks, scripts, and the rooms of lib/ and app for find_package(tanktread).
+# cmake --install, and a Debian package by cpack: the program, its manual page and completion, decks, the Python package with its commands, and the rooms of lib/ and app for find_package(tanktread).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(share ${CMAKE_INSTALL_DATADIR}/tanktread)
@@ -7,13 +7,9 @@ file(MAKE_DIRECTORY ${made})
 
 install(TARGETS tanktread RUNTIME)
 install(DIRECTORY inputs DESTINATION ${share})
-install(DIRECTORY postproc DESTINATION ${share} USE_SOURCE_PERMISSIONS PATTERN gallery EXCLUDE PATTERN __pycache__ EXCLUDE)
+include(postproc/install.cmake)
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES app/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tanktread)
-foreach(script sweep fit outline report)
-  file(CREATE_LINK ../${share}/postproc/${script}.py ${made}/tanktread-${script} SYMBOLIC)
-  install(FILES ${made}/tanktread-${script} DESTINATION ${CMAKE_INSTALL_BINDIR})
-endforeach()
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:tanktread> -DVERSION=${PROJECT_VERSION} -DOUTPUT=${made}/tanktread.1
   -P ${PROJECT_SOURCE_DIR}/app/manual_page.cmake COMMAND_ERROR_IS_FATAL ANY)")
 install(FILES ${made}/tanktread.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

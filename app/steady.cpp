@@ -220,11 +220,10 @@ class SteadyRun {
     const surface::Symmetry& shape = system_->particle->body().symmetry;
     coupling::Ranks whole_ranks;  // of other rows
     const coupling::CoupledMotion* on_it = system_->particle->fields();
-    const bool apart = on_it && std::ranges::any_of(on_it->fields(), [](const auto& on) { return !on.field->of_points(); });
+    const bool apart = on_it && !on_it->knows_images(shape);
     if (apart && options.parity)
-      throw UserError("Spectrum/parity is of what has a value at each control point, and a membrane with Membrane/relaxation time has strains within "
-                      "elements: without the key there are modes of all parities.");
-    const std::shared_ptr<System> system = options.parity || (apart && shape.order() > 1) ? whole(whole_ranks) : system_;
+      throw UserError("Spectrum/parity needs fields whose images are known: without the key there are modes of all parities.");
+    const std::shared_ptr<System> system = options.parity || apart ? whole(whole_ranks) : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();
     const Net x = state_.x.topRows(capsule.n_points());

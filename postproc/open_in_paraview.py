@@ -1,10 +1,10 @@
 """A run as ParaView shows it: curved elements, exact normals, coloured by a field, with the time slider.
 
-    pvpython postproc/open_in_paraview.py results/shear_neo_hookean --state run.pvsm              # then: paraview run.pvsm
-    xvfb-run -a pvpython postproc/open_in_paraview.py results/shear_neo_hookean -o last.png       # without a display (package xvfb)
+    pvpython postproc/open_in_paraview.py results/shear_neo_hookean --state run.pvsm          # then: paraview run.pvsm
+    xvfb-run -a pvpython postproc/open_in_paraview.py results/shear_neo_hookean -o last.png   # without a display (xvfb)
 
-ParaView 5.11 (Debian 12: package python3-paraview) or newer. The wall of a tube is not in its files: postproc/tube.py draws it.
-This file must not be called paraview.py: it would hide the module.
+ParaView 5.11 (Debian 12: package python3-paraview) or newer. The wall of a tube is not in its files:
+postproc/tanktread-figure tube draws it. This file must not be called paraview.py: it would hide the module.
 """
 
 import argparse
@@ -27,10 +27,12 @@ def main():
     parser.add_argument("--time", type=float, help="simulated time to show (default: the last)")
     parser.add_argument("--state", metavar="FILE", help="save a state file for the ParaView program")
     parser.add_argument("-o", "--output", metavar="FILE", help="save a picture")
-    parser.add_argument("--offscreen", action="store_true", help="this ParaView draws without a display (Debian's does not)")
+    parser.add_argument("--offscreen", action="store_true",
+                        help="this ParaView draws without a display (Debian's does not)")
     arguments = parser.parse_args()
     if not (arguments.offscreen or os.environ.get("DISPLAY")):
-        sys.exit(f"there is no display, without which Debian's ParaView crashes: xvfb-run -a pvpython {' '.join(sys.argv)} (package xvfb)")
+        sys.exit(f"there is no display, without which Debian's ParaView crashes: xvfb-run -a pvpython "
+                 f"{' '.join(sys.argv)} (package xvfb)")
 
     series = pathlib.Path(arguments.results).resolve() / "run.hdf.series"
     if not series.exists():

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -62,15 +63,13 @@ class Field {
   /// Returns the gradient by q of a sum that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
-  /// Returns whether q has one coefficient per control point, a scalar, so that symmetries of the surface apply to it.
-  virtual bool of_points() const { return false; }
-
   /// Returns the values of the columns with which the field is registered, and what snapshots show of it, at the state set last.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
-  /// Makes q invariant under the symmetry, to which the state conforms but for round-off.
-  virtual void symmetrise(const surface::Symmetry&, Eigen::VectorXd& /*q*/) const {}
+  /// Returns which coefficient the image of each one is, and the sign by which it is multiplied. Empty: it is not known, and the field is not made
+  /// symmetric; modes (4.16) are then those of the whole surface.
+  virtual std::vector<std::pair<int, double>> images(const surface::Image&) const { return {}; }
 };
 
 using FieldParts = deck::Parts<std::unique_ptr<Field>(const ParticleSurface&)>;

@@ -72,6 +72,19 @@ int MaxwellElement::order(std::size_t element) const {
   return static_cast<int>(std::lround(std::sqrt(static_cast<double>(end - first_[element]))));
 }
 
+/// Gauss points are turned with their element: 11 and 22 change places if its parameters do, and 12 changes sign if one of them is turned around.
+std::vector<std::pair<int, double>> MaxwellElement::images(const surface::Image& image) const {
+  std::vector<std::pair<int, double>> all;
+  for (std::size_t e = 0; e < first_.size(); ++e) {
+    const surface::Turn& turn = image.turn[e];
+    const int n = order(e), first = static_cast<int>(first_[static_cast<std::size_t>(image.element[e])]);
+    for (int q = 0; q < n * n; ++q)
+      for (int k = 0; k < 3; ++k)
+        all.emplace_back(3 * (first + turn.bernstein(q, n - 1)) + (turn.exchanged ? 2 - k : k), k == 1 && turn.turned[0] != turn.turned[1] ? -1 : 1);
+  }
+  return all;
+}
+
 /// log(L^T C L) at each Gauss point of the state set last.
 Eigen::MatrixX3d MaxwellElement::logarithms() const {
   Eigen::MatrixX3d all(unit_.rows(), 3);

@@ -44,6 +44,7 @@ class MaxwellElement : public Field {
   Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< exact: one 3 x 3 system per Gauss point
   bool follows_shape() const override { return true; }
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
+  std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
   /// Interpolates the logarithm of C in the orthonormal frames of the surface, so that C stays positive definite.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 

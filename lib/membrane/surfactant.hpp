@@ -55,8 +55,7 @@ class Surfactant : public Field {
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
-  bool of_points() const override { return true; }
-  void symmetrise(const surface::Symmetry& symmetry, Eigen::VectorXd& q) const override;
+  std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
 
   /// The concentration is sampled at the Gauss points and scaled to the same mass.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;

@@ -166,8 +166,10 @@ Eigen::VectorXd Surfactant::solve(double shift, const Eigen::VectorXd& r) const 
 
 void Surfactant::conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const { dq.array() += share_.dot(r - dq) / share_.sum(); }
 
-void Surfactant::symmetrise(const surface::Symmetry& symmetry, Eigen::VectorXd& q) const {
-  for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = q[symmetry.source()[static_cast<std::size_t>(i)]];
+std::vector<std::pair<int, double>> Surfactant::images(const surface::Image& image) const {
+  std::vector<std::pair<int, double>> all;
+  for (const int point : image.point) all.emplace_back(point, 1);
+  return all;
 }
 
 Eigen::VectorXd Surfactant::contents(const Net& x, const Eigen::VectorXd& c) const { return (mass_.update(x) * c).cwiseQuotient(share_); }

@@ -27,7 +27,8 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", choice(), "there is no fluid in a rigid particle");
   to.pair(rigid() && shape.initial, "Particle/initial shape", choice(), "a rigid particle has the shape that it has");
   to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow.choice(), "it is for flows " + gradient);
-  to.pair(held && (tube || rigid()), "Particle/drift `held`", tube ? scene.tube.list() : choice(), "it is for particles that deform in a flow " + gradient);
+  to.pair(held && (tube || rigid()), "Particle/drift `held`", tube ? scene.tube.list() : choice(),
+          "it is for particles that deform in a flow " + gradient);
   to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
           "Solvers/projection `" + scene.solvers.projection + "`", tube ? "Tube" : scene.wall.present ? "Wall" : choice(),
           "it is for what deforms away from walls");

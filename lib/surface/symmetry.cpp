@@ -1,7 +1,6 @@
 #include "surface/symmetry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -13,22 +12,6 @@ namespace tanktread::surface {
 namespace {
 
 constexpr double exact = 1e-10, close = 1e-9;
-
-/// One of the eight maps of the unit square onto itself: coordinates exchanged, then turned around.
-struct Turn {
-  bool exchanged, turned[2];
-
-  std::array<double, 2> operator()(double s, double t) const {
-    if (exchanged) std::swap(s, t);
-    return {turned[0] ? 1 - s : s, turned[1] ? 1 - t : t};
-  }
-
-  int bernstein(int b, int p) const {
-    int i = b % (p + 1), j = b / (p + 1);
-    if (exchanged) std::swap(i, j);
-    return (p + 1) * (turned[1] ? p - j : j) + (turned[0] ? p - i : i);
-  }
-};
 
 constexpr Turn turns[8] = {{false, {false, false}}, {false, {true, false}}, {false, {false, true}}, {false, {true, true}},
                            {true, {false, false}},  {true, {true, false}},  {true, {false, true}},  {true, {true, true}}};
@@ -49,8 +32,7 @@ class ImageSearch {
 
   /// The image that these signs make, if it is one and is kept.
   std::optional<Image> image(const Vec3& signs, const Keeps& keeps) {
-    image_ = {signs, {}, {}};
-    turn_.clear();
+    image_ = {signs, {}, {}, {}};
     if (!points() || !keeps(image_) || !elements() || !sites()) return {};
     return std::move(image_);
   }
@@ -93,7 +75,7 @@ class ImageSearch {
       const auto turn = std::ranges::find_if(turns, [&](const Turn& t) { return same_places(t, e, other) && same_basis(t, e, other); });
       if (turn == std::end(turns)) return false;
       image_.element.push_back(other);
-      turn_.push_back(*turn);
+      image_.turn.push_back(*turn);
     }
     return true;
   }
@@ -135,7 +117,7 @@ class ImageSearch {
   bool sites() const {
     for (int a = 0; a < space_.n_points; ++a) {
       const spline::Site& site = space_.collocation[a].front();
-      const auto place = turn_[site.element](site.s, site.t);
+      const auto place = image_.turn[site.element](site.s, site.t);
       const auto same = [&](const spline::Site& other) {
         return other.element == image_.element[site.element] && std::abs(other.s - place[0]) < close && std::abs(other.t - place[1]) < close;
       };
@@ -152,12 +134,12 @@ class ImageSearch {
   std::vector<Eigen::MatrixX3d> bezier_;  // an element
   spline::Places points_, centres_;
   Image image_;
-  std::vector<Turn> turn_;
 };
 
 Image product(const Image& a, const Image& b) {
-  Image result{a.signs.cwiseProduct(b.signs), b.point, b.element};
+  Image result{a.signs.cwiseProduct(b.signs), b.point, b.element, b.turn};
   for (int& p : result.point) p = a.point[p];
+  for (std::size_t e = 0; e < result.turn.size(); ++e) result.turn[e] = a.turn[b.element[e]].after(b.turn[e]);
   for (int& e : result.element) e = a.element[e];
   return result;
 }
@@ -175,7 +157,7 @@ std::vector<Image> joined(std::vector<Image> group, const Image& more) {
 }
 
 std::vector<Image> identity(std::size_t n_points, std::size_t n_elements) {
-  Image one{Vec3::Ones(), std::vector<int>(n_points), std::vector<int>(n_elements)};
+  Image one{Vec3::Ones(), std::vector<int>(n_points), std::vector<int>(n_elements), std::vector<Turn>(n_elements)};
   std::iota(one.point.begin(), one.point.end(), 0);
   std::iota(one.element.begin(), one.element.end(), 0);
   return {one};
@@ -194,6 +176,22 @@ std::string name(const Vec3& signs) {
 }
 
 }  // namespace
+
+std::array<double, 2> Turn::operator()(double s, double t) const {
+  if (exchanged) std::swap(s, t);
+  return {turned[0] ? 1 - s : s, turned[1] ? 1 - t : t};
+}
+
+int Turn::bernstein(int b, int p) const {
+  int i = b % (p + 1), j = b / (p + 1);
+  if (exchanged) std::swap(i, j);
+  return (p + 1) * (turned[1] ? p - j : j) + (turned[0] ? p - i : i);
+}
+
+Turn Turn::after(const Turn& first) const {
+  const auto of = [&](int k) { return turned[k] != first.turned[exchanged ? 1 - k : k]; };
+  return {exchanged != first.exchanged, {of(0), of(1)}};
+}
 
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs) {
   return ImageSearch(space, nets).image(signs, [](const Image&) { return true; });

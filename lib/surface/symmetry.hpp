@@ -2,6 +2,7 @@
 // Reflections that leave a surface and its spline space as they are, and sums over such a surface from one of each set of elements that are images
 // of one another.
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -13,11 +14,21 @@
 
 namespace tanktread::surface {
 
+/// One of the eight maps of the unit square onto itself: coordinates exchanged, then turned around.
+struct Turn {
+  bool exchanged = false, turned[2] = {false, false};
+
+  std::array<double, 2> operator()(double s, double t) const;
+  int bernstein(int b, int p) const;  ///< the image of entry b of a grid of (p + 1) x (p + 1) that is symmetric about its middle
+  Turn after(const Turn& first) const;
+};
+
 /// x -> c + diag(signs) (x - c) about the middle c of a surface: a mirror plane (one sign is -1), a half turn (two), the point symmetry (three);
-/// and which control point, and which Bezier element, the image of each one is.
+/// which control point, and which Bezier element, the image of each one is, and how the parameters of each element are turned.
 struct Image {
   Vec3 signs = Vec3::Ones();
   std::vector<int> point, element;
+  std::vector<Turn> turn;
 };
 
 /// The map of an image about a middle.
@@ -94,7 +105,6 @@ class Parity {
   /// What the vector, or the scalar, of a point is multiplied by to be that of its source's image, as Symmetry::signs.
   const Net& signs() const { return signs_; }
   const Eigen::VectorXd& scalar_signs() const { return scalar_signs_; }
-  int source(Eigen::Index point) const { return source_[static_cast<std::size_t>(point)]; }  ///< the fundamental point that it is an image of
 
   /// Fields of this parity from their rows of the fundamental points, as Symmetry::complete.
   void complete(Net& field) const;

@@ -154,9 +154,7 @@ class Capsule : public Dynamics {
   /// Solves the linear system of an implicit step for `rhs`, a state of any number of rows, to this relative residual, and counts it. Collective.
   Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
   bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
-  void symmetrise(const membrane::Field& field, Eigen::VectorXd& q) const {
-    if (parameters_.symmetry.order() > 1) field.symmetrise(parameters_.symmetry, q);
-  }
+  const surface::Symmetry& symmetry() const { return parameters_.symmetry; }
 
   /// Whether control points slide along the interface, so that their velocity is not the fluids'.
   bool slides() const { return interface_.has_value(); }

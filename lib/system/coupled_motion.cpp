@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace tanktread::coupling {
@@ -20,10 +21,43 @@ CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields)
   for (const On& on : fields_) {
     const Particle& particle = capsule.particles()[on.particle];
     const Eigen::Index size = on.field->size();
-    blocks_.push_back({on, first, size, particle.radius * std::sqrt(particle.block.n_points / static_cast<double>(size)), particle.block});
+    blocks_.push_back({on, first, size, particle.radius * std::sqrt(particle.block.n_points / static_cast<double>(size)), particle.block, {}});
+    if (capsule.symmetry().order() > 1) blocks_.back().symmetric = basis(blocks_.size() - 1, capsule.symmetry(), Vec3::Ones());
     first += size;
   }
   rows_ = (first + 2) / 3;
+}
+
+Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const {
+  const membrane::Field& field = *fields_[k].field;
+  std::vector<std::vector<std::pair<int, double>>> maps;
+  for (const surface::Image& g : symmetry.images()) {
+    std::vector<std::pair<int, double>> map = field.images(g);
+    if (map.empty()) break;
+    const double turned = (g.signs.array() < 0).select(parity, Vec3::Ones()).prod();
+    for (auto& [to, sign] : map) sign *= turned;
+    maps.push_back(std::move(map));
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<bool> met(static_cast<std::size_t>(field.size()), false);
+  int n = 0;
+  for (int i = 0; i < static_cast<int>(field.size()); ++i) {
+    if (met[static_cast<std::size_t>(i)]) continue;
+    std::map<int, double> sum{{i, 1}};  // over the images of coefficient i
+    for (const auto& map : maps) sum[map[static_cast<std::size_t>(i)].first] += map[static_cast<std::size_t>(i)].second;
+    for (const auto& [to, value] : sum) {
+      met[static_cast<std::size_t>(to)] = true;
+      if (sum[i] != 0) entries.emplace_back(to, n, std::copysign(1 / std::sqrt(static_cast<double>(sum.size())), value));
+    }
+    n += sum[i] != 0;
+  }
+  Eigen::SparseMatrix<double> columns(field.size(), n);
+  columns.setFromTriplets(entries.begin(), entries.end());
+  return columns;
+}
+
+bool CoupledMotion::knows_images(const surface::Symmetry& symmetry) const {
+  return symmetry.order() == 1 || std::ranges::none_of(fields_, [&](const On& on) { return on.field->images(symmetry.images()[0]).empty(); });
 }
 
 Net CoupledMotion::start(const Net& shape) const {
@@ -213,9 +247,8 @@ std::vector<Net> CoupledMotion::relabellings(const Net& y) {
 Net CoupledMotion::symmetric(Net rate) const {
   rate = with_shape(std::move(rate), capsule_.symmetric(shape(rate)));
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    Eigen::VectorXd q = coefficients(rate, k);
-    capsule_.symmetrise(*blocks_[k].on.field, q);
-    set_coefficients(rate, k, q);
+    const Eigen::SparseMatrix<double>& basis = blocks_[k].symmetric;
+    if (basis.size() > 0) set_coefficients(rate, k, basis * (basis.transpose() * coefficients(rate, k)).eval());
   }
   return rate;
 }

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/SparseCore>
+
 #include "membrane/field.hpp"
 #include "system/capsule.hpp"
 
@@ -33,6 +35,10 @@ class CoupledMotion : public Dynamics {
   void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
   const std::vector<On>& fields() const { return fields_; }
   Eigen::Index n_rows() const { return rows_; }  ///< of a state
+
+  /// Orthonormal basis of the coefficients of field k that have this parity under the symmetry, a column each; all if its images are not known.
+  Eigen::SparseMatrix<double> basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const;
+  bool knows_images(const surface::Symmetry& symmetry) const;  ///< of all fields
 
   /// The gradient of the sum that field k conserves, as a state; of no rows if there is none.
   Net conserved(std::size_t k) const;
@@ -75,6 +81,7 @@ class CoupledMotion : public Dynamics {
     Eigen::Index first, size;  // among the numbers of a state
     double scale;
     spline::Block rows;        // of its particle
+    Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty: nothing is symmetric
   };
   Net left(const Net& delta);
   Net right(const Net& delta, bool solved = false);

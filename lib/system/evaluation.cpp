@@ -30,6 +30,11 @@ const Net& Evaluation::fluid_velocity() {
   return fluid_;
 }
 
+const Net& Evaluation::moving() {
+  if (system_->slides()) solve();
+  return fluid_velocity();
+}
+
 const Net& Evaluation::work() {
   if (work_.size() == 0) work_ = system_->work_of_loads(x_, load_sums_);
   return work_;
@@ -74,7 +79,7 @@ Tube::Checks Evaluation::checks() {
 const Net& Evaluation::viscous_work() {
   if (viscous_work_.size() == 0) {
     system_->viscous_->update(x_, system_->own_elements_);
-    viscous_work_ = system_->viscous_work(*system_->viscous_, fluid_velocity());
+    viscous_work_ = system_->viscous_work(*system_->viscous_, moving());
   }
   return viscous_work_;
 }
@@ -98,7 +103,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !system.tractions_) {
-    const Net v = particle.rigid ? rigid().density(p) : Net(own(fluid_velocity()));
+    const Net v = particle.rigid ? rigid().density(p) : Net(own(moving()));
     std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
     std::iota(elements.begin(), elements.end(), particle.block.first_element);
     Net flux;
@@ -111,7 +116,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
 double Evaluation::membrane_dissipation(std::size_t p) {
   if (!system_->viscous()) return 0;
   const spline::Block& block = system_->particles()[p].block;
-  return block.rows(fluid_velocity()).cwiseProduct(block.rows(viscous_work())).sum();
+  return block.rows(moving()).cwiseProduct(block.rows(viscous_work())).sum();
 }
 
 double Evaluation::load_energy(std::size_t p) { return system_->loads_.energy(x_, load_sums(), p); }

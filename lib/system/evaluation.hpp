@@ -52,6 +52,7 @@ class Evaluation {
 
  private:
   friend class Capsule;
+  const Net& moving();  // the fluids' velocity at this very shape
   const Net& viscous_work();
 
   Capsule* system_;

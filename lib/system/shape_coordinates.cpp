@@ -16,7 +16,8 @@ namespace tanktread::coupling {
 
 ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                                    const VelocityProjection* projection, const Vec3& parity)
-    : parity_(symmetry, parity), sites_(collocation_matrix(space)), collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
+    : symmetry_(symmetry), of_planes_(parity), parity_(symmetry, parity), sites_(collocation_matrix(space)),
+      collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
       projection_(projection) {
   collocation_.factor(sites_);
   for (const int i : symmetry.fundamental()) {
@@ -113,18 +114,12 @@ void ShapeCoordinates::carry_whole(const spline::Block& block) {
 void ShapeCoordinates::add_fields(CoupledMotion& motion, const Net& y) {
   motion_ = &motion, state_ = y;
   std::vector<Eigen::Triplet<double>> entries;
-  int first = 0, n = 0;
-  for (const CoupledMotion::On& on : motion.fields()) {
-    const auto size = static_cast<int>(on.field->size());
-    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(size));
-    for (int i = 0; i < size; ++i)  // of a scalar of control points one column for each fundamental point, with its images
-      if (!on.field->of_points()) columns[static_cast<std::size_t>(i)].emplace_back(i, 1);
-      else if (const double sign = parity_.scalar_signs()[i]; sign != 0) columns[static_cast<std::size_t>(parity_.source(i))].emplace_back(i, sign);
-    for (const auto& column : columns) {
-      for (const auto& [row, sign] : column) entries.emplace_back(first + row, n, sign / std::sqrt(static_cast<double>(column.size())));
-      n += !column.empty();
-    }
-    first += size;
+  Eigen::Index first = 0, n = 0;
+  for (std::size_t k = 0; k < motion.fields().size(); ++k) {
+    const Eigen::SparseMatrix<double> basis = motion.basis(k, symmetry_, of_planes_);
+    for (Eigen::Index j = 0; j < basis.cols(); ++j)
+      for (Eigen::SparseMatrix<double>::InnerIterator one(basis, j); one; ++one) entries.emplace_back(first + one.row(), n + j, one.value());
+    first += basis.rows(), n += basis.cols();
   }
   fields_.resize(3 * (motion.n_rows() - n_points()), n);
   fields_.setFromTriplets(entries.begin(), entries.end());

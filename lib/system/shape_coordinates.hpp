@@ -83,6 +83,8 @@ class ShapeCoordinates {
   std::vector<Coordinate> along_;  // of drops, tangential
   Eigen::MatrixXd following_;      // those of the mesh that follows, of coordinates y; empty: it does not
   std::vector<Translation> translations_;  // of drops
+  const surface::Symmetry& symmetry_;
+  Vec3 of_planes_;
   surface::Parity parity_;
   Eigen::SparseMatrix<double> sites_;  // R
   membrane::SymmetricSolver collocation_;

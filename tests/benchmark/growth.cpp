@@ -1,5 +1,5 @@
 // How a whole velocity evaluation grows with the mesh: seconds by phase and bytes at n = 12, 24, 48, 96, and the error of its far sum against
-// the dense one on a sample of targets. postproc/growth.py runs this, fits exponents and draws.
+// the dense one on a sample of targets. tests/benchmark/growth.py runs this, fits exponents and draws.
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>

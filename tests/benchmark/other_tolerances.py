@@ -23,8 +23,7 @@ import subprocess
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "postproc"))
-import needs  # noqa: E402, F401 checks that the modules below exist
+import package  # noqa: E402, F401 before the package tanktread
 import numpy  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
 

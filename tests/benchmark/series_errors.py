@@ -18,11 +18,10 @@ import pathlib
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "postproc"))
-import needs  # noqa: E402 checks that the modules below exist
+import package  # noqa: E402, F401 before the package tanktread
 import numpy  # noqa: E402
 
-import literature  # noqa: E402
+from tanktread import interpolation  # noqa: E402
 import tanktread  # noqa: E402
 from compare import WORK, natural_unit  # noqa: E402
 from power_balance import MESHES  # noqa: E402
@@ -75,7 +74,7 @@ def at_times(times, values, wanted, name, points):
     found = numpy.full(len(wanted), numpy.nan)
     if len(times):
         inside = (wanted >= times[0]) & (wanted <= times[-1])
-        found[inside] = literature.interpolated(times, values, wanted[inside], points)
+        found[inside] = interpolation.interpolated(times, values, wanted[inside], points)
     return found
 
 

@@ -15,8 +15,7 @@ import pathlib
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "postproc"))
-import needs  # noqa: E402, F401 before what it looks for
+import package  # noqa: E402, F401 before the package tanktread
 import numpy  # noqa: E402
 from scipy.interpolate import CubicSpline  # noqa: E402
 

@@ -68,8 +68,6 @@ REASONS = [
      "without walls nothing balances a net force in every cell"),
 ]
 NOT_YET = [  # without a reason in physics
-    ("it is a steady problem", {"kind": ("prescribed body",)}, {"flow": ("changing",)}, "one prescribed body in a flow that changes"),
-    ("the mesh of a rigid particle stays as it is", {"kind": RIGID, "law": ("none",)}, {"adaptation": ("yes",)}, "the mesh of one body adapts"),
     ("a lattice can follow no flow but one", {"medium": LATTICES}, {"flow": ("round parabolic", "plane parabolic", "duct", "changing"), "duct": ("tube", "channel")},
      "lattices with flows that repeat or change"),
     ("a tube does not repeat", {"medium": LATTICES}, {"duct": ("tube", "channel")}, "ducts that repeat"),
@@ -479,8 +477,12 @@ class Trial:
                     check(off <= tolerance, f"{name}: points are off by {off:.1e}")
 
     def check_symmetry(self):
-        """What is computed of the fundamental part only is what is computed of all."""
-        self.compare(self.base, self.run("whole", Scene(self.c, more=[("Symmetry", "use", "none")])), 1e-6 if self.implicit() else 1e-8, excluded=re.compile(NEAREST.pattern + "|.*(iterations|assemblies)"))
+        """What is computed of the fundamental part only is what is computed of all: the first row, if rkc2 takes fewer stages because modes are left
+        out. Integrals over the wall of a channel are as good as Quadrature/tolerance, by other rules."""
+        tolerance = 1e-5 if self.c["duct"] == "channel" else 1e-6 if self.implicit() else 1e-8
+        whole = self.run("whole", Scene(self.c, more=[("Symmetry", "use", "none")]))
+        fewer = self.c["scheme"] == "rkc2" and (_series(self.base)["evaluations"] != _series(whole)["evaluations"]).any()
+        self.compare(self.base, whole, tolerance, excluded=re.compile(NEAREST.pattern + "|.*(iterations|assemblies)"), rows=1 if fewer else None)
 
     def checks(self, ranks):
         yield self.check_series

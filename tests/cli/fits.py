@@ -13,10 +13,8 @@ from harness import PROGRAM, SOURCE, check, close, deck, main
 
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
-import fit
-import outline
-import silhouette
 import tanktread
+from tanktread.studies import fit_data, outline, silhouette
 
 SHEAR = """
 Tanktread:
@@ -38,7 +36,7 @@ Tanktread:
 
 def _fit(text, code=0):
     pathlib.Path("experiment.yaml").write_text(text if isinstance(text, str) else yaml.safe_dump(text, sort_keys=False))
-    result = subprocess.run([SOURCE / "postproc/fit.py", "experiment.yaml", "--jobs", "1"], capture_output=True, text=True)
+    result = subprocess.run([SOURCE / "postproc/tanktread-fit", "experiment.yaml", "--jobs", "1"], capture_output=True, text=True)
     check(result.returncode == code and "Traceback" not in result.stderr, result.stdout, result.stderr)
     return result.stdout if code == 0 else "".join(line for line in result.stderr.splitlines(True) if not re.search(r"\d+ runs", line))  # progress
 
@@ -153,10 +151,10 @@ def an_edge_is_found_to_a_twentieth_of_a_pixel():
     from matplotlib.image import imsave
     imsave("picture.png", image, cmap="gray", vmin=0, vmax=1)
     imsave("cut.png", image[:, 100:], cmap="gray", vmin=0, vmax=1)
-    script = SOURCE / "postproc/outline.py"
+    script = SOURCE / "postproc/tanktread-outline"
     said = subprocess.run([script, "picture.png", "-o", "edge.csv", "--overlay", "check.png"], capture_output=True, text=True)
     check(said.returncode == 0 and "60 points" in said.stdout, said)
-    datum = fit.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
+    datum = fit_data.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
     check(abs(edge.distances(datum.points * [1, -1])).max() < 0.2, "the points in the file")
     close(datum.error, error, 0.1 * error, "the error in the file")  # the file's picture has 256 levels
     said = subprocess.run([script, "cut.png"], capture_output=True, text=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# What cmake --install puts in place: a program, scripts that find it, a manual page, completion, and a library that another project links.
+# What cmake --install puts in place: a program, the Python package that finds it, a manual page, completion, and a library that another project links.
 import os
 import pathlib
 import subprocess
@@ -31,6 +31,10 @@ def a_scene_is_run_and_shown_by_what_is_installed():
                                           "grid: {Membrane/capillary number: [0.1, 0.2]}\nrecord: [taylor_inertia]\n")
     _done("tanktread-sweep", "study.yaml", env=environment)
     check(pathlib.Path("mine/report.html").exists() and pathlib.Path("results/study/table.csv").read_text().count(",done,") == 2, "report or table")
+    check("deformation" in _done("tanktread-figure", "--list", env=environment), "the figures")
+    there = _done("/usr/bin/python3", "-c", "import tanktread; print(tanktread.PROGRAM)", cwd="/",
+                  env=environment | {"PYTHONPATH": str(place / "lib/python3/dist-packages")})
+    check(there.strip() == str(place / "bin/tanktread"), "the program that the package runs is", there)
     page = (place / "share/man/man1/tanktread.1").read_text()
     check(".SH NAME" in page and "\\-\\-resume" in page, page[:500])
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# The scripts of postproc/ draw what a run wrote, and say in one sentence when they cannot.
+# The figures of the package draw what a run wrote, and say in one sentence when they cannot.
 import os
 import pathlib
 import re
@@ -12,14 +12,11 @@ import numpy
 from harness import PROGRAM, SOURCE, check, close, deck, main, run
 
 sys.path.append(str(SOURCE / "postproc"))
-import animation
-import deformation
-import meshes
-import refinement
-import render
-import shape
-import style
 import tanktread
+from tanktread import figures
+from tanktread.figures import draw, render
+from tanktread.figures.series import unbroken
+from tanktread.interpolation import difference
 
 DECK = """
 Tanktread:
@@ -32,9 +29,10 @@ Tanktread:
 """
 
 
-def _script(name, *arguments, code=0):
-    """Runs a script of postproc/ and returns what it says."""
-    result = subprocess.run([SOURCE / "postproc" / name, *arguments], capture_output=True, text=True)
+def _command(name, *arguments, code=0):
+    """Runs a command of the package, tanktread-figure unless it is another one, and returns what it prints."""
+    words = [SOURCE / f"postproc/tanktread-{name}"] if name in ("read", "report") else [SOURCE / "postproc/tanktread-figure", name]
+    result = subprocess.run([*words, *arguments], capture_output=True, text=True, env=os.environ | {"TANKTREAD": str(PROGRAM)})
     check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
     return result.stdout + result.stderr
 
@@ -43,34 +41,27 @@ def a_run_is_drawn():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet")
     pathlib.Path("curve.csv").write_text("t,taylor_inertia\n" + "".join(f"{0.05 * k},{0.05 * k}\n" for k in range(5)))
-    words = {"convergence.py": ["--curve", "curve.csv"]}
-    for name in "deformation.py", "shape.py", "meshes.py", "refinement.py", "convergence.py", "rheology.py":
-        _script(name, "results", *words.get(name, []), "-o", f"{name}.png")
+    words = {"convergence": ["--curve", "curve.csv"]}
+    for name in "deformation", "shape", "meshes", "refinement", "convergence", "rheology":
+        _command(name, "results", *words.get(name, []), "-o", f"{name}.png")
         with open(f"{name}.png", "rb") as file:
             check(file.read(8) == b"\x89PNG\r\n\x1a\n", f"{name}.png is no picture")
-    _script("animation.py", "results", "-o", "animation.gif", "--width", "240")
+    _command("animation", "results", "-o", "animation.gif", "--width", "240")
     with open("animation.gif", "rb") as file:
         check(file.read(6) == b"GIF89a", "animation.gif is no animation")
-    check("taylor_inertia" in _script("read.py", "results"), "read.py does not list the series")
-    said = _script("shape.py", "results", "--field", "colour", code=1)
+    check("taylor_inertia" in _command("read", "results"), "tanktread-read does not list the series")
+    said = _command("shape", "results", "--field", "colour", code=2)
     check("colour" in said and "load" in said, said)
-
-
-def _drawn_by(module, *arguments):
-    """The figure that a script draws."""
-    with mock.patch.object(style, "save") as save, mock.patch.object(sys, "argv", [module.__name__, *arguments]):
-        module.main()
-    return save.call_args.args[0]
 
 
 def axis_and_label_of_time_agree():
     deck(DECK.replace("simple shear", "simple shear, shear rate: 500").replace("final time: 0.2", "final time: 0.0004").replace("interval: 0.1", "interval: 0.0002"))
     run("deck.yaml", "--output", "fast", "--quiet")
     close(tanktread.run("fast").time[-1], 0.2, 1e-12, "time times rate at the end")
-    for module in deformation, refinement:
-        lowest = _drawn_by(module, "fast").axes[-1]
-        check(lowest.get_xlabel() == "time · shear rate", module.__name__, lowest.get_xlabel())
-        close(lowest.lines[0].get_xdata()[-1], 0.2, 1e-12, f"end of the curve of {module.__name__}")
+    for function in figures.deformation, figures.refinement:
+        lowest = function("fast").axes[-1]
+        check(lowest.get_xlabel() == "time · shear rate", function.__name__, lowest.get_xlabel())
+        close(lowest.lines[0].get_xdata()[-1], 0.2, 1e-12, f"end of the curve of {function.__name__}")
 
 
 def pictures_are_without_units():
@@ -82,13 +73,13 @@ def pictures_are_without_units():
         one, other = (run.snapshots()[-1].scaled(run).fields[field] for run in (plain, si))
         close(abs(one - other).max() / abs(one).max(), 0, 1e-4, field)
         check(plain.label(field) == si.label(field) != field, plain.label(field))
-    for module in shape, animation, meshes:
-        one, other = (_drawn_by(module, name, *(["--frame", "0"] if module is animation else [])).axes for name in ("plain", "si"))
+    for function in figures.shape, figures.animation, figures.meshes:
+        one, other = (function(name, **({"frame": 0} if function is figures.animation else {})).axes for name in ("plain", "si"))
         for this, that in zip(one, other):
             for limits in "get_xlim", "get_ylim":
                 a, b = numpy.array(getattr(this, limits)()), numpy.array(getattr(that, limits)())
-                check(abs(a - b).max() <= 1e-3 * numpy.ptp(a), module.__name__, a, b)
-            check(this.get_xlabel() == that.get_xlabel() and this.get_ylabel() == that.get_ylabel(), module.__name__, this.get_xlabel(), that.get_xlabel())
+                check(abs(a - b).max() <= 1e-3 * numpy.ptp(a), function.__name__, a, b)
+            check(this.get_xlabel() == that.get_xlabel() and this.get_ylabel() == that.get_ylabel(), function.__name__, this.get_xlabel(), that.get_xlabel())
     quiet = "Tanktread:\n  Flow: {type: quiescent, viscosity: 3}\n  Particle: {%s}\n%s  Surface: {elements per side: 4}\n  Time: {final time: 0.01}\n"
     for name, text, label in (("drop", quiet % ("radius: 2", "  Membrane: {law: surface tension, surface tension: 5}\n"), "traction / (σ / R$_C$)"),
                               ("body", quiet % ("radius: 2, motion: prescribed, velocity: [7, 0, 0]", ""), "traction / (μ · speed / R$_C$)")):
@@ -104,7 +95,7 @@ def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
     deck(DECK.replace("shape: sphere", "shape: red cell").replace("final time: 0.2", "final time: 0.001"))
     run("deck.yaml", "--output", "cell", "--quiet")
     shot = tanktread.run("cell").snapshot_at(0)
-    view = shape.view_axes(-85, 15)  # the rim hides a part of the dimple
+    view = draw.view_axes(-85, 15)  # the rim hides a part of the dimple
     depth, found, corner, size = render.seen(shot, shot.points @ view[2], view, 100)
     hit = numpy.isfinite(depth)
     check(abs(found[hit][:, 0] * size - depth[hit]).max() < 1e-3, "a value that is not of the place that is seen")
@@ -121,30 +112,28 @@ def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
 
 
 def an_axis_that_turns_over_is_no_vertical_line():
-    t, angle = deformation.unbroken(numpy.arange(4.0), numpy.array([-80.0, -89.0, 88.0, 80.0]))
+    t, angle = unbroken(numpy.arange(4.0), numpy.array([-80.0, -89.0, 88.0, 80.0]))
     check(numpy.isnan(angle[2]) and numpy.isnan(t[2]) and len(angle) == 5, angle)
 
 
 def rows_where_a_series_is_undefined_are_left_out():
-    import literature
-
     t, angle = numpy.linspace(0, 1, 21), numpy.linspace(45, 25, 21)
-    close(literature.difference(t, numpy.where(t < 0.1, numpy.nan, angle), t, angle), 0, 1e-9, "a difference")
-    check(literature.difference(t, numpy.nan * t, t, angle) == 0, "nothing to compare")
+    close(difference(t, numpy.where(t < 0.1, numpy.nan, angle), t, angle), 0, 1e-9, "a difference")
+    check(difference(t, numpy.nan * t, t, angle) == 0, "nothing to compare")
     deck(DECK.replace("shape: sphere }", "shape: sphere, motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", ""))
     run("deck.yaml", "--output", "sphere", "--quiet")
-    check("NaN if" in _script("read.py", "sphere"), "the description says when there is no inclination")
-    _script("animation.py", "sphere", "-o", "sphere.gif", "--width", "240")
-    _script("report.py", "sphere")
+    check("NaN if" in _command("read", "sphere"), "the description says when there is no inclination")
+    _command("animation", "sphere", "-o", "sphere.gif", "--width", "240")
+    _command("report", "sphere")
     deck(DECK)
     run("deck.yaml", "--output", "capsule", "--quiet")
-    _script("shape.py", "capsule", "--time", "0")
-    _script("deformation.py", "capsule")
+    _command("shape", "capsule", "--time", "0")
+    _command("deformation", "capsule")
 
 
 def a_deck_is_run_when_it_has_no_results():
     deck(DECK)
-    with mock.patch.object(tanktread, "PROGRAM", PROGRAM):
+    with mock.patch.object(tanktread.runs, "PROGRAM", PROGRAM):
         check(tanktread.run("deck.yaml").directory == pathlib.Path("results/deck"), "another place")
         before = pathlib.Path("results/deck/run.h5").stat().st_mtime_ns
         tanktread.run("deck.yaml")
@@ -152,19 +141,19 @@ def a_deck_is_run_when_it_has_no_results():
 
 
 def a_python_without_numpy_is_told_which_one_to_use():
-    for script in "shape.py", "read.py", "atlas.py":
-        result = subprocess.run(["/usr/bin/python3", "-S", SOURCE / "postproc" / script, "nowhere"], capture_output=True, text=True)
+    for script in "postproc/tanktread-figure", "postproc/tanktread-read", "tests/benchmark/atlas.py":
+        result = subprocess.run(["/usr/bin/python3", "-S", SOURCE / script, "nowhere"], capture_output=True, text=True)
         check(result.returncode == 1 and "/usr/bin/python3" in result.stderr and result.stderr.count("\n") == 1, result.stderr)
 
 
 def a_rigid_particle_is_drawn_and_what_it_does_not_have_is_named():
     deck(DECK.replace("sphere }", "spheroid, semi-axes: [1.0, 1.0, 0.5], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", ""))
     run("deck.yaml", "--output", "rigid", "--quiet")
-    _script("shape.py", "rigid")
-    _script("animation.py", "rigid", "-o", "rigid.gif", "--width", "240")
-    check("[η] = 2." in _script("rheology.py", "rigid"), "a spheroid's intrinsic viscosity is not between 2 and 3")
-    for name in "deformation.py", "refinement.py":
-        said = _script(name, "rigid", code=1)
+    _command("shape", "rigid")
+    _command("animation", "rigid", "-o", "rigid.gif", "--width", "240")
+    check("[η] = 2." in _command("rheology", "rigid"), "a spheroid's intrinsic viscosity is not between 2 and 3")
+    for name in "deformation", "refinement":
+        said = _command(name, "rigid", code=2)
         check("no series taylor_inertia" in said and said.count("\n") == 1, said)
 
 
@@ -179,10 +168,10 @@ Tanktread:
   Time: { final time: 0.2 }
 """)
     run("deck.yaml", "--output", "pair", "--quiet")
-    check("smallest gap 1." in _script("encounter.py", "pair"), "the gap of the pair")
-    check("upper/taylor_inertia" in _script("read.py", "pair"), "the series of a particle")
-    _script("shape.py", "pair")
-    check("two particles" in _script("encounter.py", _alone(), code=1), "an encounter of one")
+    check("smallest gap 1." in _command("encounter", "pair"), "the gap of the pair")
+    check("upper/taylor_inertia" in _command("read", "pair"), "the series of a particle")
+    _command("shape", "pair")
+    check("two particles" in _command("encounter", _alone(), code=2), "an encounter of one")
 
 
 def _alone():
@@ -191,11 +180,11 @@ def _alone():
     return "alone"
 
 
-def the_readme_names_every_script_and_its_commands_name_what_is_there():
+def the_readme_names_every_figure_and_its_commands_name_what_is_there():
     text = (SOURCE / "README.md").read_text()
-    scripts = {path.name for path in (SOURCE / "postproc").glob("*.py") if os.access(path, os.X_OK)}
-    named = set(re.findall(r"postproc/(\w+\.py)", text))
-    check(scripts <= named, "scripts that README.md does not name:", scripts - named)
+    named = set(re.findall(r"tanktread-figure ([\w-]+)", text))
+    drawn = {name.replace("_", "-") for name in figures.FIGURES}
+    check(drawn <= named, "figures that README.md does not name:", drawn - named)
     for path in re.findall(r"\b(?:postproc|inputs|tests|app)/[\w./]*\w\.\w+", text):
         check((SOURCE / path).exists(), f"README.md names {path}, which is not there")
 
@@ -204,13 +193,13 @@ def a_vesicle_is_drawn_beside_an_axisymmetric_shape_and_another_particle_is_refu
     vesicle = DECK.replace("simple shear", "quiescent").replace("law: neo-Hookean, capillary number: 0.3",
                                                                 "law: surface tension, surface tension: 1, bending modulus: 1, bending reference: flat")
     deck(vesicle, "vesicle.yaml")
-    said = _script("vesicle.py", "vesicle.yaml", "-o", "vesicle.png")
+    said = _command("vesicle", "vesicle.yaml", "-o", "vesicle.png")
     check("relative error" in said and pathlib.Path("vesicle.png").exists(), said)
-    check("relative error" in _script("vesicle.py", "results/vesicle", "-o", "again.png"), "of the directory of a run")
+    check("relative error" in _command("vesicle", "results/vesicle", "-o", "again.png"), "of the directory of a run")
     deck(vesicle.replace("shape: sphere", "shape: ellipsoid, semi-axes: [1.3, 1.0, 1.0]"), "along_x1.yaml")
     deck(DECK, "capsule.yaml")
     for path, words in (("along_x1.yaml", "not axisymmetric about x3"), ("capsule.yaml", "the law `surface tension`"), ("nowhere.yaml", "no such deck")):
-        said = _script("vesicle.py", path, code=2)
+        said = _command("vesicle", path, code=2)
         check(words in said.splitlines()[-1], said)
 
 
@@ -218,19 +207,19 @@ def pictures_and_curves_that_cannot_be_are_one_sentence():
     name, folder = _alone(), pathlib.Path("not_a_folder")
     folder.write_text("")
     pathlib.Path("curve.csv").write_text("nothing\nof,a,table\n")
-    for script, words, code, said in (("shape.py", ["-o", "not_a_folder/shape.png"], 1, "cannot be written"), ("shape.py", ["-o", "shape.doc"], 1, "ends in"),
-                                      ("animation.py", ["--width", "0"], 2, "--width must be"), ("convergence.py", ["--curve", "curve.csv"], 1, "no table"),
-                                      ("convergence.py", ["--curve", "none.csv"], 1, "with the columns t, taylor_inertia")):
-        heard = _script(script, name, *words, code=code)
+    for script, words, code, said in (("shape", ["-o", "not_a_folder/shape.png"], 2, "cannot be written"), ("shape", ["-o", "shape.doc"], 2, "ends in"),
+                                      ("animation", ["--width", "0"], 2, "--width must be"), ("convergence", ["--curve", "curve.csv"], 2, "no table"),
+                                      ("convergence", ["--curve", "none.csv"], 2, "with the columns t, taylor_inertia")):
+        heard = _command(script, name, *words, code=code)
         check(said in heard.splitlines()[-1], script, heard)
-    _script("shape.py", name, "-o", "new/folder/shape")
+    _command("shape", name, "-o", "new/folder/shape")
     check(pathlib.Path("new/folder/shape.png").exists(), "a folder is made, and a name without ending is of a PNG")
 
 
 def help_is_there_and_absent_results_are_named():
-    for name in "deformation.py", "shape.py", "read.py", "animation.py", "growth.py", "work_precision.py", "tweezers.py":
-        check("usage" in _script(name, "--help"), name)
-        said = _script(name, "nowhere", code=1)
+    for name in "deformation", "shape.py", "read", "animation", "growth", "work-precision", "tweezers":
+        check("usage" in _command(name, "--help"), name)
+        said = _command(name, "nowhere", code=1 if name in ("growth", "work-precision") else 2)
         check("nowhere" in said and said.count("\n") == 1, said)
 
 

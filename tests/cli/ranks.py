@@ -117,7 +117,7 @@ def a_membrane_of_another_law_in_another_flow():
 
 
 def two_particles_are_timed_phase_by_phase():
-    words = [SOURCE / "postproc/scaling.py", deck(TWO), "--repeat", "1", "--no-capacity", "--program", PROGRAM, "--set", "Time/final time=0.1"]
+    words = [SOURCE / "tests/benchmark/scaling.py", deck(TWO), "--repeat", "1", "--no-capacity", "--program", PROGRAM, "--set", "Time/final time=0.1"]
     said = subprocess.run(words, capture_output=True, text=True)
     check(said.returncode == 0, said.stderr)
     found = re.search(r"difference of D +(\S+)", said.stdout)

@@ -47,7 +47,7 @@ const wait = seconds => new Promise(done => setTimeout(done, 1000 * seconds));
 
 
 def _script(name, *arguments, code=0):
-    result = subprocess.run([SOURCE / "postproc" / name, *arguments], capture_output=True, text=True, env=os.environ | {"TANKTREAD": str(PROGRAM)})
+    result = subprocess.run([SOURCE / f"postproc/tanktread-{name}", *arguments], capture_output=True, text=True, env=os.environ | {"TANKTREAD": str(PROGRAM)})
     check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
     return result.stdout + result.stderr
 
@@ -78,7 +78,7 @@ def _used(path):
 def a_run_is_one_page_with_its_shapes_and_curves():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet", code=1)
-    _script("report.py", "results")
+    _script("report", "results")
     content = _content("results/report.html")
     shapes = content["shapes"]
     check(len(shapes["frames"]) == 5 and shapes["frames"][-1]["time"] == 1.0, "frames")
@@ -98,15 +98,15 @@ def a_run_that_is_not_finished_says_so():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet", code=1)
     pathlib.Path("results/summary.yaml").unlink()
-    _script("report.py", "results")
+    _script("report", "results")
     check("not finished" in _content("results/report.html")["facts"]["status"], "status")
 
 
 def a_sweep_is_a_table_and_a_plot():
     deck(DECK)
     deck("deck: deck.yaml\ngrid: {Membrane/capillary number: [0.1, 0.2]}\nrecord: {D: taylor_inertia}\n", "study.yaml")
-    _script("sweep.py", "study.yaml")
-    _script("report.py", "results/study", "-o", "page.html")
+    _script("sweep", "study.yaml")
+    _script("report", "results/study", "-o", "page.html")
     content = _content("page.html")
     check(content["scatter"]["keys"] == ["Membrane/capillary number"] and len(content["scatter"]["values"]["D"]) == 2, content["scatter"])
     told = _used("page.html")
@@ -115,7 +115,7 @@ def a_sweep_is_a_table_and_a_plot():
 
 def what_is_no_result_is_said():
     pathlib.Path("empty").mkdir()
-    said = _script("report.py", "empty", code=2)
+    said = _script("report", "empty", code=2)
     check("empty holds no run, sweep or fit" in said and said.count("\n") == 1, said)
 
 

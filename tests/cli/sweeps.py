@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from unittest import mock
 
 import h5py
 import numpy
@@ -35,7 +34,7 @@ record: {D: taylor_inertia, top: {series: area, take: largest}, D(t): {series: t
 
 
 def _sweep(*arguments, code=0):
-    result = subprocess.run([SOURCE / "postproc/sweep.py", *arguments], capture_output=True, text=True)
+    result = subprocess.run([SOURCE / "postproc/tanktread-sweep", *arguments], capture_output=True, text=True)
     check(result.returncode == code and "Traceback" not in result.stderr, result.stdout, result.stderr)
     return result.stdout + result.stderr
 
@@ -46,7 +45,7 @@ def _rows(path="results/study/table.csv"):
 
 
 def what_stays_in_a_constriction_is_told_from_what_creeps():
-    import critical
+    from tanktread.studies import critical
     t = numpy.linspace(0, 30, 301)
     check(critical.stays(t, 1 - numpy.exp(-t), 1, 1), "it came to rest")
     check(critical.stays(t, 1.4e-3 * numpy.sin(numpy.pi * (t / 2 - 0.75)), 1, 1), "it rests, but for what integrals leave")
@@ -54,12 +53,12 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     check(critical.stays(t, 1.3e-5 * t**2, 1, 1) is None, "it is slow and grows faster")
     check(critical.stays(t, 0.0005 * numpy.maximum(t - 25, 0), 1, 1) is None, "it is slow and sets off")
     check(critical.stays(t[:50], 0 * t[:50], 1, 1) is None, "nobody looked for long enough")
-    refused = subprocess.run([SOURCE / "postproc/critical.py", "deck.yaml", "--between", "2", "1", "--past", "0"], capture_output=True, text=True)
+    refused = subprocess.run([SOURCE / "postproc/tanktread-critical", "deck.yaml", "--between", "2", "1", "--past", "0"], capture_output=True, text=True)
     check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
 
 
 def tumbling_is_told_from_treading_by_shape_and_membrane():
-    import phases
+    from tanktread.studies import phases
     t = numpy.linspace(0, 40, 801)
     shape = 360 * t / 22  # it turns over each eleven, of the sense of the phase
     swung = 20 * numpy.sin(t)
@@ -80,7 +79,7 @@ def tumbling_is_told_from_treading_by_shape_and_membrane():
 
 
 def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
-    import phases
+    from tanktread.studies import phases
     t = numpy.linspace(0, 160, 81)
     fading, growing = numpy.exp(-0.02 * t), numpy.exp(0.02 * t)
 
@@ -105,7 +104,7 @@ def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
 
 
 def a_border_is_found_about_the_last_one_and_where_it_is_not():
-    import phases
+    from tanktread.studies import phases
     deck(DECK)
     deck("""
 deck: deck.yaml
@@ -131,57 +130,55 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     check(made[1] <= 6 < made[0], f"runs of each border: {made}")
     check(diagram.rows["other"] == [{"Particle/viscosity ratio": 1, "Membrane/law": "Skalak"}], diagram.rows)
     deck("deck: deck.yaml\nalong: {key: a, from: 2, to: 1, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
-    refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
+    refused = subprocess.run([SOURCE / "postproc/tanktread-phases", "wrong.yaml"], capture_output=True, text=True)
     check(refused.returncode == 2 and "ascend" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
     deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
-    refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
+    refused = subprocess.run([SOURCE / "postproc/tanktread-phases", "wrong.yaml"], capture_output=True, text=True)
     check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
     for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "list of keys")):
         deck(f"deck: deck.yaml\nalong: {{key: a, from: 1, to: 2, within: 1.1}}\nacross: {{b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
-        refused = subprocess.run([SOURCE / "postproc/phases.py", "wrong.yaml"], capture_output=True, text=True)
+        refused = subprocess.run([SOURCE / "postproc/tanktread-phases", "wrong.yaml"], capture_output=True, text=True)
         check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
 
 
 def a_phase_diagram_without_a_border_is_a_table_and_a_sentence():
     deck(DECK)
     deck("deck: deck.yaml\nalong: {key: Flow/shear rat, from: 1, to: 2, within: 1.1}\nacross: {Particle/radius: [1]}\ncurves: {one: {}}\n", "phases.yaml")
-    ended = subprocess.run([SOURCE / "postproc/phases.py", "phases.yaml"], capture_output=True, text=True)
+    ended = subprocess.run([SOURCE / "postproc/tanktread-phases", "phases.yaml"], capture_output=True, text=True)
     check(ended.returncode == 2 and "no border was found" in ended.stderr and len(ended.stderr.splitlines()) == 1, ended.stderr)
     check("shear rat" in pathlib.Path("results/phases/borders.csv").read_text(), "why there is none")
 
 
 def a_diagram_over_values_that_are_not_positive_is_drawn():
-    import phases
+    from tanktread.studies import phases
     deck(DECK)
     deck("deck: deck.yaml\nalong: {key: a, from: 1, to: 20, within: 1.1}\nacross: {b: [-1, 0, 1]}\ncurves: {one: {}}\n", "phases.yaml")
     diagram = phases.Diagram("phases.yaml", None)
     diagram.borders["one"] = [(b, 3.0 + b, 3.2 + b, "edge") for b in (-1, 0, 1)]
-    with mock.patch.object(phases.style, "save") as save:
-        diagram.draw("phases.png")
-    axes = save.call_args.args[0].axes[0]
+    axes = diagram.draw().axes[0]
     check(axes.get_xscale() == "linear" and axes.get_xlim()[0] < -1, axes.get_xlim())
 
 
 def what_drifts_over_many_turns_is_told_from_what_swings():
-    import drift
+    from tanktread.figures import suspensions as drift
     t = numpy.linspace(0, 100, 20001)
     phase = 360 * t / 2 + 10 * numpy.sin(numpy.pi * t)
     means = drift.turns(t, 1 + 0.3 * numpy.sin(2 * numpy.pi * t), phase)
-    check(len(means) == 50 and abs(drift.drift(means, 5)[0]) < 1e-6, means)
-    change, error = drift.drift(drift.turns(t, 1e-3 * t + 0.3 * numpy.sin(2 * numpy.pi * t), phase), 5)
+    check(len(means) == 50 and abs(drift.line(means, 5)[0]) < 1e-6, means)
+    change, error = drift.line(drift.turns(t, 1e-3 * t + 0.3 * numpy.sin(2 * numpy.pi * t), phase), 5)
     check(abs(change - 1e-3 * 2 * 44) < 1e-6 and error < 1e-6, f"{change} {error}")
 
 
 def what_sharp_edges_do_is_told_from_two_roundings():
-    import step
+    from tanktread.figures import errors as step
     q = step.power() / 2
     close(numpy.sin(1.5 * numpy.pi * q), q, 1e-14, "the velocity beside an edge of 90 degrees")
     close(step.sharp_edges(2 + 0.1**(2 * q), 2 + 0.05**(2 * q), 2), 2, 1e-14, "without rounding")
-    refused = subprocess.run([SOURCE / "postproc/step.py", "deck.yaml", "--radii", "0.05", "0.1"], capture_output=True, text=True)
+    refused = subprocess.run([SOURCE / "postproc/tanktread-figure", "step", "deck.yaml", "--radii", "0.05", "0.1"], capture_output=True, text=True)
     check(refused.returncode == 2 and "larger one first" in refused.stderr, refused.stderr)
-    refused = subprocess.run([SOURCE / "postproc/step.py", "deck.yaml", "--radii", "0.1", "0.05", "--set", "Time"], capture_output=True, text=True)
+    refused = subprocess.run([SOURCE / "postproc/tanktread-figure", "step", "deck.yaml", "--radii", "0.1", "0.05", "--set", "Time"], capture_output=True, text=True)
     check(refused.returncode == 2 and "KEY=VALUE" in refused.stderr, refused.stderr)
-    refused = subprocess.run([SOURCE / "postproc/step.py", "none.yaml", "--radii", "0.1", "0.05"], capture_output=True, text=True)
+    refused = subprocess.run([SOURCE / "postproc/tanktread-figure", "step", "none.yaml", "--radii", "0.1", "0.05"], capture_output=True, text=True)
     check(refused.returncode == 2 and "no such deck" in refused.stderr, refused.stderr)
 
 
@@ -242,7 +239,7 @@ def a_sweep_that_is_killed_goes_on():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")
     for number in signal.SIGTERM, signal.SIGKILL:
-        process = subprocess.Popen([SOURCE / "postproc/sweep.py", "study.yaml", "--jobs", "2"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen([SOURCE / "postproc/tanktread-sweep", "study.yaml", "--jobs", "2"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         before = len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) if pathlib.Path("results").exists() else 0
         while process.poll() is None and len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) < before + 1:
             time.sleep(0.02)

@@ -11,7 +11,7 @@ ROW = re.compile(r"\| (.+) \| ([\d.]+) % \| ([-+\d.]+) % ± ([\d.]+) % \| [\d.]+
 
 
 def moduli_from_noisy_profiles_scatter_by_their_stated_errors():
-    result = subprocess.run([SOURCE / "postproc/synthetic_profiles.py", "--samples", "40"], capture_output=True, text=True,
+    result = subprocess.run([SOURCE / "tests/benchmark/synthetic_profiles.py", "--samples", "40"], capture_output=True, text=True,
                             env=os.environ | {"TANKTREAD": str(PROGRAM)})
     check(result.returncode == 0, result.stdout, result.stderr)
     for far in re.findall(r"the emulator is (\S+) of the radius", result.stdout):

@@ -1,5 +1,5 @@
 // The mesh of a drop in an extension: carried with the fluid its elements are drawn out until they fold; moved across the interface only, or
-// relaxed along it, they are not. Map drop-mesh of postproc/atlas.py.
+// relaxed along it, they are not. Map drop-mesh of tests/benchmark/atlas.py.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // How long may a fixed step be? Explicit steps, and the sub-iteration of Crank-Nicolson, are bound by the fastest mode of the mesh (4.5); the
-// quasi-Newton iteration of TR-BDF2 is not. Maps fixed-step, fixed-step-dilatation and fixed-step-mesh of postproc/atlas.py.
+// quasi-Newton iteration of TR-BDF2 is not. Maps fixed-step, fixed-step-dilatation and fixed-step-mesh of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -1,5 +1,5 @@
 // Gaps: the faces of a thin rigid disc come closer to each other than the points of a fixed rule are apart, and its integrals are lost; rules by
-// tolerance do not see the gap. Map gap of postproc/atlas.py.
+// tolerance do not see the gap. Map gap of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

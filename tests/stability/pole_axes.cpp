@@ -1,5 +1,5 @@
 // The strong form on the structured mesh, Ca = 0.45 (section 4.2 of the paper, Figure 12): steps vanish, first with the poles on x2. The weak form
-// runs through. Map load-form of postproc/atlas.py.
+// runs through. Map load-form of tests/benchmark/atlas.py.
 
 #include <string>
 

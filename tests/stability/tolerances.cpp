@@ -1,5 +1,5 @@
 // Accuracy that is asked for and not got, or paid for and not asked for. Maps step-tolerance, quadrature-tolerance and volume-drift of
-// postproc/atlas.py.
+// tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -1,5 +1,5 @@
 // Viscosity ratios towards 0 and 100. The system for the velocity nearly loses its breathing mode as lambda -> 0: without the flux constraint
-// volume goes with it. Map viscosity-ratio of postproc/atlas.py.
+// volume goes with it. Map viscosity-ratio of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -19,12 +19,20 @@ def cpp_errors(path, text):
         yield f"{path}: no #pragma once"
 
 
+def python_errors(path, text):
+    """Yields lines of the Python package beyond 120 characters."""
+    if "postproc" in path.parts:
+        for number, line in enumerate(text.splitlines(), 1):
+            if len(line) > 120:
+                yield f"{path}:{number}: {len(line)} characters"
+
+
 def script_errors(path, text):
     first = text.split("\n", 1)[0]
     executable = os.access(path, os.X_OK)
     if path.suffix == ".py" and (executable or first.startswith("#!")) and first != "#!/usr/bin/python3":
         yield f"{path}: starts with '{first}' instead of #!/usr/bin/python3"
-    if first.startswith("#!") and path.parent.name == "postproc" and not executable:
+    if first.startswith("#!") and path.parent.name in ("postproc", "benchmark") and not executable:
         yield f"{path}: not executable"
     if first.startswith("#!") and "bash" in first and "set -euo pipefail" not in text:
         yield f"{path}: no set -euo pipefail"
@@ -39,6 +47,7 @@ def main():
                 errors += cpp_errors(path, path.read_text())
             elif path.suffix in (".py", ""):
                 errors += script_errors(path, path.read_text())
+                errors += python_errors(path, path.read_text()) if path.suffix == ".py" else []
     print("\n".join(errors))
     sys.exit(bool(errors))
 

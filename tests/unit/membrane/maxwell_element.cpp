@@ -106,5 +106,38 @@ TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
   EXPECT_NEAR(springs.dissipation() / expected.cwiseProduct(v).sum(), 1, 1e-3);
 }
 
+/// Load and rate of the images of x and q are the images of load and rate, where nothing of the state is symmetric.
+TEST(MaxwellElement, HasTheImagesOfItsSurface) {
+  const Sphere& s = sphere(3);
+  MaxwellElement springs = element(s);
+  const Net* nets[] = {&s.net};
+  const surface::Symmetry found = surface::symmetry(s.space, nets, [](const surface::Image&) { return true; });
+  ASSERT_EQ(found.order(), 8);
+  const Net x = s.net + 0.05 * random_net(s.net.rows(), 5);
+  const Eigen::VectorXd q = springs.start(s.net + 0.05 * random_net(s.net.rows(), 6));
+  springs.set_state(x, q);
+  const Net load = springs.load();
+  const Eigen::VectorXd rate = springs.rate({});
+  for (const surface::Image& g : found.images()) {
+    const auto of_net = [&](const Net& net) {
+      Net image(net.rows(), 3);
+      for (Eigen::Index a = 0; a < net.rows(); ++a) image.row(g.point[static_cast<std::size_t>(a)]) = net.row(a).cwiseProduct(g.signs.transpose());
+      return image;
+    };
+    const std::vector<std::pair<int, double>> images = springs.images(g);
+    const auto of_q = [&](const Eigen::VectorXd& known) {
+      Eigen::VectorXd image(known.size());
+      for (Eigen::Index i = 0; i < known.size(); ++i) {
+        const auto& [to, sign] = images[static_cast<std::size_t>(i)];
+        image[to] = sign * known[i];
+      }
+      return image;
+    };
+    springs.set_state(of_net(x), of_q(q));
+    EXPECT_LT((springs.load() - of_net(load)).norm(), 1e-9 * load.norm()) << g.signs.transpose();  // the fit of the sphere is symmetric to 1e-10
+    EXPECT_LT((springs.rate({}) - of_q(rate)).norm(), 1e-9 * rate.norm()) << g.signs.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace tanktread::membrane

@@ -1,0 +1,35 @@
+"""The commands: tanktread-figure and others, or `python3 -m tanktread figure …` and so on."""
+
+import importlib
+import pathlib
+import sys
+
+COMMANDS = {"figure": ("figures", "command"), "sweep": ("studies.sweep", "main"), "fit": ("studies.fit", "main"),
+            "outline": ("studies.outline", "main"), "phases": ("studies.phases", "main"),
+            "critical": ("studies.critical", "main"), "report": ("report", "main"), "read": ("read", "main")}
+
+
+def main():
+    """Runs the command that the name of the program, or else its first argument, states."""
+    name = pathlib.Path(sys.argv[0]).name.removeprefix("tanktread-")
+    if name not in COMMANDS:
+        if len(sys.argv) < 2 or sys.argv[1] not in COMMANDS:
+            sys.exit(f"usage: python3 -m tanktread {{{','.join(COMMANDS)}}} …")
+        name = sys.argv.pop(1)
+        sys.argv[0] = f"tanktread-{name}"
+    module, function = COMMANDS[name]
+    try:
+        from .mistakes import answer
+    except ModuleNotFoundError as error:
+        _missing(error)
+    answer(lambda: getattr(importlib.import_module(f"tanktread.{module}"), function)())
+
+
+def _missing(error):
+    """Ends the process with one sentence if the Python that runs a command lacks a required package."""
+    sys.exit(f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 with the packages in "
+             "app/packages.txt, or pip install numpy h5py PyYAML scipy matplotlib")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,169 @@
+"""Figures of branches of steady shapes."""
+
+import pathlib
+
+import numpy
+import yaml
+
+from ..mistakes import Mistake, log
+from ..runs import Study
+from . import style
+from .register import figure
+
+
+@figure
+def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
+    """Branches of steady shapes: D against the parameter, folds marked; below, the rate of the leading mode.
+
+    Unstable parts are broken lines. The runs have the section Continuation; the rate, and what is unstable, need the
+    section Spectrum too.
+
+    series: what is drawn against the parameter
+    exact: a known point, as parameter and value (repeatable)"""
+    for run in runs:
+        run.require("parameter", "fold", series)
+    rated = all("leading_rate" in run.series for run in runs)
+    figure, axes = style.panels(axes, 1 + rated, 1, 5.2, 3.4 + 1.8 * rated, sharex=True,
+                                height_ratios=[3, 1.6][: 1 + rated])
+    upper = axes[0]
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        parameter, value, folds = run.series["parameter"], run.series[series], run.series["fold"] > 0
+        draw(upper, parameter, value, unstable(run), color, run.name)
+        upper.plot(parameter[folds], value[folds], "o", color=color, markerfacecolor="white")
+        for p, d in zip(parameter[folds], value[folds]):
+            log.info(f"{run.name}: fold at {p:.7g}, {series} = {d:.6f}")
+        if rated:
+            draw(axes[1], parameter, run.series["leading_rate"], unstable(run), color)
+    for p, d in exact or []:
+        upper.plot(p, d, "+", color=style.INK)
+    upper.set_ylabel("Taylor parameter D" if series.startswith("taylor") else series)
+    if len(runs) > 1:
+        upper.legend()
+    if rated:
+        axes[1].axhline(0, color=style.INK, linewidth=0.6)
+        axes[1].set_ylabel("leading rate")
+    axes[-1].set_xlabel(runs[0].deck["Continuation"]["parameter"])
+    return figure
+
+
+def unstable(run):
+    """Returns for each point (n,) whether a mode grows there."""
+    return run.series.get("unstable_modes", numpy.zeros(len(run.time))) > 0
+
+
+def draw(axes, x, y, broken, color, label=None):
+    """Draws a curve point by point, with a broken line between two points of which one is `broken` (n,)."""
+    axes.plot([], [], color=color, label=label)
+    for k in range(len(x) - 1):
+        axes.plot(x[k:k + 2], y[k:k + 2], color=color, linestyle="--" if broken[k:k + 2].any() else "-")
+    axes.plot(x, y, ".", color=color, markersize=3)
+
+
+@figure
+def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
+    """Folds of branches against a second parameter, such as where drops burst against their viscosity; D there below.
+
+    The runs have the key Continuation/second parameter. Each fold is printed.
+
+    series: what is drawn below
+    exact: a known fold, as second parameter and value (repeatable)"""
+    figure, (upper, lower) = style.panels(axes, 2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
+    names, reached = set(), []
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        run.require("parameter", "second_parameter", "fold", series)
+        continuation = run.deck["Continuation"]
+        names.add((continuation["second parameter"], continuation["parameter"]))
+        found = numpy.flatnonzero(run.series["fold"] > 0)
+        found = found[numpy.argsort(run.series["second_parameter"][found], kind="stable")]
+        second, parameter, value = (run.series[name][found] for name in ("second_parameter", "parameter", series))
+        reached += list(second)
+        upper.plot(second, parameter, "o-", color=color, markersize=3.5, label=run.name)
+        lower.plot(second, value, "o-", color=color, markersize=3.5)
+        for row in zip(second, parameter, value):
+            log.info(f"{run.name}: {continuation['second parameter']} {row[0]:.7g}: fold at {row[1]:.7g}, "
+                     f"{series} = {row[2]:.6f}")
+    if len(names) > 1:
+        raise Mistake("one figure has one pair of parameters; these runs have " +
+                      "; ".join(" against ".join(pair[::-1]) for pair in sorted(names)))
+    for point in exact or []:
+        upper.plot(*point, "+", color=style.INK, markersize=9)
+    second, parameter = names.pop()
+    if min(reached) > 0 and max(reached) > 10 * min(reached):
+        lower.set_xscale("log")
+    if len(runs) > 1:
+        upper.legend()
+    upper.set_ylabel(parameter + " at the fold")
+    lower.set_ylabel("Taylor parameter D there" if series.startswith("taylor") else series + " there")
+    lower.set_xlabel(second)
+    return figure
+
+
+@figure
+def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: float = 0.003, length: float = 2):
+    """Rates of the leading mode along a branch of steady shapes, and those of runs in time from the same shapes.
+
+    The run has the section Spectrum. From each of its points except folds, two runs in time start with the mode added
+    with either sign; their difference grows or decays at the mode's rate, which is fitted to its later half. Complex
+    modes are left out. Runs are kept in results/growth_rates.
+
+    series: series whose difference is taken
+    amplitude: of the mode, over R_C
+    length: of the runs, in times of the rate"""
+    run.require("leading_rate", series)
+    study = Study(directory="results/growth_rates")
+    deck = deck_in_time(run, study.directory)
+    path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")
+    parameter = run.series.get("parameter", numpy.array([run.value(path)]))
+    rate = run.series["leading_rate"]
+    found = numpy.array([in_time(study, deck, run, k, path, series, amplitude, length) for k in range(len(rate))])
+    for p, one, other in zip(parameter, rate, found):
+        log.info(f"{path} {p:.8g}: rate {one:.6f}" + ("" if numpy.isnan(other) else
+                 f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"))
+    figure, (axis,) = style.panels(axes, 1, 1, 5.2, 3.6)
+    draw(axis, parameter, rate, unstable(run), style.RUNS[0], "eigenvalue")
+    axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
+    axis.axhline(0, color=style.INK, linewidth=0.6)
+    axis.set_xlabel(path)
+    axis.set_ylabel("rate of the leading mode")
+    axis.legend()
+    return figure
+
+
+def deck_in_time(run, directory):
+    """Writes the deck of a run without the sections that replace time, and returns its path."""
+    lists = {name: keys for name, keys in run.deck.items()
+             if name not in ("Steady", "Continuation", "Spectrum", "Expect")}
+    lists["Particle"] = {key: value for key, value in lists.get("Particle", {}).items() if key != "initial shape"}
+    directory.mkdir(parents=True, exist_ok=True)
+    path = directory.resolve() / f"{run.name}.yaml"
+    path.write_text(yaml.safe_dump({"Tanktread": lists}, sort_keys=False), encoding="utf-8")
+    return path
+
+
+def in_time(study, deck, run, k, path, series, amplitude, length):
+    """Returns the rate from two runs in time at point k; NaN at a fold, of a complex mode, or if a run fails."""
+    rate = run.series["leading_rate"][k]
+    number = 1
+    while f"rate_{number}" in run.series and run.series[f"rate_{number}"][k] != rate:
+        number += 1
+    if run.series.get("fold", numpy.zeros(k + 1))[k] or run.series.get(f"frequency_{number}", numpy.ones(k + 1))[k]:
+        return numpy.nan
+    end, values = length / abs(rate), []
+    settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end,
+                "Particle/initial shape/mode": number,
+                "Particle/initial shape/run": pathlib.Path(run.snapshots()[k].path).resolve()}
+    settings |= {key: run.series[name][k] for key, name in ((path, "parameter"),
+                                                            (run.value("Continuation/second parameter"),
+                                                             "second_parameter"))
+                 if name in run.series}
+    times = numpy.linspace(end / 2, end, 11)
+    for sign in 1, -1:
+        outcome = study.run(deck, settings | {"Particle/initial shape/mode amplitude": sign * amplitude})
+        if not outcome.done:
+            log.info(f"from {settings['Particle/initial shape/run']}: {outcome.message}")
+            return numpy.nan
+        values.append(numpy.interp(times, outcome.run.time, outcome.series[series]))
+        if numpy.isnan(values[-1]).any():
+            log.info(f"from {settings['Particle/initial shape/run']}: {series} is undefined (NaN)")
+            return numpy.nan
+    return numpy.polyfit(times, numpy.log(abs(values[0] - values[1])), 1)[0]

@@ -1,0 +1,160 @@
+"""Figures of particles in channels, and whether they pass."""
+
+from typing import Literal
+
+import numpy
+from matplotlib.collections import LineCollection
+
+from ..files import arrays_of
+from ..mistakes import expect, log
+from . import style
+from .draw import section
+from .pushed import Pushed, capillary_number, drop_of_velocity, highest
+from .register import figure
+from .style import plt
+
+
+@figure
+def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
+    """A channel cut open with its particle at several times; extents, velocity and pressure drop along the way.
+
+    Also the wall's shear stress and the velocity on the centre line of the empty channel.
+
+    shapes: number of times, evenly along the particle's way
+    across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
+    c = channel_of(run)
+    if axes is None or hasattr(axes, "add_subplot"):
+        figure = style.canvas(axes, 10.5, 9.5)
+        panels = figure.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]],
+                                       height_ratios=[1.1, 1, 1])
+    else:
+        figure, axes = style.panels(axes, 5, 1, 10.5, 9.5)
+        panels = dict(zip(("cut", "extents", "velocity", "pressure", "wall"), axes))
+    cut_open(panels["cut"], run, c, shapes, across - 1)
+    along_the_way(panels, run, c)
+    wall(panels["wall"], run, c)
+    return figure
+
+
+def channel_of(run):
+    """Returns the arrays of channel.h5 by name: centre (n, 3), s (n,), wall (4, n, 3) and others."""
+    return arrays_of(run.directory / "channel.h5", "give the directory of a run in a channel")
+
+
+def centroid(run):
+    """Returns the positions of the centroid (rows, 3), in length."""
+    name = "center_x" if "center_x1" in run.series else "centroid_x"
+    return numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
+
+
+def way_along(run, c):
+    """Returns the way of the centroid (rows,) along the centre line: to its nearest point, and on along its tangent."""
+    places = centroid(run)
+    nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
+    along = numpy.gradient(c["centre"], c["s"], axis=0)[nearest]
+    return c["s"][nearest] + numpy.sum((places - c["centre"][nearest]) * along, axis=1)
+
+
+def cut_open(axis, run, c, n, across):
+    bent = numpy.ptp(c["centre"][:, 1]) > 0
+    across = 2 if bent else across  # in its plane
+    lines = c["wall"][2:] if across == 1 else c["wall"][:2]
+    for line in lines:
+        axis.plot(line[:, 0], line[:, 2 if across == 1 else 1], color=style.INK, linewidth=1.6)
+    way, reach = way_along(run, c), run.series["length_x1"].max()
+    shots, labelled = {}, []  # places of the times
+    for x in numpy.linspace(way[0], way[-1], n):
+        shot = run.snapshot_at(numpy.interp(x, way, run.series["time"]))
+        shots[shot.path] = shot
+    for shot, colour in zip(shots.values(), plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))):
+        middle = (shot.points.min(0) + shot.points.max(0)) / 2
+        axis.add_collection(LineCollection(section(shot, middle[across], across), colors=[colour], linewidths=1.6,
+                                           capstyle="round"))
+        at = middle[:2] if bent else (middle[0], lines[:, :, 1:].min() * 0.97)
+        if any(numpy.hypot(*numpy.subtract(at, other)) < reach / 8 for other in labelled):
+            continue
+        labelled.append(at)
+        axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
+    axis.set_xlim(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0))
+    if bent:
+        axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
+    axis.set_xlabel("x₁" + run.in_units("length"))
+    axis.set_ylabel(("x₃" if across == 1 else "x₂") + run.in_units("length"))
+    axis.set_title(f"{run.name}: cut open at x{across + 1} = centroid; times "
+                   f"{'inside' if bent else 'below'}{run.in_units('time')}")
+
+
+def along_the_way(axes, run, c):
+    s, way = run.series, way_along(run, c)
+    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
+    for k, name in enumerate(("x₁", "x₂", "x₃"), 1):
+        axes["extents"].plot(way, s[f"length_x{k}"], color=style.RUNS[k - 1], label=f"along {name}", linestyle="--"
+                             if k == 3 else "-")
+    axes["extents"].legend()
+    axes["extents"].set_title("extents of the particle" + run.in_units("length"))
+    axes["velocity"].plot(way, speed, color=style.RUNS[0], label="of the centroid")
+    axes["velocity"].plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
+                          label="on the centre line, empty channel")
+    axes["velocity"].set_xlim(way.min(), way.max())
+    axes["velocity"].legend()
+    axes["velocity"].set_title("velocity" + run.in_units("length/time"))
+    axes["pressure"].plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
+    if "pressure_drop_by_flux" in s:
+        axes["pressure"].plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":",
+                              label="by the flow rate")
+    axes["pressure"].legend()
+    added = f"pressure drop that the particle adds{run.in_units('force/length^2')}"
+    axes["pressure"].set_title(f"{added} (empty channel: {c['pressure_drop']:.5g})")
+    for name in ("extents", "velocity", "pressure"):
+        axes[name].set_xlabel("way of the centroid along the centre line" + run.in_units("length"))
+
+
+def wall(axis, run, c):
+    axis.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
+    axis.set_xlabel("way along the centre line" + run.in_units("length"))
+    axis.set_title("shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
+
+
+@figure
+def stuck(runs, axes=None, *, elements: int = 160):
+    """Whether a capsule passes a round constriction at a given pressure drop: runs, and the drop without friction.
+
+    Without friction an axisymmetric neo-Hookean membrane touches the wall and closes the channel, at rest. Its largest
+    pressure drop, over that of the empty channel at the mean velocity V, gives the critical Ca of any viscosity ratio.
+    The runs are drawn with the positions that they came to, and their velocities there.
+
+    elements: elements of the membrane, from pole to pole"""
+    first = runs[0]
+    first.require("channel_pressure_drop")
+    needed = {"Channel/profile": "constriction", "Channel/section": "circle", "Membrane/law": "neo-Hookean",
+              "Particle/shape": "sphere"}
+    for key, wanted in needed.items():
+        expect(first.value(key) == wanted, f"{key} must be {wanted}, but is {first.value(key)}")
+    drop = drop_of_velocity(first)
+    way, pressure = Pushed(first, elements).through()
+    largest, there = highest(way, pressure)
+    log.info(f"without friction: critical Ca = {largest / drop:.5g}, centroid there {there:.3f}, "
+             f"pressure drop {largest:.5g} G_s / length")
+    figure, (upper, lower) = style.panels(axes, 2, 1, 5.6, 6, sharex=True)
+    upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        x, ca, speed = run.series["centroid_x1"], capillary_number(run), run.series["velocity_x1"]
+        near = x > way[0] - 0.2
+        expect(near.any(), f"{run.directory}: its particle does not come to the constriction")
+        upper.plot(x[near], numpy.full(near.sum(), ca), color=color)
+        upper.plot(x[-1], ca, "o", color=color, markersize=4)
+        label = f"Ca = {ca:g}, {run.value('Flow/held', 'flow rate')} held"
+        lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
+        log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
+                 f"smallest film {run.series['gap'].min():.4g}")
+    upper.set_ylim(0, None)
+    upper.set_ylabel("Ca")
+    upper.legend()
+    lower.set_yscale("log")
+    lower.set_ylabel("velocity / V")
+    lower.set_xlabel("centroid $x_1$")
+    lower.legend()
+    return figure

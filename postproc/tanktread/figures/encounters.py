@@ -1,0 +1,128 @@
+"""Figures of particles beside each other and beside a wall."""
+
+import pathlib
+
+import numpy
+from matplotlib.collections import LineCollection
+
+from ..files import table
+from ..mistakes import expect, log
+from ..results import time_label
+from ..snapshots import evenly
+from . import style
+from .draw import section
+from .register import figure
+from .style import plt
+
+
+@figure
+def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None,
+              unit: float = 1):
+    """Two particles that meet: the path of one past the other, the smallest gap, and how they deform.
+
+    Drawn against dx; dx, dz are x1 and x3 of the first centroid less those of the second one, over R_C.
+
+    pair: names of the two particles (default: the first two)
+    curve: a path of the literature, a CSV file with columns dx, dz
+    unit: length of that path's unit, over R_C"""
+    figure, (path, gap, deformation) = style.panels(axes, 3, 1, 6.4, 8, sharex=True)
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        names = pair or run.particles[:2]
+        expect(len(names) == 2, f"{run.directory}: an encounter is of two particles, and this run has one")
+        first, second = names
+        dx, dz = ((run.of(first, f"centroid_x{k}") - run.of(second, f"centroid_x{k}")) / run.radius for k in (1, 3))
+        path.plot(dx, dz, color=color, label=run.name)
+        smallest = run.series["smallest_gap"] / run.radius
+        gap.plot(dx, smallest, color=color)
+        for name, line in (first, "-"), (second, (0, (4, 2))):
+            if f"{name}/taylor_inertia" in run.series:  # it is not rigid
+                deformation.plot(dx, run.of(name, "taylor_inertia"), color=color, linestyle=line,
+                                 label=name if color == style.RUNS[0] else None)
+        least = numpy.argmin(smallest)
+        log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, largest dz "
+                 f"{dz.max():.5f}")
+    if curve:
+        known = table(curve) * unit
+        path.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
+    path.set_ylabel("dz / R$_C$")
+    path.legend()
+    gap.set_ylabel("smallest gap / R$_C$")
+    gap.set_ylim(bottom=0)
+    deformation.set_ylabel("D")
+    if deformation.lines:
+        deformation.legend()
+    deformation.set_xlabel("dx / R$_C$")
+    return figure
+
+
+@figure
+def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = None):
+    """Particles beside a plane wall: sections at several times, the gap, and the centroid's velocity along and away.
+
+    times: number of times that are drawn
+    curve: a gap over time to draw beside the first one, a CSV file in the units of the figure"""
+    figure = style.canvas(axes, 7.2, 2.6 * len(runs) + 2.8)
+    grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
+    gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
+    for k, (run, color) in enumerate(zip(runs, style.RUNS * len(runs))):
+        run.require("gap")
+        sections(figure.add_subplot(grid[k, :]), run, times)
+        film = run.series["gap"] / run.radius
+        gap.plot(run.time, film, color=color, label=run.name)
+        away, along = velocities(run)
+        speed.plot(run.time, away, color=color, label="away" if k == 0 else None)
+        speed.plot(run.time, along, color=color, linestyle=(0, (4, 2)), label="along" if k == 0 else None)
+        log.info(f"{run.name}: gap from {film[0]:.6g} to {film[-1]:.6g} R_C; "
+                 f"velocity away from the wall {away[-1]:.5g}, along it {along[-1]:.5g}")
+    if curve:
+        known = table(curve)
+        gap.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.INK, markersize=3, label="exact")
+    gap.set_yscale("log")
+    gap.set_ylabel("gap / R$_C$")
+    speed.axhline(0, color=style.FAINT, linewidth=0.8)
+    speed.set_ylabel(runs[0].label("velocity", "centroid's {}"))
+    for axis in gap, speed:
+        axis.set_xlabel(time_label(runs))
+        axis.legend()
+    return figure
+
+
+def wall(run):
+    """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): that of x1, or of x3 if
+    x1 is the normal."""
+    point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
+    normal /= numpy.linalg.norm(normal)
+    along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]
+    along -= along @ normal * normal
+    return point, normal, along / numpy.linalg.norm(along)
+
+
+def velocities(run):
+    """Returns the velocities (rows,) away from the wall and along it, of the centroid or the mean of all particles,
+    without a unit."""
+    _, normal, along = wall(run)
+    velocity = numpy.array([run.series[f"velocity_x{k}"] for k in (1, 2, 3)]) / run.scale("velocity")[0]
+    return normal @ velocity, along @ velocity
+
+
+def sections(axis, run, moments):
+    """Draws sections through the middle of the snapshots, in the plane of the normal and the direction along the
+    wall."""
+    point, normal, along = wall(run)
+    chosen = evenly(run.snapshots(), moments)
+    colours = plt.get_cmap(style.TIME)(numpy.linspace(0.15, 0.95, len(chosen)))
+    for shot, colour in zip(chosen, colours):
+        across = numpy.argmin(abs(normal) + abs(along))
+        pieces = section(shot, shot.points[:, across].mean(), across)
+        places = numpy.insert(pieces, across, 0, axis=2) - numpy.where(numpy.arange(3) == across, 0, point)
+        axis.add_collection(LineCollection(numpy.stack([places @ along, places @ normal], axis=2) / run.radius,
+                                           colors=colour))
+        axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
+    axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
+    axis.autoscale_view()
+    axis.set_ylim(bottom=-0.15)
+    axis.set_aspect("equal")
+    axis.set_title(f"{run.name}: section across the wall at several times")
+    axis.set_xlabel("along the wall / R$_C$")
+    axis.set_ylabel("above it / R$_C$")
+    axis.legend(ncols=2, fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))

@@ -1,0 +1,199 @@
+"""Figures of the error against a known curve, and of sharp edges from rounded ones."""
+
+import pathlib
+
+import numpy
+import scipy.interpolate
+
+from ..files import table
+from ..interpolation import difference
+from ..mistakes import Mistake, expect, log
+from ..results import time_label
+from ..runs import Study, deck_at, settings_of
+from . import style
+from .register import figure
+from .style import plt
+
+SAMPLES = 400  # along the way
+class Errors:
+    """Of one run: `times` and `errors` of the series within the curve, its largest error, its mesh and what it cost."""
+
+    def __init__(self, run, curve, series):
+        t = run.time
+        inside = (t >= curve["t"][0]) & (t <= curve["t"][-1])
+        self.run, self.times = run, t[inside]
+        self.errors = numpy.array([difference([time], [value], curve["t"], curve[series])
+                                   for time, value in zip(t[inside], run.series[series][inside])])
+        self.largest = self.errors.max()
+        self.points = run.series["n_control_points"][-1]
+        self.seconds, self.evaluations = run.series["wall_seconds"][-1], run.series["evaluations"][-1]
+
+    @property
+    def family(self):
+        return f"{self.run.value('Time/scheme')}, tolerance {self.run.value('Time/tolerance'):g}"
+
+
+@figure
+def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: str = "taylor_inertia"):
+    """Error of a run's deformation against a curve: over time, against the mesh, seconds and velocity evaluations.
+
+    The curve is a CSV file with the columns `t`, which is time times the rate of the flow, and `taylor_inertia`. A line
+    joins runs that agree in Time/scheme and Time/tolerance.
+
+    curve: the reference, a table with named columns
+    series: which series, and column of the curve"""
+    expect(curve, "give the reference: --curve FILE")
+    known = table(curve, ("t", series))
+    for run in runs:
+        run.require(series)
+    found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.points)
+    families = sorted({one.family for one in found})
+    color = dict(zip(families, style.RUNS * len(families)))
+    figure, axes = style.panels(axes, 2, 2, 9.6, 7)
+    draw_times(axes[0], found)
+    for axis, cost, label in ((axes[1], "points", "control points"), (axes[2], "seconds", "seconds"),
+                              (axes[3], "evaluations", "velocity evaluations")):
+        for family in families:
+            members = [one for one in found if one.family == family]
+            axis.loglog([getattr(one, cost) for one in members], [one.largest for one in members], "o-",
+                        color=color[family], ms=4, label=family)
+        axis.set_xlabel(label)
+        axis.set_ylabel(f"largest error of {series}")
+    draw_order(axes[1], found)
+    axes[1].legend(loc="lower left")
+    report(found, families)
+    return figure
+
+
+def draw_times(axis, runs):
+    shades = plt.get_cmap("viridis")(numpy.linspace(0.1, 0.8, len(runs)))
+    for one, shade in zip(runs, shades):
+        axis.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
+    axis.set_ylim(0.1 * min(numpy.median(one.errors) for one in runs), 30 * runs[0].largest)  # room for the legend
+    axis.set_xlabel(time_label([one.run for one in runs]))
+    axis.set_ylabel("error")
+    axis.legend(loc="upper left", ncols=2)
+
+
+def draw_order(axis, runs):
+    """Draws the line of fourth order in the mesh size, from the coarsest mesh on."""
+    n = numpy.array([runs[0].points, runs[-1].points])
+    if n[1] > n[0]:
+        axis.loglog(n, 0.3 * runs[0].largest * (n / n[0]) ** -2.0, color=style.FAINT, linestyle=(0, (4, 3)),
+                    label="fourth order")
+
+
+def report(runs, families):
+    """Logs the largest errors and, for each family with several meshes, the order fitted in the mesh size (control
+    points to the power -1/2)."""
+    for one in runs:
+        log.info(f"{one.run.name}: {one.points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
+              f"{one.evaluations:.0f} evaluations, {one.seconds:.2f} s")
+    for family in families:
+        members = [one for one in runs if one.family == family]
+        if len({one.points for one in members}) > 1:
+            slope = numpy.polyfit(numpy.log([one.points for one in members]),
+                                  numpy.log([one.largest for one in members]), 1)[0]
+            log.info(f"{family}: order {-2 * slope:.2f}")
+
+
+@figure
+def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[str] | None = None,
+         set_: list[str] | None = None, curves: tuple[pathlib.Path, pathlib.Path, pathlib.Path] | None = None,
+         between: tuple[float, float] = (-3.9, 4.9), directory: pathlib.Path = pathlib.Path("results/step")):
+    """Extents of a capsule against its centroid in a channel that steps, with edges rounded less and less, and sharp.
+
+    The extent along x3 has kinks, beside which it is no better than rows are close: --set 'Time/maximum step=0.01' for
+    three digits. Each --finer is made with both radii, and its change is printed; the curves add these changes. An edge
+    rounded with the radius r changes the flow around by r^2q, where q = 0.544 is the power of the velocity beside a
+    sharp edge of 90 degrees, sin(3 pi q/2) = q (Dean & Montagnon, Proc. Camb. Phil. Soc. 45, 1949); so two radii give
+    the extents beside sharp edges.
+
+    radii: radii of the edges, the larger one first
+    finer: keys by which runs are made finer, each KEY=VALUE
+    set_: other keys of all runs, each KEY=VALUE
+    curves: published extents along x1, x2, x3: a centroid and an extent over 2 a per row
+    between: centroids between which extents are drawn
+    directory: where runs are kept"""
+    large, small = radii
+    words, finer = set_ or [], finer or []
+    expect(0 < small < large,
+           f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
+    expect(between[0] < between[1],
+           "--between needs two centroids that ascend, but is given {:g} and {:g}".format(*between))
+    settings_of(words + finer)
+    known = [curve_of(path, between) for path in curves or []]
+    x, runs, deck = numpy.linspace(*between, SAMPLES), Study(directory=directory), deck_at(deck)
+    of_large, of_small = (of_radius(runs, deck, words, finer, radius, x) for radius in radii)
+    sharp = sharp_edges(of_large, of_small, large / small)
+    names = ("x₁", "x₂", "x₃")
+    figure, (axis,) = style.panels(axes, 1, 1, 7, 5)
+    for k, (name, colour) in enumerate(zip(names, style.RUNS)):
+        for y, line in ((of_large, ":"), (of_small, "--"), (sharp, "-")):
+            axis.plot(x, y[k], line, color=colour, label=f"along {name}" if line == "-" else None)
+        at = numpy.argmax(numpy.abs(sharp[k] - of_small[k]))
+        log.info(f"along {name}: radii {large:g} and {small:g} differ by "
+                 f"{numpy.abs(of_large[k] - of_small[k]).max():.1e}, "
+                 f"sharp edges from {small:g} by {abs(sharp[k, at] - of_small[k, at]):.1e} at most, at {x[at]:.2f}")
+    for k, (curve, inside) in enumerate(known):
+        off = numpy.interp(inside[:, 0], x, sharp[k]) - inside[:, 1]
+        at = numpy.argmax(numpy.abs(off))
+        axis.plot(*curve.T, style.MARKS[k], color=style.FAINT, markersize=3, label=f"published, {names[k]}")
+        log.info(f"along {names[k]}: {off[at]:+.4f} off the curve at most, at {inside[at, 0]:.3f}; "
+                 f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
+    axis.set_xlabel("centroid $x_1$")
+    axis.set_ylabel("extent over 2a")
+    axis.set_title(f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
+    axis.legend()
+    return figure
+
+
+def power():
+    """Returns the power 2 q of the radius of an edge, by fixed-point iteration, each step of which divides the error by
+    four."""
+    q = 0.5
+    for _ in range(60):
+        q = (numpy.pi - numpy.arcsin(q)) / (1.5 * numpy.pi)
+    return 2 * q
+
+
+def sharp_edges(of_large, of_small, ratio):
+    """Returns the extents beside sharp edges, from those of two radii with this ratio."""
+    return of_small - (of_large - of_small) / (ratio**power() - 1)
+
+
+def extents(outcome, x):
+    """Returns the extents (3, x.size) over 2 a with the centroid at x1 = x, by cubic splines."""
+    expect(outcome.done, f"{outcome.directory}: {outcome.message}")
+    series, a = outcome.series, outcome.run.value("Particle/radius", 1.0)
+    way = series["centroid_x1"]
+    expect((numpy.diff(way) > 0).all(),
+           f"{outcome.directory}: its centroid went back, so that there are several extents at a place")
+    expect(way[0] <= x[0] and x[-1] <= way[-1],
+           f"{outcome.directory}: --between {x[0]:g} {x[-1]:g}, but it went from {way[0]:g} to {way[-1]:g}")
+    return scipy.interpolate.CubicSpline(way, numpy.transpose([series[f"length_x{k}"]
+                                                               for k in (1, 2, 3)]))(x).T / (2 * a)
+
+
+def of_radius(runs, deck, words, finer, radius, x):
+    """Returns the extents (3, x.size) with edges of a radius, with the sum of the changes by each --finer."""
+    def of(more):
+        return extents(runs.run(deck, {"Channel/corner radius": radius} | settings_of(more)), x)
+
+    first = found = of(words)
+    for one in finer:
+        change = of(words + [one]) - first
+        log.info(f"radius {radius:g}, {one}: changes " + ", ".join(f"{value:.1e}" for value in abs(change).max(axis=1)))
+        found = found + change
+    return found
+
+
+def curve_of(path, between):
+    """Returns a published curve (n, 2), a centroid and an extent per row, and its rows between these centroids."""
+    try:
+        curve = numpy.loadtxt(path, delimiter=",", ndmin=2)
+    except (OSError, ValueError) as error:
+        raise Mistake(f"{path} is no curve: {error}") from error
+    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])] if curve.shape[1] == 2 else []
+    expect(len(inside), "{} has no rows of two numbers with the first between {:g} and {:g}".format(path, *between))
+    return curve, inside

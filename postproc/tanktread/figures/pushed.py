@@ -1,0 +1,178 @@
+"""An axisymmetric neo-Hookean membrane at rest that closes a round constriction without friction."""
+
+import numpy
+
+from ..mistakes import Mistake, expect
+
+BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
+
+
+def capillary_number(run):
+    told = run.value("Membrane/capillary number")
+    return told if told else run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity",
+                                                                          1.0) / run.value("Membrane/shear modulus")
+
+
+def drop_of_velocity(run):
+    """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
+    return run.series["channel_pressure_drop"][0] / (run.value("Flow/viscosity",
+                                                               1.0) * run.value("Flow/mean velocity", 1.0))
+
+
+def highest(way, pressure):
+    """Returns the vertex of the parabola through the five values around the largest pressure: the pressure, and the
+    centroid there."""
+    top = numpy.argmax(pressure)
+    fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
+    return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
+
+
+class Pushed:
+    """The membrane as cones between rings: x and r of each, from the rear to the front; in units of the shear
+    modulus."""
+
+    def __init__(self, run, n, radius=None):
+        self.mouth, self.depth, self.width = run.value("Channel/radius",
+                                                       1.0), run.value("Channel/depth",
+                                                                       0.5), run.value("Channel/half length")
+        self.radius = radius or run.value("Particle/radius", 1.0)
+        unstressed = self.radius / (1 + run.value("Membrane/pre-inflation", 0.0))
+        angle = numpy.linspace(0, numpy.pi, n + 1)
+        x, r = -unstressed * numpy.cos(angle), unstressed * numpy.sin(angle)
+        self.length, self.ring = numpy.hypot(numpy.diff(x), numpy.diff(r)), (r[1:] + r[:-1]) / 2
+        self.area = 2 * numpy.pi * self.ring * self.length
+        self.share = (numpy.append(self.area, 0) + numpy.append(0, self.area)) / 2
+        self.n, self.volume = n, 4 / 3 * numpy.pi * self.radius**3
+        free = numpy.arange(2 * n + 2).reshape(n + 1, 2)
+        self.numbers = numpy.hstack([free[:-1], free[1:]])  # of the four of each cone
+        self.loose = numpy.setdiff1d(free.ravel(), free[[0, -1], 1])  # the poles stay on the axis
+
+    def wall(self, x):
+        """Returns the radius of the wall at x and its first two derivatives."""
+        k, inside = numpy.pi / self.width, numpy.abs(x) < self.width
+        half = self.mouth * self.depth / 2
+        return (self.mouth - inside * half * (1 + numpy.cos(k * x)), inside * half * k * numpy.sin(k * x),
+                inside * half * k * k * numpy.cos(k * x))
+
+    def energy(self, x, r):
+        """Returns gradient (cones, 4) and Hessian (cones, 4, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3)
+        times the unstressed area of each cone."""
+        d = numpy.stack([numpy.diff(x), numpy.diff(r)], 1)
+        length = numpy.linalg.norm(d, axis=1)
+        u = d / length[:, None]
+        s, t = length / self.length, (r[1:] + r[:-1]) / (2 * self.ring)
+        ds = numpy.hstack([-u, u]) / self.length[:, None]
+        dt = numpy.array([0, 0.5, 0, 0.5]) / self.ring[:, None]
+        bend = (numpy.eye(2) - u[:, :, None] * u[:, None, :]) / (length * self.length)[:, None, None]
+        dds = numpy.block([[bend, -bend], [-bend, bend]])
+        outer = lambda a, b: a[:, :, None] * b[:, None, :]
+        by = lambda f, a: (self.area * f)[(slice(None),) + (None,) * (a.ndim - 1)] * a
+        first = s - 1 / (s**3 * t**2)
+        gradient = by(first, ds) + by(t - 1 / (t**3 * s**2), dt)
+        matrix = by(first, dds) + by(1 + 3 / (s**4 * t**2), outer(ds, ds)) + by(1 + 3 / (t**4 * s**2), outer(dt, dt))
+        return gradient, matrix + by(2 / (s * t)**3, outer(ds, dt) + outer(dt, ds))
+
+    @staticmethod
+    def volumes(x, r):
+        """Returns the volume of each cone (cones,) with gradient (cones, 4) and Hessian (cones, 4, 4)."""
+        h, a, b = numpy.diff(x), r[:-1], r[1:]
+        square, zero = a * a + a * b + b * b, 0 * a
+        da, db = h * (2 * a + b), h * (a + 2 * b)
+        gradient = numpy.stack([-square, da, square, db], 1)
+        matrix = numpy.stack([zero, -(2 * a + b), zero, -(a + 2 * b), -(2 * a + b), 2 * h, 2 * a + b, h,
+                              zero, 2 * a + b, zero, a + 2 * b, -(a + 2 * b), h, a + 2 * b, 2 * h], 1).reshape(-1, 4, 4)
+        return numpy.pi / 3 * h * square, numpy.pi / 3 * gradient, numpy.pi / 3 * matrix
+
+    def channel(self, x):
+        """Returns the volume of the channel from the mouth to x."""
+        places, weights = numpy.polynomial.legendre.leggauss(20)
+        at = -self.width + (x + self.width) * (places + 1) / 2
+        return numpy.pi * (x + self.width) / 2 * (weights @ self.wall(at)[0]**2)
+
+    def behind(self, x, r, closed):
+        """Returns the volume of the fluid behind the ring that closes the channel."""
+        return self.channel(x[closed]) - self.volumes(x, r)[0][:closed].sum()
+
+    def system(self, z, closed):
+        """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
+        coordinates, the volume, and gap and push of the wall at each ring."""
+        x, r = z.T
+        size = z.size
+        gradient, matrix = numpy.zeros((3, size)), numpy.zeros((3, size, size))
+        volume, of_volume, of_of_volume = self.volumes(x, r)
+        before = -1.0 * (numpy.arange(self.n) < closed)[:, None]
+        rows, columns = numpy.broadcast_arrays(self.numbers[:, :, None], self.numbers[:, None, :])
+        for k, (g, m) in enumerate([self.energy(x, r), (of_volume, of_of_volume),
+                                    (before * of_volume, before[:, :, None] * of_of_volume)]):
+            numpy.add.at(gradient[k], self.numbers, g)
+            numpy.add.at(matrix[k], (rows, columns), m)
+        w, dw, ddw = self.wall(x)
+        gradient[2][2 * closed] += numpy.pi * w[closed]**2
+        matrix[2][2 * closed, 2 * closed] += 2 * numpy.pi * w[closed] * dw[closed]
+        gap = w - r
+        push, stiff = BARRIER * self.share / gap, BARRIER * self.share / gap**2
+        i = 2 * numpy.arange(self.n + 1)
+        gradient[0][i] -= push * dw
+        gradient[0][i + 1] += push
+        matrix[0][i, i] += stiff * dw**2 - push * ddw
+        matrix[0][i + 1, i + 1] += stiff
+        matrix[0][i, i + 1] -= stiff * dw
+        matrix[0][i + 1, i] -= stiff * dw
+        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], volume.sum(), gap, push
+
+    def rest(self, z, pressures, closed, behind):
+        """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
+        Newton's method; None if it is not found."""
+        z, pressures, n = z.copy(), pressures.copy(), self.loose.size
+        for _ in range(60):
+            gradient, matrix, volume, gap, _ = self.system(z, closed)
+            residual = numpy.concatenate([gradient[0] - pressures @ gradient[1:],
+                                          [volume - self.volume, self.behind(*z.T, closed) - behind]])
+            if abs(residual).max() < 1e-10:
+                return z, pressures
+            whole = numpy.zeros((n + 2, n + 2))
+            whole[:n, :n] = matrix[0] - numpy.tensordot(pressures, matrix[1:], 1)
+            whole[:n, n:], whole[n:, :n] = -gradient[1:].T, gradient[1:]
+            step = -numpy.linalg.solve(whole, residual)
+            part = min(1, 0.05 / abs(step[:n]).max())
+            while part > 1e-6:
+                trial = z.ravel().copy()
+                trial[self.loose] += part * step[:n]
+                x, r = trial.reshape(-1, 2).T
+                if (self.wall(x)[0] - r > 0.1 * gap)[1:-1].all() and (r[1:-1] > 0).all():
+                    break
+                part *= 0.7
+            z, pressures = trial.reshape(-1, 2), pressures + part * step[n:]
+        return None
+
+    def through(self):
+        """Returns centroids (m,) from the first touch to the throat, and the pressure drops (m,) there."""
+        angle = numpy.linspace(0, numpy.pi, self.n + 1)
+        z = self.radius * numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)
+        places = numpy.linspace(-self.width - self.radius, 0, 4000)
+        near = (x for x in places if (self.wall(z[:, 0] + x)[0] - z[:, 1]).min() < 0.005 * self.radius)
+        touch = next(near, None)
+        expect(touch is not None, "the particle does not touch the wall of the constriction")
+        z[:, 0] += touch
+        closed = numpy.argmin((self.wall(z[:, 0])[0] - z[:, 1])[1:-1]) + 1
+        pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(*z.T, closed), 0.01 * self.volume
+        found = []
+        while True:
+            rest = self.rest(z, pressures, closed, behind)
+            if rest is None:
+                step /= 2
+                behind -= step
+                if step < 1e-5 * self.volume:
+                    raise Mistake("the membrane at rest was not found; change --elements")
+                continue
+            z, pressures = rest
+            gradient, _, _, _, push = self.system(z, closed)
+            volume = self.volumes(*z.T)[0]
+            centroid = volume @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
+            found.append((centroid, pressures[1]))
+            if centroid > 0:
+                return numpy.array(found).T
+            area = 2 * numpy.pi * z[:, 1] * numpy.hypot(*numpy.gradient(z, axis=0).T)
+            on_wall = push / area.clip(1e-9) + pressures[1] * (numpy.arange(self.n + 1) < closed)
+            moved = numpy.argmax(on_wall[2:-2]) + 2
+            behind, closed = behind + self.behind(*z.T, moved) - self.behind(*z.T, closed) + step, moved

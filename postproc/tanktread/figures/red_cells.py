@@ -1,0 +1,180 @@
+"""Figures of red cells beside experiments."""
+
+import numpy
+
+from ..mistakes import log
+from ..runs import run as run_of
+from . import style
+from .register import figure
+from .style import plt
+
+# Mills, Qie, Dao, Lim & Suresh, Mech. Chem. Biosyst. 1, 2004: force in pN, transverse and axial diameter in um, the
+# bounds of the axial one where known.
+STRETCHED = ((0, 7.74, 7.74, None), (16, 6.71, 9.16, (8.34, 9.99)), (47, 5.40, 11.34, (10.06, 12.75)),
+             (88, 4.75, 13.03, (11.4, 14.7)), (151, 4.48, 14.55, (12.4, 16.7)), (193, 4.26, 15.26, (12.95, 17.65)))
+# Tran-Son-Tay, Sutera & Rao, Biophys. J. 46, 1984, tables 1 and 2: shear rate in 1/s, angular frequency and its bar in
+# radians per second; inclination in degrees, of all of them.
+TURNING = ((28.6, 6.22, 0.31), (42.9, 9.42, 0.57), (57.1, 12.7, 0.57), (114.3, 24.6, 1.07), (171.4, 37.4, 1.45))
+INCLINATION = (12.5, 13.2)
+# Hochmuth, Worthy & Evans, Biophys. J. 26, 1979: seconds, and length over width.
+RETURNING = ((0, 2.005), (0.032, 1.732), (0.065, 1.525), (0.115, 1.367), (0.184, 1.247), (0.231, 1.197), (0.300, 1.157),
+             (0.397, 1.112))
+RADIUS, FLUID, INSIDE = 3.91, 1.2e-3, 5  # of the disc in um; Pa s outside; viscosity inside over that outside
+MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))  # shear modulus in uN/m, viscosity in uN s/m: in use, slowest, fastest
+
+
+@figure
+def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, radius: float = RADIUS, shear_modulus: float = 5.3,
+             law: list[str] | None = None):
+    """A red cell in optical tweezers: its diameters along and across the force, beside those that were measured.
+
+    Beside them its outline from the side at each force. The deck, with lengths in radii of the disc, is run once for
+    each force.
+
+    radius: radius of the disc, in um
+    shear_modulus: in uN/m
+    law: other laws of the membrane to draw beside the deck's"""
+    figure, (plot, outlines) = style.panels(axes, 1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
+    for name, color in zip([None, *(law or [])], style.RUNS):
+        runs = [pulled(deck, row[0] / (radius * shear_modulus), {"Membrane/law": name} if name else {})
+                for row in STRETCHED]
+        sizes = radius * numpy.array([[run.series["length_x2"][-1], run.series["length_x1"][-1]] for run in runs])
+        for (pn, across, along, bounds), (found_across, found_along) in zip(STRETCHED, sizes):
+            inside = bounds is None or bounds[0] <= found_along <= bounds[1]
+            within = "" if bounds is None else ", within its bar" if inside else ", OUTSIDE its bar"
+            log.info(f"{name or ''}{pn:4d} pN: along {found_along:.2f} um (measured {along}{within}), "
+                     f"across {found_across:.2f} um (measured {across})")
+        forces = [row[0] for row in STRETCHED]
+        plot.plot(forces, sizes[:, 1], color=color, label=f"{name or runs[0].value('Membrane/law')}, along")
+        plot.plot(forces, sizes[:, 0], color=color, linestyle=(0, (4, 2)), label="across")
+        if name is None:
+            draw_outlines(outlines, runs, radius)
+    draw_measured(plot)
+    plot.set_xlabel("force / pN")
+    plot.set_ylabel("diameter / µm")
+    plot.legend()
+    return figure
+
+
+def pulled(deck, force, more):
+    """Returns the run of a deck with the force (over shear modulus and radius of the disc) along x1 at both ends."""
+    ends = (("left", -1), ("right", 1))
+    return run_of(deck, {f"Membrane/forces/{name}/force": [sign * force, 0, 0] for name, sign in ends} | more)
+
+
+def draw_measured(plot):
+    forces = numpy.array([row[0] for row in STRETCHED])
+    along = numpy.array([row[2] for row in STRETCHED])
+    low, high = (numpy.array([row[2] if row[3] is None else row[3][k] for row in STRETCHED]) for k in (0, 1))
+    plot.errorbar(forces, along, (along - low, high - along), fmt=style.MARKS[0], color=style.INK, markersize=4,
+                  linewidth=0.8, capsize=2, label="Mills and others 2004")
+    plot.plot(forces, [row[1] for row in STRETCHED], style.MARKS[1], color=style.INK, markersize=4, fillstyle="none",
+              label="across, measured")
+
+
+def draw_outlines(plot, runs, radius):
+    """Draws the convex outlines as seen along x3, one per force."""
+    for (pn, *_), run, shade in zip(STRETCHED, runs, numpy.linspace(0.25, 1, len(runs))):
+        points = numpy.asarray(run.snapshots()[-1].points)[:, :2] * radius
+        around = numpy.linspace(0, 2 * numpy.pi, 361)
+        directions = numpy.stack([numpy.cos(around), numpy.sin(around)])
+        outline = points[(points @ directions).argmax(axis=0)]
+        plot.plot(*outline.T, color=plt.get_cmap(style.TIME)(shade), linewidth=1.1, label=f"{pn} pN")
+    plot.set_aspect("equal")
+    plot.set_xlabel("x$_1$ / µm")
+    plot.set_ylabel("x$_2$ / µm")
+    plot.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
+
+
+@figure
+def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list[float] = [0.1, 0.32, 1.0],
+             elements: int = 6):
+    """A red cell that tank-treads in shear: frequency over shear rate, and inclination, beside those measured.
+
+    Means of the last whole turn against the shear rate. The deck, with units, is run once for each shear rate and
+    viscosity of the membrane, to 50 over the rate.
+
+    viscosity: viscosities of the membrane, in uN s/m
+    elements: elements per side"""
+    figure, (plot, angles) = style.panels(axes, 1, 2, 8.2, 3.4)
+    rates = numpy.array([row[0] for row in TURNING])
+    for value, color in zip(sorted(viscosity), style.RUNS):
+        found = numpy.array([last_turn(deck, rate, value, elements) for rate in rates])
+        label = f"{value:g} µN s/m"
+        plot.plot(rates, found[:, 0] / rates, "o-", markersize=3, color=color, label=label)
+        angles.plot(rates, found[:, 1], "o-", markersize=3, color=color, label=label)
+        angles.fill_between(rates, found[:, 2], found[:, 3], color=color, alpha=0.12, linewidth=0)
+        for (rate, frequency, bar), (here, mean, low, high) in zip(TURNING, found):
+            within = "within its bar" if abs(here - frequency) <= bar else "OUTSIDE its bar"
+            log.info(f"{value:g} uN s/m, {rate} 1/s: frequency {here:.3f} 1/s (measured {frequency} +- {bar}, "
+                     f"{within}), "
+                     f"inclination {mean:.2f} ({low:.2f} to {high:.2f})")
+    plot.errorbar(rates, [row[1] / row[0] for row in TURNING], [row[2] / row[0] for row in TURNING],
+                  fmt=style.MARKS[1], color=style.INK, markersize=4, linewidth=0.8, capsize=2,
+                  label="Tran-Son-Tay and others 1984")
+    angles.axhspan(*INCLINATION, color=style.FAINT, alpha=0.4, label="measured")
+    plot.set_ylabel("frequency / shear rate")
+    angles.set_ylabel("inclination / degrees")
+    for axis in plot, angles:
+        axis.set_xlabel("shear rate / s$^{-1}$")
+        axis.legend()
+    return figure
+
+
+def last_turn(deck, rate, viscosity, elements):
+    """Returns the frequency in radians per second, and mean, least and largest inclination, of the last whole turn."""
+    end = 50 / rate
+    run = run_of(deck, {"Flow/shear rate": f"{rate} 1/s", "Time/final time": end, "Output/interval": end,
+                        "Membrane/shear viscosity": f"{viscosity}e-6 N s/m", "Surface/elements per side": elements})
+    time, phase = run.series["time"], run.series["phase"]
+    begin = numpy.interp(phase[-1] - 360, phase, time)
+    around = numpy.interp(numpy.linspace(begin, time[-1], 401), *run.defined("inclination"))
+    return 2 * numpy.pi / (time[-1] - begin), around.mean(), around.min(), around.max()
+
+
+@figure
+def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, force: float = 5.6, elements: int = 6):
+    """A red cell let go by tweezers at a length of twice its width returns to its disc, beside the experiment.
+
+    Length over width against time, and the time constant of the exponential that fits best, for several moduli and
+    viscosities of the membrane. The deck has lengths in radii of the disc.
+
+    force: that draws it out, over shear modulus and radius
+    elements: elements per side"""
+    figure, (plot,) = style.panels(axes, 1, 1, 5.2, 3.6)
+    time, ratio = numpy.array(RETURNING).T
+    log.info(f"measured: time constant {constant(time, ratio):.4f} s")
+    for (modulus, viscosity), color in zip(MEMBRANES, style.RUNS):
+        seconds, found = let_go(deck, force, elements, modulus, viscosity)
+        log.info(f"{modulus:g} uN/m, {viscosity:g} uN s/m: time constant {constant(seconds, found):.4f} s, "
+                 f"from a length over width of {found[0]:.3f}")
+        plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
+    plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth and others 1979")
+    plot.set_xlabel("time / s")
+    plot.set_ylabel("length over width")
+    plot.legend()
+    return figure
+
+
+def let_go(deck, force, elements, modulus, viscosity):
+    """Returns seconds, and length over width from where it is as in the experiment at first."""
+    mesh = {"Surface/elements per side": elements}
+    start = pulled(deck, force, mesh)
+    unit = FLUID * RADIUS / modulus  # of time, in seconds: the deck's are fluid viscosity x radius / shear modulus
+    run = pulled(deck, 0, mesh | {
+        "Particle/viscosity ratio": INSIDE, "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
+        "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit,
+        "Particle/initial shape/run": str(start.directory.resolve())})
+    ratio = run.series["length_x1"] / run.series["length_x2"]
+    seconds = run.series["time"] * unit
+    first = numpy.interp(-RETURNING[0][1], -ratio, seconds)
+    after = seconds >= first
+    return seconds[after] - first, ratio[after]
+
+
+def constant(seconds, ratio):
+    """Returns t_c of (ratio - 1) = (first - 1) exp(-t/t_c), by least squares over 0.4 s at even times."""
+    times = numpy.linspace(0, min(0.397, seconds[-1]), 200)
+    excess = numpy.interp(times, seconds, ratio) - 1
+    best = numpy.geomspace(0.005, 1, 2000)
+    return best[numpy.argmin([numpy.sum((excess - excess[0] * numpy.exp(-times / t)) ** 2) for t in best])]

@@ -1,0 +1,172 @@
+"""Figures of series over time."""
+
+import pathlib
+from typing import Literal
+
+import numpy
+
+from ..mistakes import Mistake, log
+from ..results import time_label
+from . import literature, style
+from .register import figure
+
+EXPECTED = "expected by the deck"
+Deformation = Literal["taylor_inertia", "taylor_surface"]
+
+
+@figure
+def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformation: Deformation = "taylor_inertia"):
+    """Deformation and inclination over time, beside curves of the literature; of several particles, of each.
+
+    curves: folder of literature curves, named as figures/literature.py says
+    deformation: which Taylor parameter"""
+    for run in runs:
+        if not run.several:
+            run.require("taylor_inertia", "taylor_surface", "inclination")
+    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4 if len(runs) == 1 else 9.8, 6.4, sharex=True,
+                                          height_ratios=[3, 2])
+    known: list = []
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        found = literature.curves(run, curves)
+        known += [curve for curve in found if curve.label not in [one.label for one in known]]
+        if run.several:
+            draw_particles(upper, lower, run, deformation, style.RUNS if len(runs) == 1 else [color])
+        else:
+            draw_run(upper, lower, run, deformation, color)
+            report(run, found)
+    draw_literature(upper, lower, known, end=max(run.time[-1] for run in runs))
+    upper.set_ylabel("Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""))
+    upper.set_ylim(bottom=0)
+    upper.set_title(title(runs))
+    if len(runs) == 1:
+        upper.legend(loc="lower right")
+    else:
+        upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
+    lower.set_ylabel("inclination, degrees")
+    lower.set_xlabel(time_label(runs))
+    lower.set_xlim(left=0)
+    return figure
+
+
+def title(runs):
+    words = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
+             for key in ("Membrane/law", "Flow/type")]
+    if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
+        words.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
+    return ", ".join(word for word in words if word)
+
+
+def label(run):
+    points = run.series.get("n_control_points")
+    mesh = f", {points[-1]:.0f} control points" if points is not None and len(points) else ""
+    return run.name + mesh
+
+
+def draw_run(upper, lower, run, deformation, color):
+    t = run.time
+    upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
+    lower.plot(*unbroken(t, run.series["inclination"]), color=color, zorder=3)
+    for axes, name in (upper, deformation), (lower, "inclination"):
+        expected = run.value(f"Expect/{name}")
+        if expected:
+            at = expected["at"] * run.rate[0] if "at" in expected else t[-1]
+            known = {text.get_label() for text in axes.lines}
+            axes.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6, label=EXPECTED
+                      if EXPECTED not in known else None)
+
+
+def draw_particles(upper, lower, run, deformation, colors):
+    """Draws deformation and inclination of several particles, with thin lines if they are many."""
+    deforming = [name for name in run.particles if f"{name}/{deformation}" in run.series]
+    if not deforming:
+        raise Mistake(f"{run.directory}: none of its particles deforms")
+    few = len(deforming) <= len(style.RUNS)
+    for k, name in enumerate(deforming):
+        pen = {"color": colors[k % len(colors)] if few else colors[0], "linewidth": 1.8 if few else 0.5, "zorder": 3}
+        words = f"{run.name}: {name}" if few else f"{run.name}: {len(deforming)} particles" if k == 0 else None
+        upper.plot(run.time, run.series[f"{name}/{deformation}"], label=words, **pen)
+        lower.plot(*unbroken(run.time, run.series[f"{name}/inclination"]), **pen)
+
+
+def unbroken(t, angle):
+    """Returns times and angles with a NaN where an axis passes from one end of its range of 180 degrees to the
+    other."""
+    passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
+    return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
+
+
+def draw_literature(upper, lower, known, end):
+    marks = iter(style.MARKS)
+    for curve in known:
+        inside = curve.t <= end * 1.001
+        if curve.exact:
+            pen = {"color": style.INK, "linestyle": (0, (1, 1.6)), "linewidth": 2.2, "zorder": 5}
+            upper.plot(curve.t, curve.d, label=curve.label, **pen)
+            lower.plot(curve.t, curve.inclination, **pen)
+            continue
+        every = max(1, inside.sum() // 40)
+        pen = {"linestyle": "none", "marker": next(marks), "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8,
+               "zorder": 2, "markevery": every}
+        upper.plot(curve.t[inside], curve.d[inside], label=curve.label, **pen)
+        if curve.inclination is not None:
+            formed = inside & (curve.t > 0.05)
+            lower.plot(curve.t[formed], curve.inclination[formed], **pen)
+
+
+def report(run, known):
+    t = run.time
+    for curve in known:
+        if not curve.exact:
+            continue
+        d = literature.difference(t, run.series["taylor_inertia"], curve.t, curve.d)
+        angle = literature.difference(t, run.series["inclination"], curve.t, curve.inclination)
+        log.info(f"{run.name}: largest difference from the {curve.label}: {d:.2e} in D, {angle:.2e} degrees")
+
+
+@figure
+def refinement(runs, axes=None, *, steady: list[float] | None = None, deformation: Deformation = "taylor_inertia"):
+    """D over time with a mark at every change of the mesh, and the number of control points (the paper's Figure 14).
+
+    Of several runs of one scene, the difference of D from the first one stands below, at the times of snapshots.
+
+    steady: steady values of D in the literature, drawn at the right
+    deformation: which Taylor parameter"""
+    for run in runs:
+        run.require("taylor_inertia", "taylor_surface")
+    compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
+    heights = [3, 1.5, 1.8] if compares else [3, 1.8]
+    figure, axes = style.panels(axes, len(heights), 1, 6.4, 1.25 * sum(heights), sharex=True, height_ratios=heights)
+    upper, lower = axes[0], axes[-1]
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        t, values, points = run.time, run.series[deformation], run.series["n_control_points"]
+        changes = numpy.flatnonzero(numpy.diff(points)) + 1
+        upper.plot(t, values, color=color,
+                   label=f"{run.name}: {points[0]:.0f} → {points[-1]:.0f} control points, D = {values[-1]:.4f}")
+        upper.plot(t[changes], values[changes], "o", color=color, markerfacecolor="white", markersize=4.5)
+        lower.step(t, points, where="post", color=color)
+        if compares and run is not runs[0]:
+            both, mine, firsts = numpy.intersect1d(t.round(9), runs[0].time.round(9), return_indices=True)
+            axes[1].plot(both, 1e3 * (values[mine] - runs[0].series[deformation][firsts]), "o-", markersize=3,
+                         color=color)
+        log.info(f"{run.name}: {len(changes)} changes of the mesh, D({t[-1]:g}) = {values[-1]:.6f}, "
+                 f"{points[-1]:.0f} control points")
+    end = max(run.time[-1] for run in runs)
+    for value in steady or []:
+        upper.plot([0.97 * end, 1.03 * end], [value] * 2, color=style.INK)
+    if steady:
+        upper.plot([], [], color=style.INK, label="literature: " + ", ".join(f"{value:g}" for value in steady))
+    if compares:
+        axes[1].axhline(0, color=style.RUNS[0])
+        axes[1].set_ylabel("10³ (D − D of\nthe first)")
+    upper.set_ylabel("Taylor parameter D")
+    upper.set_ylim(bottom=0)
+    upper.legend(loc="lower right")
+    lower.set_ylabel("control points")
+    lower.set_ylim(bottom=0)
+    lower.set_xlabel(time_label(runs))
+    return figure
+
+
+def scene(run):
+    """Returns the sections of the deck that do not depend on the mesh."""
+    return [run.deck.get(name) for name in ("Flow", "Particle", "Membrane", "Tube")]

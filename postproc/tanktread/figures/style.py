@@ -1,0 +1,74 @@
+"""The look of the figures, and the axes that they are drawn in."""
+
+import pathlib
+
+import matplotlib.pyplot as plt
+import numpy
+from matplotlib.figure import FigureBase
+
+from ..mistakes import Mistake, expect
+
+INK = "#22272e"      # text and axes
+FAINT = "#8a929c"    # literature, guides
+GRID = "#e4e7eb"
+RUNS = ["#0b6fb8", "#d1622b", "#2d8a57", "#8452a1", "#b8860b"]  # one per run, distinct to colour-blind readers too
+MARKS = ["o", "s", "^", "D", "v", "P"]                          # one per source in the literature
+FIELD = "viridis"                                               # colour map of a field without sign
+SIGNED = "RdBu_r"                                               # colour map of a field with a sign
+TIME = "copper_r"                                               # colour map of times
+
+STYLE = {
+    "figure.dpi": 150, "figure.constrained_layout.use": True, "font.size": 9.5, "text.color": INK,
+    "axes.labelcolor": INK, "axes.edgecolor": FAINT, "axes.linewidth": 0.7, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "axes.titlesize": 10,
+    "axes.titlelocation": "left", "grid.color": GRID, "grid.linewidth": 0.7, "xtick.color": INK, "ytick.color": INK,
+    "xtick.major.width": 0.7, "ytick.major.width": 0.7, "legend.frameon": False, "legend.fontsize": 8.5,
+    "lines.linewidth": 1.6,
+}
+
+
+def canvas(axes, width, height):
+    """Returns the figure for panels of different sizes: a new one of this size (inches), or the given (Sub)Figure."""
+    if axes is None:
+        return plt.figure(figsize=(width, height))
+    if isinstance(axes, FigureBase):
+        return axes
+    raise Mistake("this figure arranges panels of different sizes: give it a Figure or SubFigure instead of axes")
+
+
+def panels(axes, rows, columns, width, height, **layout):
+    """Returns a figure and its axes (rows * columns,): new ones, or those given, or new ones in a given (Sub)Figure."""
+    if axes is None or isinstance(axes, FigureBase):
+        figure = canvas(axes, width, height)
+        return figure, figure.subplots(rows, columns, squeeze=False, **layout).ravel()
+    axes = numpy.atleast_1d(axes).ravel()
+    expect(len(axes) == rows * columns, f"this figure needs {rows * columns} axes, and is given {len(axes)}")
+    return axes[0].figure, axes
+
+
+def draw(function, *arguments):
+    """Returns function(*arguments), a figure, drawn in the style of this package."""
+    with plt.rc_context(STYLE):
+        return function(*arguments)
+
+
+def save(figure, path):
+    """Writes a figure as PNG, PDF, SVG and so on by its name, or its animation as GIF. Makes the folder."""
+    path = pathlib.Path(path)
+    path = path if path.suffix or not path.name else path.with_name(path.name + ".png")
+    film = getattr(figure, "film", None)
+    kinds = ["gif"] if film else sorted(figure.canvas.get_supported_filetypes())
+    expect(path.suffix[1:].lower() in kinds, f"the name of a figure ends in .{', .'.join(kinds)}, but it is {path}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if film:
+            film.save(path, writer="pillow", fps=film.rate, dpi=figure.dpi)
+        else:
+            with plt.rc_context(STYLE):
+                figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
+    except OSError as error:
+        raise Mistake(f"{path} cannot be written: {error.strerror}") from None
+    except ValueError as error:
+        raise Mistake(f"the figure cannot be drawn: {error}") from None
+    plt.close(figure)
+    print(path)

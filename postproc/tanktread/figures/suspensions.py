@@ -1,0 +1,244 @@
+"""Figures of suspensions: stress, viscosity, and drift over many turns."""
+
+import pathlib
+
+import numpy
+
+from ..mistakes import expect, log
+from ..results import time_label
+from ..runs import Study
+from ..studies.sweep import Sweep
+from . import style
+from .register import figure
+
+SERIES = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
+DRIFTS = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ − 1", "energy": "energy / its mean − 1",
+          "taylor_inertia": "D", "inclination": "inclination / degrees"}
+CA = "Particles/capsule/Membrane/capillary number"
+
+
+@figure
+def rheology(runs, axes=None):
+    """Intrinsic viscosity and normal stress differences of a dilute suspension in simple shear, over time.
+
+    [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V), N2 = (S_33 − S_22)/(μ γ̇ V) from the stresslet S, per volume of
+    particles in a volume of suspension; flow along x1, its gradient along x3. A rigid sphere has [η] = 5/2."""
+    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        viscosity, n1, n2 = stresses(run)
+        upper.plot(run.time, viscosity, color=color, label=run.name)
+        lower.plot(run.time, n1, color=color, label="N₁" if run is runs[0] else None)
+        lower.plot(run.time, n2, color=color, linestyle=(0, (4, 2)), label="N₂" if run is runs[0] else None)
+        log.info(f"{run.name}, t = {run.time[-1]:g}: [η] = {viscosity[-1]:.5f}, N1 = {n1[-1]:.5f}, N2 = {n2[-1]:.5f}")
+    upper.set_ylabel("intrinsic viscosity [η]")
+    upper.legend()
+    lower.axhline(0, color=style.FAINT, linewidth=0.8)
+    lower.set_ylabel("normal stress differences / (μ γ̇ φ)")
+    lower.set_xlabel(time_label(runs))
+    lower.legend()
+    return figure
+
+
+def stresses(run):
+    """Returns [η], N1 and N2 over time (rows,), without a unit."""
+    flow = run.value("Flow/type")
+    expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
+    run.require("stresslet_13")
+    volume = run.series["volume"][0] if "volume" in run.series else run.snapshots()[0].volume()
+    unit = run.value("Flow/viscosity", 1) * run.rate[0] * volume
+    s11, s22, s33, s13 = (run.series[f"stresslet_{k}"] / unit for k in ("11", "22", "33", "13"))
+    return s13, s11 - s33, s33 - s22
+
+
+@figure
+def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
+    """Effective viscosity and normal stress differences of a lattice of particles over strain, with their averages.
+
+    Averages have a standard error by blocks: the spread of the means of equal parts of the strain, over the root of
+    their number.
+
+    from_: strain at which averages begin
+    blocks: number of parts of an average"""
+    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
+    for run, color in zip(runs, style.RUNS * len(runs)):
+        run.require(*SERIES)
+        strain, words = run.time, []
+        label = f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
+        for name, symbol in SERIES.items():
+            values, is_upper = run.series[name], name == "relative_viscosity"
+            axis, line = (upper, "-") if is_upper else (lower, "-" if name.endswith("1") else "--")
+            axis.plot(strain, values, color=color, linestyle=line,
+                      label=label if is_upper else symbol if run is runs[0] else None)
+            mean, error = average(strain, values, from_, blocks)
+            if numpy.isfinite(mean):
+                axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
+            words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
+        log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}")
+    upper.set_ylabel("effective viscosity μ_eff/μ")
+    upper.legend()
+    lower.axhline(0, color=style.FAINT, linewidth=0.8)
+    lower.set_ylabel("normal stress differences")
+    lower.set_xlabel("strain")
+    lower.legend()
+    return figure
+
+
+def average(strain, values, first, blocks):
+    """Returns the mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal
+    blocks."""
+    if strain[-1] <= first:
+        return numpy.nan, numpy.nan
+    integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(strain) * (values[1:] + values[:-1]) / 2)])
+    ends = numpy.linspace(first, strain[-1], blocks + 1)
+    means = numpy.diff(numpy.interp(ends, strain, integral)) / numpy.diff(ends)
+    return means.mean(), means.std(ddof=1) / numpy.sqrt(blocks)
+
+
+@figure
+def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
+              jobs: int = 1, directory: pathlib.Path | None = None):
+    """Relative viscosity of a sheared suspension against its volume fraction, with standard errors by blocks.
+
+    A curve for each capillary number, from a sweep of runs that are kept in results/<study>. Below it stands
+    (μ_eff/μ - 1)/φ, and at φ = 0 the intrinsic viscosity of one capsule, to which the straight line should go. The
+    errors do not contain what another start or more particles in the cell would change.
+
+    single: deck of one capsule
+    from_: strain at which averages begin
+    blocks: number of parts of an average
+    jobs: runs at a time
+    directory: of the table and, under runs/, of results (default: results/<study>)"""
+    directory = directory or pathlib.Path("results") / pathlib.Path(study).stem
+    directory.mkdir(parents=True, exist_ok=True)
+    made = Study(directory=directory / "runs", jobs=jobs)
+    runs = Sweep(study, made)
+    expect(all(CA in row for row in runs.rows), f"{study} varies or sets no {CA}")
+    runs.make()
+    runs.write(directory)
+    rows: dict = {}
+    for outcome, settings in zip(runs.outcomes, runs.rows):
+        if row := averages(outcome, from_, blocks):
+            rows.setdefault(settings[CA], []).append(row)
+    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
+    for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
+        alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
+        fraction, mean, error = numpy.array(sorted(found)).T
+        draw_viscosity(upper, lower, color, f"Ca = {ca:g}", alone, fraction, mean, error)
+        log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m,
+                                              e in zip(fraction, mean, error)))
+        if len(fraction) > 2:
+            slope, off = straight_line(fraction, (mean - 1) / fraction, error / fraction)
+            log.info(f"  per volume fraction, extrapolated to 0: {slope:.3f} ± {off:.3f}; one capsule: {alone:.4f}")
+    upper.set_ylabel("relative viscosity μ_eff/μ")
+    upper.legend()
+    lower.set_ylabel("(μ_eff/μ − 1)/φ; at 0: one capsule")
+    lower.set_xlabel("volume fraction φ")
+    lower.set_xlim(left=-0.005)
+    return figure
+
+
+def averages(outcome, first, blocks):
+    """Returns volume fraction, mean and standard error of a run, or None of one that did not end beyond `first`."""
+    if not outcome.done:
+        log.info(f"left out: {outcome.message.removeprefix('tanktread: ')}")
+        return None
+    series, strain = outcome.series, outcome.run.time
+    if strain[-1] <= first:
+        log.info(f"left out: {outcome.directory.name} ends at strain {strain[-1]:g}, before --from {first:g}")
+        return None
+    if series["contact_impulse"][-1] > 0:
+        log.info(f"{outcome.directory.name}, φ = {series['volume_fraction'][0]:.3g}: "
+                 f"the limiter's impulse is {series['contact_impulse'][-1]:.3g}")
+    return (series["volume_fraction"][0], *average(strain, series["relative_viscosity"], first, blocks))
+
+
+def intrinsic(study, single, ca, one):
+    """Returns [η] of one capsule, on the mesh and to the strain of the suspension's run `one`."""
+    deck = one.run.deck
+    outcome = study.run(single, {
+        "Membrane/capillary number": ca, "Time/final time": deck["Time"]["final time"],
+        "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]})
+    expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
+    return stresses(outcome.run)[0][-1]
+
+
+def straight_line(x, y, error):
+    """Returns the value at 0 of the straight line through y (n,) and its standard error, from the errors of y."""
+    table = numpy.column_stack([numpy.ones_like(x), x]) / error[:, None]
+    covariance = numpy.linalg.inv(table.T @ table)
+    return (covariance @ table.T @ (y / error))[0], covariance[0, 0] ** 0.5
+
+
+def draw_viscosity(upper, lower, color, label, alone, fraction, mean, error):
+    look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
+    upper.errorbar(fraction, mean, error, label=label, **look)
+    upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
+    lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
+    lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
+
+
+@figure
+def drift(run, axes=None, *, from_: int = 10):
+    """Whether a run over many turns of a membrane drifts: series against the turns, and the mean of each turn.
+
+    A turn is one of `phase`. A straight line through the means gives the change over all turns from --from on, with its
+    standard error. If the flow has a history that ends at rest, the steps in which the energy then rises are counted.
+
+    from_: first turn of the straight line"""
+    expect(from_ >= 0, f"--from needs a turn, but is given {from_}")
+    run.require("phase", *DRIFTS)
+    stop, rest = flow_of(run)
+    flows = run.series["time"] <= stop
+    time, phase = run.series["time"][flows], run.series["phase"][flows]
+    expect(phase[-1] / 360 >= from_ + 3,
+           f"{run.directory} has {max(phase[-1] / 360, 0):.1f} turns; a line from turn {from_} on needs {from_ + 3}: "
+           "a later Time/final time, or --from an earlier one")
+    figure, axes = style.panels(axes, len(DRIFTS), 1, 6.4, 7.6, sharex=True)
+    log.info(f"{phase[-1] / 360:.1f} turns, {len(time)} steps; "
+             f"the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
+    for (name, label), plot in zip(DRIFTS.items(), axes):
+        values = run.series[name][flows]
+        means = turns(time, values, phase)
+        scale = {"area": values[0], "energy": means.mean()}.get(name)
+        if scale:
+            values, means = values / scale - 1, means / scale - 1
+        change, error = line(means, from_)
+        later, within = means[from_:], values[(phase > 360 * from_) & ~numpy.isnan(values)]
+        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; "
+                 f"their means {later.min():.6g} to {later.max():.6g}, "
+                 f"within turns {within.min():.6g} to {within.max():.6g}")
+        plot.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
+        plot.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
+        plot.set_ylabel(label, fontsize=8)
+    axes[-1].set_xlabel("turns of the membrane")
+    energy = run.series["energy"][run.series["time"] >= rest]
+    if len(energy) > 1:
+        log.info(f"without flow the energy goes from {energy[0]:.6g} to {energy[-1]:.6g} in {len(energy)} steps; "
+                 f"it rises in {(numpy.diff(energy) > 0).sum()}")
+    return figure
+
+
+def turns(time, values, phase):
+    """Returns means in time over whole turns of the phase. Rows with NaN, where a series is undefined, are left out."""
+    ends = numpy.interp(360 * numpy.arange(phase.max() // 360 + 1), phase, time)
+    time, values = time[~numpy.isnan(values)], values[~numpy.isnan(values)]
+    whole = numpy.concatenate([[0], numpy.cumsum((values[1:] + values[:-1]) / 2 * numpy.diff(time))])
+    return numpy.diff(numpy.interp(ends, time, whole)) / numpy.diff(ends)
+
+
+def line(means, first):
+    """Returns the change of the straight line through the means over all turns from `first` on, and its standard
+    error."""
+    number = numpy.arange(first, len(means))
+    (slope, _), covariance = numpy.polyfit(number, means[first:], 1, cov=True)
+    return slope * (len(number) - 1), covariance[0, 0] ** 0.5 * (len(number) - 1)
+
+
+def flow_of(run):
+    """Returns the times at which the flow begins to end and from which it is at rest; infinity if its history does not
+    end at rest."""
+    amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
+    on = numpy.flatnonzero(amplitudes)
+    if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):
+        return times[on[-1]], times[on[-1] + 1]
+    return numpy.inf, numpy.inf

@@ -1,0 +1,225 @@
+"""Figures of particles in tubes."""
+
+import numpy
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+
+from ..files import arrays_of
+from . import style
+from .draw import VIEW, draw_surface, section, share_window
+from .register import figure
+from .style import plt
+
+STEP = 0.2    # between contours, in mean velocities
+FLOOR = 1e-4  # smallest distance from the largest velocity that is drawn: the tolerances of a run allow for it
+TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 20.0]
+PANELS = [("migration_velocity", "migration velocity / vₘ"), ("velocity_x1", "velocity along the tube / vₘ"),
+          ("tank_treading_velocity", "tank-treading velocity / vₘ"),
+          ("disturbed_pressure_drop", "disturbed pressure drop / (μ vₘ/R$_T$)")]
+
+
+@figure
+def duct(runs, axes=None, *, no_path: bool = False):
+    """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across it.
+
+    no_path: without the path of the centroid"""
+    ducts = [duct_of(run) for run in runs]
+    top = max(d["maximum"][2] / d["mean_velocity"] for d in ducts)
+    outlines = numpy.concatenate([d["outline"] for d in ducts])
+    margin = 0.02 * numpy.ptp(outlines, axis=0).max()
+    low, high = outlines.min(0) - margin, outlines.max(0) + margin  # of every panel: one scale
+    levels = numpy.append(numpy.arange(0, top, STEP), top)
+    figure, axes = style.panels(axes, 1, len(ducts), 3.9 * len(ducts) + 0.9, 4.0)
+    for axis, d, run in zip(axes, ducts, runs):
+        filled = draw_section(axis, d, levels)
+        if not no_path:
+            draw_path(axis, run, d["radius"])
+        axis.set_xlim(low[0], high[0])
+        axis.set_ylim(low[1], high[1])
+        axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
+    axes[0].set_ylabel("x₃ / R$_T$")
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
+    figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
+                    ticks=levels[:-1:2], spacing="proportional")
+    return figure
+
+
+def duct_of(run):
+    """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
+    arrays = arrays_of(run.directory / "duct.h5", "give the directory of a run in a tube")
+    for name in "outline", "x2", "x3":
+        arrays[name] = arrays[name] / arrays["radius"]
+    arrays["maximum"][:2] /= arrays["radius"]
+    return arrays
+
+
+def draw_section(axis, d, levels):
+    """Draws contours up to the wall, and returns them. The grid's edge is clipped by the wall's polygon."""
+    velocity = spread(d["velocity"] / d["mean_velocity"])
+    filled = axis.contourf(d["x2"], d["x3"], velocity, levels, cmap=style.FIELD)
+    lines = axis.contour(d["x2"], d["x3"], velocity, levels[1:-1], colors="white", linewidths=0.5, alpha=0.7)
+    wall = plt.Polygon(d["outline"], facecolor="none", edgecolor=style.INK, linewidth=1.6)
+    axis.add_patch(wall)
+    for artist in filled.collections + lines.collections if hasattr(filled, "collections") else [filled, lines]:
+        artist.set_clip_path(wall)
+    axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=9, linestyle="none", label="largest velocity")
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.spines[:].set_visible(False)
+    axis.set_xlabel("x₂ / R$_T$")
+    return filled
+
+
+def spread(velocity):
+    """Returns the velocities with values beyond the wall, extrapolated from the inside, so that contours reach the
+    wall."""
+    v = velocity.copy()
+    for _ in range(2):
+        padded = numpy.pad(v, 2, constant_values=numpy.nan)
+        middle = slice(2, -2)
+        guesses = []
+        for d2, d3 in (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1):
+            near = padded[2 + d3:padded.shape[0] - 2 + d3, 2 + d2:padded.shape[1] - 2 + d2]
+            far = numpy.roll(padded, (-2 * d3, -2 * d2), (0, 1))[middle, middle]
+            guesses.append(2 * near - far)
+        guesses = numpy.array(guesses)
+        known = numpy.isfinite(guesses)
+        mean = numpy.where(known, guesses, 0).sum(0) / numpy.maximum(known.sum(0), 1)
+        v = numpy.where(numpy.isfinite(v), v, numpy.where(known.any(0), numpy.minimum(mean, 0), numpy.nan))
+    return v
+
+
+def draw_path(axis, run, radius):
+    if "centroid_x2" not in run.series:
+        return
+    x2, x3 = (run.series[name] / radius for name in ("centroid_x2", "centroid_x3"))
+    axis.plot(x2, x3, color=style.RUNS[1], linewidth=1.6, label="path of the centroid")
+    axis.plot(x2[0], x3[0], color=style.RUNS[1], marker="o", markersize=4)
+
+
+@figure
+def tube(runs, axes=None, *, times: list[float] = TIMES):
+    """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
+
+    times: simulated times of the shapes"""
+    ducts = [in_tube(run) for run in runs]
+    figure = style.canvas(axes, 11.5, 4.4 * len(runs))
+    for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
+        shots = shots_of(run, times)
+        colours = plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))
+        upper, lower = part.subfigures(2, 1, height_ratios=[0.45, 0.55])
+        largest = max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots)
+        norm, unit = Normalize(0, largest), run.value("Flow/viscosity", 1) * run.rate[0]
+        rows = numpy.atleast_1d(upper.subplots(1, len(shots)))
+        for axis, shot, colour in zip(rows, shots, colours):
+            draw_surface(axis, shot, "traction", norm, style.FIELD, *VIEW, pixels=360, triad=shot is shots[0])
+            axis.set_title(f"t = {shot.time:.3g}", color=colour, loc="center")
+        share_window(rows)
+        part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        left, middle = lower.subplots(1, 2, width_ratios=[2.1, 1])
+        along(left, run, d, shots, colours)
+        across(middle, run, d, shots, colours)
+        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=rows,
+                       label="traction / (μ vₘ/R$_T$)", shrink=0.8)
+    return figure
+
+
+def in_tube(run):
+    """Returns the arrays of the duct of a run, after a check that the run follows a particle."""
+    run.require("centroid_x1")
+    return duct_of(run)
+
+
+def shots_of(run, times):
+    """Returns the saved steps nearest to the times, each once."""
+    found = {shot.path: shot for shot in (run.snapshot_at(time) for time in times
+                                          if time <= run.series["time"][-1] * (1 + 1e-9))}
+    return list(found.values())
+
+
+def tube_section(run, d, shot, across):
+    """Returns the section (pieces, 2, 2) of the particle in the plane x_{across+1} = centroid and the centroid (3,),
+    over R_T."""
+    c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
+    return section(shot, c[across], across) / d["radius"], c / d["radius"]
+
+
+def along(axis, run, d, shots, colours):
+    """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
+    along x1."""
+    place = 0.0
+    for shot, colour in zip(shots, colours):
+        pieces, c = tube_section(run, d, shot, 1)
+        axis.add_collection(LineCollection(pieces - [c[0] - place, 0], colors=[colour], linewidths=1.6,
+                                           capstyle="round"))
+        axis.plot(place, c[2], marker=".", color=colour, markersize=4)
+        place += numpy.ptp(shot.points[:, 0]) / d["radius"] + 0.12
+    low, high = wall_heights(d["outline"], c[1])
+    for height in low, high:
+        axis.axhline(height, color=style.INK, linewidth=1.4)
+    axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
+    axis.set_aspect("equal")
+    axis.autoscale_view()
+    axis.set_xlabel("x₁, flow to the right")
+    axis.set_ylabel("x₃ / R$_T$")
+    axis.set_xticks([])
+    axis.grid(False)
+    axis.set_title("section x₂ = centroid")
+
+
+def wall_heights(outline, x2):
+    """Returns the lowest and highest x3 at which the line of given x2 meets the wall."""
+    a, b = outline[:-1], outline[1:]
+    cut = (a[:, 0] - x2) * (b[:, 0] - x2) <= 0
+    share = (x2 - a[cut, 0]) / numpy.where(b[cut, 0] == a[cut, 0], 1, b[cut, 0] - a[cut, 0])
+    heights = a[cut, 1] + share * (b[cut, 1] - a[cut, 1])
+    return heights.min(), heights.max()
+
+
+def across(axis, run, d, shots, colours):
+    """Draws sections in the plane x1 = centroid inside the wall."""
+    axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
+    for shot, colour in zip(shots, colours):
+        pieces, _ = tube_section(run, d, shot, 0)
+        axis.add_collection(LineCollection(pieces, colors=[colour], linewidths=1.6, capstyle="round"))
+    axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.set_xlabel("x₂ / R$_T$")
+    axis.set_ylabel("x₃ / R$_T$")
+    axis.set_title("section x₁ = centroid")
+
+
+@figure
+def tube_motion(runs, axes=None):
+    """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
+    ducts = [in_tube(run) for run in runs]
+    figure, axes = style.panels(axes, 2, 3, 12.5, 6.6)
+    for run, d, colour in zip(runs, ducts, style.RUNS):
+        speed, radius = d["mean_velocity"], d["radius"]
+        s = run.series
+        time = run.time
+        axes[0].plot(*d["outline"].T, color=colour, linewidth=1)
+        axes[0].plot(s["centroid_x2"] / radius, s["centroid_x3"] / radius, color=colour, label=run.name)
+        axes[0].plot(s["centroid_x2"][0] / radius, s["centroid_x3"][0] / radius, color=colour, marker="o",
+                     markersize=3.5)
+        axes[0].plot(*d["maximum"][:2], color=colour, marker="+", markersize=8)
+        off = numpy.hypot(s["centroid_x2"] / radius - d["maximum"][0], s["centroid_x3"] / radius - d["maximum"][1])
+        axes[1].semilogy(time, numpy.maximum(off, FLOOR), color=colour)
+        for axis, (name, label) in zip(axes[2:], PANELS):
+            scale = run.value("Flow/viscosity", 1) * speed / radius if "pressure" in name else speed
+            axis.plot(time[1:], s[name][1:] / scale, color=colour)
+            axis.set_title(label)
+    axes[0].set_aspect("equal")
+    axes[0].set_title("paths of the centroid; + largest velocity")
+    axes[0].set_xlabel("x₂ / R$_T$")
+    axes[0].set_ylabel("x₃ / R$_T$")
+    axes[1].set_ylim(bottom=FLOOR)
+    axes[1].set_title("distance from the largest velocity / R$_T$")
+    for axis in axes[1:]:
+        axis.set_xlabel("t vₘ / R$_T$")
+    for axis in axes[2:]:
+        axis.set_xlim(left=0)
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+    return figure

@@ -1,0 +1,112 @@
+"""Axisymmetric vesicles of least energy at rest, by Legendre polynomials."""
+
+import numpy
+from numpy.polynomial import legendre
+from scipy import optimize
+
+from ..mistakes import expect, log
+
+DEGREES = 16, 30, 40  # of the polynomials; each solution starts from that of the degree before
+ROUND = 1e-2  # by which the extents across the axis may differ
+COSINE, WEIGHT = legendre.leggauss(400)
+
+
+class Shape:
+    """exp(sum c_k P_2k): values, first and second derivatives of the polynomials at the points, and what is measured of
+    a surface, by complex numbers too."""
+
+    def __init__(self, degree):
+        self.bases = [numpy.array([legendre.legval(COSINE, legendre.legder(numpy.eye(l + 1)[l], order))
+                                   if l >= order else 0 * COSINE
+                                   for l in range(0, degree + 1, 2)]).T for order in (0, 1, 2)]
+        self.size = degree // 2 + 1
+
+    def radius(self, c):
+        return numpy.exp(self.bases[0] @ c)
+
+    def measures(self, c):
+        """Returns area, volume, the integral of twice the mean curvature, and half the integral of its square: shape
+        (4,)."""
+        _, first, second = (basis @ c for basis in self.bases)
+        r, sine2 = self.radius(c), 1 - COSINE**2
+        slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
+        g = numpy.sqrt(r**2 + slope2)
+        curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
+        ring = 2 * numpy.pi * WEIGHT * r * g
+        return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
+
+    def gradients(self, c):
+        """Returns the derivatives of the measures by the coefficients, shape (4, size), exact to round-off (complex
+        step)."""
+        return numpy.array([self.measures(c + 1e-30j * one).imag / 1e-30 for one in numpy.eye(self.size)]).T
+
+
+class Energy:
+    """Of a run's membrane, a function of the measures, and its derivatives by them."""
+
+    def __init__(self, run):
+        def of(key, default=0.0):
+            return float(run.value(f"Membrane/{key}", default))
+
+        expect(run.value("Membrane/law", "") == "surface tension"
+               and run.value("Membrane/bending reference", "") == "flat",
+                     f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
+        expect(run.summary, f"{run.name} has not come to its end")
+        last = [run.series[f"length_x{k}"][-1] for k in (1, 2)]
+        expect(abs(last[0] / last[1] - 1) < ROUND,
+                     f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not "
+                     "axisymmetric about x3")
+        expect(run.value("Flow/type", "") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
+        numbers = run.summary["numbers"]
+        self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
+        names = "surface tension", "bending modulus", "spontaneous curvature"
+        self.tension, self.bending, self.curvature = (of(name) for name in names)
+        self.of_area = of("global area dilatation") * self.tension / self.area
+        self.of_leaves = numpy.pi * of("area difference modulus") * self.bending / self.area
+        self.leaves = of("area difference") * 4 * numpy.sqrt(numpy.pi * self.area)
+        expect(self.of_leaves == 0 or self.leaves > 0, f"{run.name}: give Membrane/area difference")
+
+    def __call__(self, measures):
+        area, _, leaves, bent = measures
+        return (self.tension * area + self.of_area / 2 * (area - self.area) ** 2
+                + self.of_leaves / 2 * (leaves - self.leaves) ** 2
+                + self.bending * (bent - self.curvature * leaves + self.curvature**2 / 2 * area))
+
+    def by_measures(self, measures):
+        area, _, leaves, _ = measures
+        return numpy.array([self.tension + self.of_area * (area - self.area) + self.bending * self.curvature**2 / 2, 0,
+                            self.of_leaves * (leaves - self.leaves) - self.bending * self.curvature, self.bending])
+
+
+@numpy.errstate(all="ignore")  # trial shapes of the search may overflow
+def at_rest(energy, aspect):
+    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid whose
+    axis is `aspect` times its equator."""
+    first = Shape(DEGREES[0])
+    logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
+    c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])
+    c[0] += numpy.log(energy.volume / first.measures(c)[1]) / 3
+    found = optimize.minimize(lambda c: energy(first.measures(c)), c,
+                              jac=lambda c: energy.by_measures(first.measures(c)) @ first.gradients(c), method="SLSQP",
+                              constraints={"type": "eq", "fun": lambda c: first.measures(c)[1] / energy.volume - 1,
+                                           "jac": lambda c: first.gradients(c)[1] / energy.volume},
+                              options={"maxiter": 500, "ftol": 1e-12})
+    c, values = found.x, []
+    slopes = first.gradients(c)
+    pressure = energy.by_measures(first.measures(c)) @ slopes @ slopes[1] / (slopes[1] @ slopes[1])
+    for degree in DEGREES[1:]:
+        now = Shape(degree)
+
+        def balance(y):
+            gradients, measures = now.gradients(y[:-1]), now.measures(y[:-1])
+            return numpy.append(energy.by_measures(measures) @ gradients - y[-1] * gradients[1],
+                                measures[1] - energy.volume)
+
+        solved = optimize.root(balance, numpy.append(numpy.pad(c, (0, now.size - len(c))), pressure), tol=1e-13)
+        expect(abs(solved.fun).max() < 1e-8 * energy.bending,
+               f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
+        c, pressure = solved.x[:-1], solved.x[-1]
+        values.append(energy(now.measures(c)))
+    r, sine = now.radius(c), numpy.sqrt(1 - COSINE**2)
+    log.info(f"axisymmetric: energy {values[-1]:.9g}, of degree {DEGREES[1]} {values[0] - values[-1]:+.1e}")
+    return numpy.array([r * sine, r * COSINE]), values[-1]

@@ -1,0 +1,27 @@
+"""Interpolation of series and the differences of two of them."""
+
+import numpy
+
+
+def interpolated(t, values, at, order=6):
+    """Returns values(t) at the times `at` within t, by polynomials through `order` points."""
+    result = []
+    for time in at:
+        start = min(max(int(numpy.searchsorted(t, time)) - order // 2, 0), max(len(t) - order, 0))
+        nodes = t[start:start + order]
+        weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
+        result.append(float(numpy.dot(weights, values[start:start + order])))
+    return numpy.array(result)
+
+
+def difference(t, values, curve_t, curve_values):
+    """Returns the largest |values - curve| over the times that both cover. The one with more times is interpolated to
+    the times of the other. Rows with NaN, where a series is undefined, are left out. The result is 0 if no times are
+    left."""
+    series = [(numpy.asarray(times)[~numpy.isnan(found)], numpy.asarray(found)[~numpy.isnan(found)])
+              for times, found in ((t, values), (curve_t, curve_values))]
+    (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda one: -len(one[0]))
+    if not len(coarse_t):
+        return 0.0
+    common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])
+    return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))

@@ -1,0 +1,60 @@
+"""Errors that are reported in one sentence, and the frame that all commands of the package share."""
+
+import importlib
+import logging
+import pathlib
+import signal
+import sys
+
+log = logging.getLogger("tanktread")  # results that a figure or study prints as text; a command shows them
+
+
+class Mistake(ValueError):
+    """An error in what the user gave: a file, a key, a series that was not recorded. Its text is one sentence."""
+
+
+def expect(holds, message):
+    """Raises Mistake with the message unless `holds`."""
+    if not holds:
+        raise Mistake(message)
+
+
+def optional(module, purpose, package=None):
+    """Returns an imported module that only some functions need. Raises Mistake with its name if it is not installed."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        name = package or module.split(".")[0]
+        raise Mistake(f"{purpose} needs {name}, which {sys.executable} does not have: "
+                      f"apt install python3-{name}, or pip install {name}") from None
+
+
+def progress(text):
+    """Prints a line of progress on standard error: in place on a terminal, where "" ends it; as lines otherwise."""
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+    elif text:
+        print(text, file=sys.stderr, flush=True)
+
+
+class _Lines(logging.Handler):
+    """Prints what is logged on the present standard output."""
+
+    def emit(self, record):
+        print(record.getMessage(), flush=True)
+
+
+def answer(main):
+    """Runs the main function of a command and ends the process: exit code 2 with one sentence if the input is wrong."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader such as head may stop early
+    log.setLevel(logging.INFO)
+    log.handlers[:] = [_Lines()]
+    try:
+        sys.exit(main())
+    except Mistake as mistake:
+        progress("")
+        print(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(str(mistake).split())}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        sys.exit("stopped: the same command goes on from here")

@@ -1,0 +1,25 @@
+"""Lists what a run recorded, or prints some of its series."""
+
+import argparse
+
+from .mistakes import log
+from .runs import run
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", help="directory of a run's results, or a deck")
+    parser.add_argument("-s", "--series", nargs="+", metavar="NAME",
+                        help="print these series, one line per step, instead of the list")
+    arguments = parser.parse_args()
+    result = run(arguments.results)
+    if arguments.series:
+        result.require(*arguments.series)
+        for values in zip(*(result.series[name] for name in arguments.series)):
+            log.info(" ".join(f"{value:.16g}" for value in values))
+        return 0
+    log.info(f"{result.name}: {len(result.series['time'])} rows, {len(result.snapshots())} snapshots")
+    for name, values in sorted(result.series.items()):
+        last = values[-1] if len(values) else float("nan")
+        log.info(f"  {name:24} {last:14.7g}  {result.units[name]:14}  {result.descriptions[name]}")
+    return 0

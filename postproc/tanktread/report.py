@@ -1,0 +1,185 @@
+"""One HTML file, which opens without a network, about a run, a sweep or a fit: the particle in three dimensions to turn
+and to play, curves with values under the pointer, deck, plan, phases, warnings, expectations, what to cite.
+
+    tanktread-report results/shear_neo_hookean                    # results/shear_neo_hookean/report.html
+    tanktread-report results/study -o sweep.html                  # of a sweep, or of a fit
+"""
+
+import argparse
+import base64
+import gzip
+import json
+import pathlib
+
+import h5py
+import numpy
+import yaml
+
+from .mistakes import expect, log
+from .runs import run as run_of
+from .snapshots import DIMENSIONS, evenly
+from .studies.sweep import table
+
+FRAMES = 24            # saved steps at most
+BYTES = 3.4e6          # of shapes, before they are packed
+CITE = ("J. Maestre, J. Pallares, I. Cuesta, M. A. Scott, A 3D isogeometric BE–FE analysis with dynamic remeshing for "
+        "the simulation of a deformable particle in shear flows, Comput. Methods Appl. Mech. Engrg. 326 (2017), whose "
+        "method tanktread implements and extends")
+FIRST = ["taylor_inertia", "inclination", "velocity_x1", "smallest_gap", "disturbed_pressure_drop", "stresslet_13",
+         "tank_treading_frequency", "drag"]
+
+
+def packed(array):
+    return base64.b64encode(array.tobytes()).decode()
+
+
+def shapes(run, field):
+    """Returns saved steps as grids of cells: positions in 16 bits within the box of all of them, normals and the
+    field's magnitude in 8 bits."""
+    shots = run.snapshots()
+    if not shots:
+        return None
+    shots = evenly(shots, FRAMES)
+    field = field or ("traction" if "traction" in shots[-1].fields else next(iter(shots[-1].fields)))
+    expect(field in shots[-1].fields,
+           f"the snapshots hold no field {field}; there are: {', '.join(sorted(shots[-1].fields))}")
+    cells = max(len(shot.cells) for shot in shots)
+    k = next((k for k in (6, 5, 4, 3) if 10 * cells * (k + 1) ** 2 * len(shots) < BYTES), 2)
+    most = max(2, int(BYTES / (10 * cells * (k + 1) ** 2)))
+    shots = evenly(shots, most)
+    low, high = (numpy.array([edge(shot.points, axis=0) for shot in shots]) for edge in (numpy.min, numpy.max))
+    middles = (low + high) / 2  # of each, which a particle in a duct does not leave
+    if run.several and run.value("Flow/type") != "duct":
+        middles[:] = (low.min(0) + high.max(0)) / 2
+    # between nodes a surface may bulge
+    size = 1.05 * max(abs(numpy.concatenate([low - middles, high - middles])).max(), 1e-300)
+    values = [numpy.linalg.norm(shot.sampled(shot.fields[field].reshape(len(shot.points), -1), k), axis=-1)
+              for shot in shots]
+    bottom, top = min(v.min() for v in values), max(v.max() for v in values)
+    frames = []
+    for shot, middle, value in zip(shots, middles, values):
+        places = numpy.round((shot.sampled(shot.points, k) - middle) / size * 32767).astype("<i2")
+        normals = shot.sampled(shot.fields["Normals"], k)
+        normals = numpy.round(normals / numpy.linalg.norm(normals, axis=-1, keepdims=True) * 127).astype("i1")
+        colours = numpy.round((value - bottom) / max(top - bottom, 1e-300) * 255).astype("u1")
+        frames.append({"time": shot.time, "cells": len(shot.cells), "places": packed(places),
+                       "normals": packed(normals), "colours": packed(colours)})
+    scale = run.scale(DIMENSIONS.get(field))[0]
+    return {"k": k, "size": float(size), "field": plain(run.label(field)), "low": float(bottom / scale),
+            "high": float(top / scale), "frames": frames}
+
+
+def plain(label):
+    """Returns a label of matplotlib as plain text."""
+    return label.replace("$_s$", "ₛ").replace("R$_C$", "R_C").replace("$", "")
+
+
+def curves(run):
+    """Returns all series, the most important ones first, of long ones every second, third … row."""
+    first = [name for name in FIRST if name in run.series and _varies(run.series[name])]
+    names = first + sorted(name for name in run.series if name not in first and name != "time")
+    step = max(1, len(run.time) // 600)
+    rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
+    kept = names if len(names) <= 80 else [name for name in names
+                                           if "/" not in name] + [name for name in names
+                                                                  if name.endswith("/taylor_inertia")]
+    return {"x": _list(run.time[rows]), "label": run.time_label,
+            "y": {name: _list(run.series[name][rows]) for name in kept},
+            "units": {name: run.units[name] for name in kept},
+            "meanings": {name: run.descriptions[name] for name in kept}}
+
+
+def _varies(values):
+    defined = values[~numpy.isnan(values)]
+    return len(defined) > 0 and numpy.ptp(defined) > 1e-9
+
+
+def _list(values):
+    return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
+
+
+def _or_dash(value):
+    """Returns a number of the summary, or a dash if it is NaN, which JSON does not have."""
+    return "–" if value != value else value
+
+
+def of_run(directory, field):
+    run = run_of(directory)
+    summary = run.summary or {}
+    status = summary.get("status", "not finished: this is what it has written so far")
+    facts = {"status": status} | {key: run.provenance[key] for key in sorted(run.provenance)}
+    sections = [("Expectations", "table", [["", "name", "value", "expected", "error"]] + [
+        ["✓" if one.get("passed") else "✗", one.get("name"),
+         *(_or_dash(one.get(key)) for key in ("value", "expected", "error"))]
+        for one in summary.get("expect") or []])]
+    sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
+                 for title, word in (("Plan", "plan"), ("Numbers of the scene", "numbers"),
+                                     ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"),
+                                     ("Counts", "counts"))]
+    sections.insert(0, ("Warnings", "list", summary.get("warnings") or []))
+    sections.append(("Deck", "text", run.deck_text))
+    return {"title": run.name, "facts": facts, "shapes": shapes(run, field),
+            "curves": curves(run) if len(run.time) > 1 else None, "sections": sections}
+
+
+def of_sweep(directory):
+    columns, keys = table(directory)
+    single = {name: values for name, values in columns.items() if values.ndim == 1}
+    with h5py.File(directory / "table.h5", "r") as file:
+        status = file["status"].asstr()[:]
+    numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
+    rows = [[*single, "status"]] + [[*(one.item() if hasattr(one, "item") else one for one in row), end] for row,
+                                    end in zip(zip(*single.values()), status)]
+    scatter = {"keys": [key for key in keys if key in numbers],
+               "columns": [name for name in numbers if name not in keys],
+               "values": {name: _list(single[name]) for name in numbers}}
+    facts = {"runs": len(status), "done": int((status == "done").sum()), "keys": ", ".join(keys)}
+    return {"title": f"sweep {directory.resolve().name}", "facts": facts, "scatter": scatter,
+            "sections": [("Runs", "table", rows)]}
+
+
+def of_fit(directory):
+    fits = yaml.safe_load((directory / "fit.yaml").read_text(encoding="utf-8"))
+    rows = [["law", "unknown", "value", "standard error", "chi square", "degrees of freedom", "AIC", "runs"]]
+    for law, fit in fits.items():
+        for name, one in fit["unknown"].items():
+            known = numpy.isfinite(one["error"])
+            rows.append([law, name, one["value"] if known else "not determined", one["error"] if known else "",
+                         *(fit[key] for key in rows[0][4:])])
+    picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
+    return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
+            "sections": [("What the data say", "text", (directory / "fit.txt").read_text(encoding="utf-8")),
+                         ("Unknowns", "table", rows)]}
+
+
+def write(directory, output=None, field=None):
+    """Writes the page about the run, sweep or fit in a directory, and returns its path.
+
+    `output`: the page (default: report.html in the directory). `field`: colours the surface (default: traction)."""
+    from matplotlib import colormaps
+
+    directory = pathlib.Path(directory)
+    kinds = {"run.h5": lambda: of_run(directory, field), "table.h5": lambda: of_sweep(directory),
+             "fit.yaml": lambda: of_fit(directory)}
+    kind = next((name for name in kinds if (directory / name).exists()), None)
+    expect(kind, f"{directory} holds no run, sweep or fit ({', '.join(kinds)})")
+    colours = colormaps["viridis"](numpy.linspace(0, 1, 256))[:, :3]
+    content = kinds[kind]() | {"cite": CITE, "colours": packed(numpy.round(255 * colours).astype("u1"))}
+    data = base64.b64encode(gzip.compress(json.dumps(content, allow_nan=False, default=str).encode())).decode()
+    page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
+    path = pathlib.Path(output or directory / "report.html")
+    title = content["title"].replace("&", "&amp;").replace("<", "&lt;")
+    path.write_text(page.replace("%TITLE%", title).replace("%DATA%", data), encoding="utf-8")
+    return path
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", type=pathlib.Path, help="directory of a run's, a sweep's or a fit's results")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
+                        help="the page (default: report.html in that directory)")
+    parser.add_argument("--field", help="field of the snapshots that colours the surface (default: traction)")
+    arguments = parser.parse_args()
+    path = write(arguments.results, arguments.output, arguments.field)
+    log.info(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
+    return 0

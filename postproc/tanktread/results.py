@@ -1,0 +1,212 @@
+"""Results of a run: its series, deck, summary and snapshots."""
+
+import json
+import pathlib
+import re
+
+import h5py
+import numpy
+
+from . import exports
+from .files import datasets, text_of_hdf, yaml_text
+from .mistakes import Mistake, expect
+from .snapshots import DIMENSIONS, Snapshot
+
+RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
+
+
+class Run:
+    """The results in a directory, in the units of the deck.
+
+    `series`: {name: (rows,)}, one row per recorded step; a series of one of several particles is `<particle>/<name>`.
+    A series is NaN where it is undefined, as its description states. `units`, `descriptions`: by the same names.
+    `deck`: the effective deck as nested dicts; `deck_text`: as text. `provenance`: version, compiler, ranks.
+    `summary`: the content of summary.yaml, or None before the run has ended."""
+
+    def __init__(self, directory):
+        self.directory = pathlib.Path(directory)
+        with h5py.File(self.directory / "run.h5", "r") as file:
+            found = datasets(file["series"])
+            self.series = {name: data[:] for name, data in found.items()}
+            self.units = {name: text_of_hdf(data.attrs["unit"]) for name, data in found.items()}
+            self.descriptions = {name: text_of_hdf(data.attrs["description"]) for name, data in found.items()}
+            self.deck_text = text_of_hdf(file["deck"][()])
+            self.provenance = {key: text_of_hdf(value) for key, value in file["provenance"].attrs.items()}
+        self.deck = (yaml_text(self.deck_text) or {}).get("Tanktread", {})
+        summary = self.directory / "summary.yaml"
+        self.summary = yaml_text(summary.read_text(encoding="utf-8")) if summary.exists() else None
+
+    def __repr__(self):
+        return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
+
+    @property
+    def name(self):
+        """The name of the directory."""
+        return self.directory.resolve().name
+
+    @property
+    def several(self):
+        """Whether the deck has the section Particles, so that series of one particle are named <particle>/<name>."""
+        return any("/" in name for name in self.series)
+
+    @property
+    def particles(self):
+        """The names of the particles in the order of the deck; ["particle"] of a deck with the section Particle."""
+        if not self.several:
+            return ["particle"]
+        kinds = list(self.deck.get("Particles", {}))
+
+        def order(name):
+            """Returns the section of a particle and its number there: `cell 3` is the third of `cell`."""
+            found = [(k, int(name[len(kind):] or 0)) for k, kind in enumerate(kinds)
+                     if name == kind or (name.startswith(kind + " ") and name[len(kind):].strip().isdigit())]
+            return min(found, default=(len(kinds), 0))
+
+        return sorted({name.split("/")[0] for name in self.series if "/" in name}, key=order)
+
+    def of(self, particle, name):
+        """Returns a series (rows,) of one particle by its name in `particles`. Raises Mistake if it was not
+        recorded."""
+        path = f"{particle}/{name}" if self.several else name
+        self.require(path)
+        return self.series[path]
+
+    def frame(self, tidy=False):
+        """Returns the series as a pandas.DataFrame with the index `time`, a column for each name in `series`, and the
+        units and descriptions in its `attrs`. With tidy=True it has one row per time and particle and the columns
+        `time`, `particle` and the series of particles; of one particle and of several alike. Needs pandas."""
+        return exports.frame(self, tidy)
+
+    def dataset(self):
+        """Returns the series as an xarray.Dataset. Series of particles have the dimensions (particle, time), of one
+        particle and of several alike; series of the scene have (time,). A series of the scene with the name of a
+        particle's is called `scene_<name>`. Variables have the attributes `units` and `long_name`. Needs xarray."""
+        return exports.dataset(self)
+
+    def in_units(self, dimension):
+        """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""
+        units = self.deck.get("Units") or {}
+        named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
+        dimension = dimension.replace("viscosity x length", "force x time/length").replace("stress", "force/length^2")
+        if not named or not dimension:
+            return ""
+        words = re.sub("length|time|force", lambda word: named[word[0]], dimension.replace(" x ", " "))
+        return ", " + words.replace("^2", "²")
+
+    @property
+    def rate(self):
+        """The rate (1/time) by which times are multiplied to have no unit, and its name; (1, None) if there is none.
+
+        In a parabolic flow it is the maximum velocity over the half width, in a duct the mean velocity over the radius
+        of a circle of the duct's area."""
+        kind = self.value("Flow/type")
+        if kind == "duct":
+            with h5py.File(self.directory / "duct.h5", "r") as file:
+                return float(file["mean_velocity"][()] / file["radius"][()]), "mean velocity / tube radius"
+        if kind == "linear":
+            gradient = numpy.reshape(numpy.array(self.value("Flow/gradient"), float), (3, 3))
+            return float(numpy.linalg.norm(gradient, 2)), "rate"
+        if kind == "parabolic":
+            width = float(self.value("Flow/half width"))
+            return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"
+        return (float(self.value("Flow/shear rate", 1)), RATES[kind]) if kind in RATES else (1.0, None)
+
+    @property
+    def time(self):
+        """Times of the series (rows,), multiplied by `rate`: `time_label` names them."""
+        return self.series["time"] * self.rate[0]
+
+    @property
+    def time_label(self):
+        """The label of an axis of `time`."""
+        name = self.rate[1]
+        return f"time · {name}" if name else "time, in the deck's unit"
+
+    @property
+    def radius(self):
+        """R_C: radius of the sphere of equal volume, of the first particle."""
+        if self.several:
+            return float(3 * self.series[f"{self.particles[0]}/volume"][0] / (4 * numpy.pi)) ** (1 / 3)
+        if self.summary and "numbers" in self.summary:
+            return float(self.summary["numbers"]["radius"])
+        return self.snapshots()[0].volume() ** (1 / 3) * (3 / (4 * numpy.pi)) ** (1 / 3)
+
+    def scale(self, dimension):
+        """Returns what a length, velocity, stress, curvature or tension is divided by to have no unit, and its symbol.
+
+        Lengths are divided by R_C, stresses by the viscosity times the rate of the flow; if the flow has no rate, by
+        the modulus over R_C; of a rigid body by the viscosity times its speed over R_C. Tensions have no unit."""
+        radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))
+        rate, words = self.rate
+        symbol = "σ" if self.value("Membrane/law") == "surface tension" else "G$_s$"
+        modulus = float(self.value("Membrane/shear modulus") or self.value("Membrane/surface tension") or 0)
+        if words:
+            stress, velocity = f"(μ · {words})", f"({words} · R$_C$)"
+        elif modulus:
+            rate, stress, velocity = modulus / (viscosity * radius), f"({symbol} / R$_C$)", f"({symbol} / μ)"
+        else:
+            speeds = [numpy.linalg.norm(self.value(f"Particle/{key}", 0)) for key in ("velocity", "angular velocity")]
+            rate, stress, velocity = float(max(speeds[0] / radius, speeds[1]) or 1), "(μ · speed / R$_C$)", "speed"
+        scales = {"length": (radius, " / R$_C$"), "curvature": (1 / radius, " · R$_C$"),
+                  "velocity": (rate * radius, " / " + velocity), "stress": (viscosity * rate, " / " + stress),
+                  "tension": (1.0, " / " + symbol)}
+        return scales.get(dimension, (1.0, ""))
+
+    def label(self, field, pattern="{}"):
+        """Returns the label of an axis of a field without units; `pattern` such as `|{}|`."""
+        return pattern.format(field) + self.scale(DIMENSIONS.get(field))[1]
+
+    def value(self, path, default=None):
+        """Returns the value of one key of the deck: `value("Membrane/capillary number")`."""
+        node = self.deck
+        for part in path.split("/"):
+            if not isinstance(node, dict) or part not in node:
+                return default
+            node = node[part]
+        return node
+
+    def cell(self, time):
+        """Returns the vectors of a lattice's periodic cell over R_C at a time, as rows (3, 3); None without a
+        lattice."""
+        if "cell_1_x1" not in self.series:
+            return None
+        row = numpy.abs(self.series["time"] - time).argmin()
+        vectors = [[self.series[f"cell_{k}_x{i}"][row] for i in (1, 2, 3)] for k in (1, 2, 3)]
+        return numpy.array(vectors) / self.scale("length")[0]
+
+    def require(self, *names):
+        """Raises Mistake unless the run recorded these series."""
+        for name in names:
+            expect(name in self.series, f"{self.directory} holds no series {name}; "
+                                        f"there are: {', '.join(sorted(self.series))}")
+
+    def defined(self, name):
+        """Returns times and values of a series at the rows where it is defined (not NaN)."""
+        self.require(name)
+        known = ~numpy.isnan(self.series[name])
+        return self.series["time"][known], self.series[name][known]
+
+    def snapshots(self):
+        """Returns the saved steps in order of time. Each is read when it is used."""
+        series = self.directory / "run.hdf.series"
+        if not series.exists():
+            return []
+        files = json.loads(series.read_text())["files"]
+        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
+
+    def snapshot_at(self, time):
+        """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""
+        saved = self.snapshots()
+        if not saved:
+            raise Mistake(f"{self.directory} holds no snapshots")
+        return saved[-1] if time is None else min(saved, key=lambda one: abs(one.time - time))
+
+
+def time_label(runs):
+    """Returns the label of an axis of time of several runs."""
+    return " or ".join(dict.fromkeys(one.time_label for one in runs))
+
+
+def field_label(runs, field, pattern="{}"):
+    """Returns the label of an axis of a field without units, of several runs."""
+    return " or ".join(dict.fromkeys(one.label(field, pattern) for one in runs))

@@ -1,0 +1,279 @@
+"""Runs of the program: one of a deck, or many of a study, made once and found again."""
+
+import concurrent.futures
+import hashlib
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from .mistakes import Mistake, expect
+from .results import Run
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]  # the source directory, or share/tanktread of an installation
+ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+def _program():
+    """Returns the path of the program: TANKTREAD, that of this source directory or installation, or that in PATH."""
+    found = [parent / "bin/tanktread" for parent in pathlib.Path(__file__).resolve().parents[3:6]]
+    found = [SOURCE / "build/release/app/tanktread", *found, pathlib.Path(shutil.which("tanktread") or "tanktread")]
+    named = os.environ.get("TANKTREAD")
+    return pathlib.Path(named) if named else next((path for path in found if path.is_file()), found[0])
+
+
+PROGRAM = _program()
+
+
+def shared():
+    """Yields folders below which the decks and studies in `inputs` are looked for."""
+    yield pathlib.Path()
+    yield SOURCE
+    yield PROGRAM.resolve().parents[1] / "share/tanktread"
+
+
+def deck_at(name):
+    """Returns the absolute path of a deck, looked for from the present directory, then from the source directory or the
+    installation. Raises Mistake if there is none."""
+    found = next((place / name for place in shared() if (place / name).is_file()), None)
+    expect(found, f"{name}: there is no such deck")
+    return found.resolve()
+
+
+def quoted(word):
+    """Returns a word as a shell needs it."""
+    return f"'{word}'" if " " in word else word
+
+
+def text_of(value):
+    """Returns a value as the command line has it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.15g}" if isinstance(value, float) else str(value)
+
+
+def settings_of(words):
+    """Returns {key: value} of the words KEY=VALUE."""
+    for word in words:
+        expect("=" in word, f"{word}: a setting is KEY=VALUE")
+    return dict(word.split("=", 1) for word in words)
+
+
+def run(where, settings=None):
+    """Returns the Run in a directory, or of a deck (a .yaml file), which is run first if it has no results.
+
+    With settings {"Section/key": value} the deck is run with these keys changed; the results are below `results`, by a
+    name that follows from both. A Run is returned as it is. Raises Mistake if the run fails."""
+    if isinstance(where, Run):
+        return where
+    if settings:
+        outcome = Study(directory="results").run(where, settings)
+        expect(outcome.done, f"{where} did not run to its end: {outcome.message}")
+        return outcome.run
+    directory = results_of(where) if str(where).endswith(".yaml") else where
+    try:
+        found = Run(directory)
+    except FileNotFoundError:
+        raise Mistake(f"{directory} holds no run.h5: give the directory of a run's results, or a deck") from None
+    except (OSError, KeyError) as error:
+        raise Mistake(f"{directory}/run.h5 cannot be read: {error}") from None
+    for name, values in found.series.items():
+        expect("NaN if" in found.descriptions[name] or not math.isnan(values.sum()),
+               f"{directory}/run.h5 has NaN in the series {name}, which is always defined: the file is damaged")
+    return found
+
+
+def runs_of(runs):
+    """Returns a list of Runs from one or several runs, directories or decks."""
+    several = isinstance(runs, (list, tuple))
+    return [run(one) for one in (runs if several else [runs])]
+
+
+def results_of(deck, name=None, settings=None, accepted=(0, 1)):
+    """Returns the directory results/<name> (by default the deck's name), in which the deck is run if it has no results.
+
+    `accepted`: exit codes that are no error; 1 is a missed expectation, which a figure shows."""
+    directory = pathlib.Path("results") / (name or pathlib.Path(deck).stem)
+    if not (directory / "run.h5").exists():
+        _exists(PROGRAM)
+        words = [str(deck_at(deck)), *_set(settings or {}), "--output", str(directory)]
+        print(PROGRAM.name, *words, file=sys.stderr)
+        code = subprocess.run([PROGRAM, *words, "--quiet"], env=os.environ | ENVIRONMENT, check=False).returncode
+        expect(code in accepted, f"{deck} did not run to its end (exit code {code})")
+    return directory
+
+
+def _exists(program):
+    expect(program.is_file(), f"{program} does not exist: build it (cmake --workflow --preset release), "
+                              "or name another one: TANKTREAD=...")
+
+
+def _set(settings):
+    """Returns the words of the command line for settings."""
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
+
+
+class Outcome:
+    """The end of one run of a Study: `done` (as far as its deck said), `failed`, `refused` (a mistake in the deck) or
+    `slow` (stopped at the time limit).
+
+    `message`: its last line on standard error. `seconds`, `processor_seconds` (of all ranks). `series`, `final`,
+    `counts` and `phases`: what it recorded."""
+
+    def __init__(self, directory, note):
+        self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
+        self.processor_seconds = note.get("processor_seconds", math.nan)
+        self.code, self.command = note["code"], note["command"]
+        self._run = None
+
+    done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
+    failed = property(lambda self: not (self.done or self.refused or self.slow))
+    refused = property(lambda self: self.code == 2)
+    slow = property(lambda self: self.code in (None, 4))
+
+    @property
+    def run(self):
+        if self._run is None:
+            self._run = Run(self.directory)
+        return self._run
+
+    series = property(lambda self: self.run.series)
+    counts = property(lambda self: self.run.summary["counts"])
+    final = property(lambda self: self.run.summary["final"])
+    phases = property(lambda self: self.run.summary["seconds"])
+
+    @property
+    def status(self):
+        """Returns `done`, `refused`, `stopped` or `failed`."""
+        return "done" if self.done else "refused" if self.refused else "stopped" if self.slow else "failed"
+
+    @property
+    def kernel_evaluations(self):
+        return sum(value for name, value in self.counts.items() if name.startswith("kernel_evaluations"))
+
+    @property
+    def end(self):
+        """The simulated time that the run came to."""
+        try:
+            return float(self.series["time"][-1])
+        except (OSError, IndexError):
+            return 0.0
+
+
+class Study:
+    """Runs of decks with keys changed, made once, kept in `directory` and found again by their decks and settings.
+
+    `limit`: processor seconds that one run may take (None: any). `jobs`: runs at a time. `fresh`: makes every run anew.
+    """
+
+    def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
+        self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
+        self.limit, self.jobs, self.fresh = limit, jobs, fresh
+        self._made, self._running = set(), set()
+        self._manual = None
+
+    def run(self, decks, settings, ranks=1):
+        """Returns the Outcome of `tanktread decks… --set …`.
+
+        `decks`: a path (`deck_at`), or several that overlay each other; `settings`: {"Section/key": value}. A run that
+        a signal stopped is resumed from its checkpoint."""
+        decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
+        where = self.directory / self.name(decks, settings, ranks)
+        note = where / "outcome.json"
+        before = Outcome(where, json.loads(note.read_text())) if note.exists() else None
+        if before and (where in self._made or not self.fresh) and self._stands(before):
+            return before
+        self._made.add(where)
+        launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        if before and before.code == 4 and not self.fresh:
+            words = ["--resume", str(where)]
+        else:
+            shutil.rmtree(where, ignore_errors=True)  # of another program, or broken off
+            where.mkdir(parents=True)
+            words = [str(deck_at(deck)) for deck in decks] + _set(settings) + ["--output", str(where)]
+        made = self._make(launcher + [str(self.program)] + words + ["--quiet"])
+        partial = note.with_suffix(".part")  # the note appears as a whole
+        partial.write_text(json.dumps(made))
+        partial.rename(note)
+        return Outcome(where, made)
+
+    def _stands(self, outcome):
+        """Returns whether a run need not be made again: another program may know the keys that were refused."""
+        never_began = outcome.refused or not (outcome.directory / "run.h5").exists()
+        return outcome.directory in self._made or not (never_began or outcome.code == 4)
+
+    def _make(self, words):
+        _exists(self.program)
+        start = time.monotonic()
+        bounds = ["setpriv", "--pdeathsig", "KILL"]  # a run must not outlive the study that made it
+        bounds += ["prlimit", f"--cpu={math.ceil(self.limit)}"] if self.limit else []
+        with subprocess.Popen(bounds + words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                              env=os.environ | ENVIRONMENT) as process:
+            self._running.add(process)
+            said = process.stderr.read().strip().splitlines()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = code = os.waitstatus_to_exitcode(status)
+            self._running.discard(process)
+        if code < 0 or code > 4:  # killed, by the limit
+            said = [f"stopped after {self.limit:g} s of processor time" if self.limit else f"killed by signal {-code}"]
+            code = None
+        return {"code": code, "message": said[-1] if said else "", "seconds": time.monotonic() - start,
+                "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
+
+    @staticmethod
+    def name(decks, settings, ranks=1):
+        """Returns the name of a run's directory, by the content of the decks and the settings."""
+        texts = [deck_at(deck).read_text() for deck in decks]
+        text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks])
+        return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
+
+    def all(self, jobs, told=lambda outcome: None):
+        """Returns the Outcomes of many (decks, settings[, ranks]) in their order, `self.jobs` of them at a time.
+
+        Calls `told` with each Outcome when it ends. An interrupt stops the runs, which leave checkpoints."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            futures = [pool.submit(self.run, *job) for job in jobs]
+            try:
+                for future in concurrent.futures.as_completed(futures):
+                    told(future.result())
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                for process in list(self._running):
+                    process.send_signal(signal.SIGTERM)
+                raise
+            return [future.result() for future in futures]
+
+    def map(self, function, items):
+        """Returns function(item) of every item, `self.jobs` of them at a time."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            return list(pool.map(function, items))
+
+    def knows(self, key, word=None):
+        """Returns whether this program's manual has a key, and in its row a choice."""
+        row = self._row(key)
+        return row is not None and (word is None or f"`{word}`" in row)
+
+    def dimension(self, key):
+        """Returns the dimension of a key, such as force/length; "" of a number and of an unknown key."""
+        row = self._row(key)
+        unit = row.split("|")[4].strip() if row else ""
+        return "" if unit == "1" else unit
+
+    def _row(self, key):
+        """Returns the row of a key in this program's manual, or None."""
+        if self._manual is None:
+            self._manual = subprocess.run([str(self.program), "--reference"], capture_output=True, text=True,
+                                          check=True).stdout
+        section, name = key.rsplit("/", 1)
+        body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
+        return next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), None)
+
+    def schemes(self, wanted):
+        """Returns those of the time-stepping schemes that this program has."""
+        return [scheme for scheme in wanted if self.knows("Time/scheme", scheme)]

@@ -1,0 +1,137 @@
+"""Saved steps of a run: exact surfaces and the fields on them."""
+
+import itertools
+import pathlib
+
+import h5py
+import numpy
+
+from . import exports, lagrange
+from .files import text_of_hdf
+
+# What a field is divided by to have no unit, by Run.scale.
+DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
+              "displacement": "length", "velocity": "velocity", "into cell": "length", "smallest tension": "tension",
+              "largest tension": "tension", "mean curvature": "curvature"}
+
+
+def evenly(items, n):
+    """Returns n of a list of items, or all if there are fewer, evenly from the first to the last one."""
+    return [items[k] for k in sorted(set(numpy.linspace(0, len(items) - 1, min(n, len(items))).round().astype(int)))]
+
+
+class Snapshot:
+    """A saved step, in the units of the deck.
+
+    `path`, `time`: the file and the simulated time. `cells`: node numbers of each Lagrange quadrilateral, as a list of
+    arrays ((p + 1)^2,). `points`: positions of the nodes (n, 3), in length. `fields`: {name: (n,) or (n, k)} at the
+    nodes; `DIMENSIONS` says what each is measured in. The file is read when one of these is first used."""
+
+    def __init__(self, path, time, particles=("particle",)):
+        self.path, self.time, self.particles = pathlib.Path(path), time, list(particles)
+        self.cell = None  # vectors of the periodic cell over R_C, as rows (3, 3), of a lattice in a `scaled` snapshot
+        self._content = None
+
+    def _read(self):
+        if self._content is None:
+            with h5py.File(self.path, "r") as file:
+                grid = file["VTKHDF"]
+                connectivity, offsets = grid["Connectivity"][:], grid["Offsets"][:]
+                cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
+                fields = {name: data[:] for name, data in grid["PointData"].items()}
+                self._content = grid["Points"][:], cells, fields
+        return self._content
+
+    points = property(lambda self: self._read()[0])
+    cells = property(lambda self: self._read()[1])
+    fields = property(lambda self: self._read()[2])
+
+    @property
+    def positions(self):
+        """Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the cell at the
+        origin."""
+        return self.points if self.cell is None else self.points + self.fields["into cell"]
+
+    places = positions  # the former name
+
+    @property
+    def frame(self):
+        """Points (m, 3) whose extent is that of a picture: `points`, or in a lattice the eight corners of the cell."""
+        if self.cell is None:
+            return self.points
+        return numpy.array(list(itertools.product((-0.5, 0.5), repeat=3))) @ self.cell
+
+    def cells_of(self, particle):
+        """Returns the indices of the cells of one particle, by its name in `run.particles`."""
+        if "particle" not in self.fields:
+            return numpy.arange(len(self.cells))
+        number = self.particles.index(particle) + 1  # from 1 in the order of the deck
+        return numpy.flatnonzero([self.fields["particle"][cell[0]] == number for cell in self.cells])
+
+    def scaled(self, run):
+        """Returns a copy without units: lengths over R_C, fields divided as `run.label` says."""
+        copy = Snapshot(self.path, self.time, self.particles)
+        copy.cell = run.cell(self.time)
+        fields = {name: values / run.scale(DIMENSIONS.get(name))[0] for name, values in self.fields.items()}
+        copy._content = self.points / run.scale("length")[0], self.cells, fields
+        return copy
+
+    def evaluate(self, values, cells, s, t, ds=0, dt=0):
+        """Returns a field at parameters s, t (m,), each in [0, 1], of the cells with the indices `cells` (m,).
+
+        `values` (n,) or (n, k) is given at the nodes: `points`, or one of `fields`. The result has the shape (m,) or
+        (m, k). `ds`, `dt`: orders of derivatives. It is exact, because a cell holds the polynomial of its element."""
+        values, cells = numpy.asarray(values), numpy.asarray(cells)
+        s, t = numpy.asarray(s, float), numpy.asarray(t, float)
+        result = numpy.empty((len(cells),) + values.shape[1:])
+        degrees = numpy.array([round(len(self.cells[cell]) ** 0.5) - 1 for cell in cells])
+        for p in set(degrees.tolist()):
+            which = numpy.flatnonzero(degrees == p)
+            nodes = values[numpy.array([self.cells[cell] for cell in cells[which]])]
+            result[which] = numpy.einsum("mn,mn...->m...", lagrange.table(p, s[which], t[which], ds, dt), nodes)
+        return result
+
+    def sampled(self, values, k=8, cells=None):
+        """Returns a field on the uniform grid of (k + 1)^2 parameters of every cell, or of those with given indices.
+
+        Shape (cells, k + 1, k + 1[, components]), t first, then s. Exact, as `evaluate`."""
+        values = numpy.asarray(values)
+        chosen = self.cells if cells is None else [self.cells[i] for i in cells]
+        result = numpy.empty((len(chosen), k + 1, k + 1) + values.shape[1:], values.dtype)
+        for p, which, nodes in lagrange.by_degree(chosen):
+            table = lagrange.grid_table(p, numpy.arange(k + 1) / k).astype(values.dtype)
+            sampled = table @ values[nodes].reshape(len(which), nodes.shape[1], -1)
+            result[which] = sampled.reshape((len(which), k + 1, k + 1) + values.shape[1:])
+        return result
+
+    def volume(self, k=16):
+        """Returns the enclosed volume in length^3, by k^2 facets per cell."""
+        grid = self.sampled(self.points, k)
+        a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
+        triangles = (a, b, c), (a, c, d)
+        return abs(sum(numpy.einsum("...i,...i", x, numpy.cross(y, z)).sum() for x, y, z in triangles)) / 6
+
+    def area(self, gauss=8):
+        """Returns the area in length^2, by gauss^2 points per cell."""
+        points, weights = numpy.polynomial.legendre.leggauss(gauss)
+        total = 0.0
+        for p, _, nodes in lagrange.by_degree(self.cells):
+            s, t = (lagrange.grid_table(p, (points + 1) / 2, *order) @ self.points[nodes] for order in ((1, 0), (0, 1)))
+            total += (numpy.linalg.norm(numpy.cross(s, t), axis=-1) @ numpy.outer(weights, weights).ravel()).sum() / 4
+        return total
+
+    def mesh(self, kind="meshio"):
+        """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid.
+
+        Both have cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
+        return exports.mesh(self, kind)
+
+    def checkpoint(self):
+        """Returns the data from which the run is resumed: {"arrays": {...}, "numbers": {...}, "texts": {...}}."""
+        with h5py.File(self.path, "r") as file:
+            root = file["checkpoint"]
+            return {
+                "arrays": {name: data[:] for name, data in root["arrays"].items()},
+                "numbers": {name: float(data[()]) for name, data in root["numbers"].items()},
+                "texts": {name: text_of_hdf(data[()]) for name, data in root["texts"].items()},
+            }

@@ -1,0 +1,97 @@
+"""The critical value of a key, above which a particle passes a constriction and below which it stays, by bisection.
+
+    tanktread-critical inputs/capsule_stuck.yaml --between 0.006 0.0063 --past 0.5
+    tanktread-critical inputs/capsule_stuck.yaml --between 0.006 0.0063 --past 0.5 --set 'Particle/viscosity ratio=5'
+
+A run passes if it ends beyond the position x1 = --past. It stays if, over the last ten channel radii divided by the
+mean velocity, its centroid went on average slower than a thousandth of that velocity, and in the second half of them no
+faster along the flow than in the first. Faster by a tenth of that thousandth, or by the standard error of the
+difference, counts as no faster: a particle at rest moves with the errors of its integrals. The standard error follows
+from the deviations of the centroid from the parabola through its positions. A run that does neither is made again for
+twice the time, and once more; a run that still does neither ends the search with a message.
+"""
+
+import argparse
+import pathlib
+
+import numpy
+
+from ..mistakes import Mistake, expect, log
+from ..runs import deck_at, settings_of
+from . import common
+
+SLOW = 1e-3  # speed of a particle that stays, over the mean velocity
+NOISE = 0.1  # of SLOW, by which the second half may be faster
+LAST = 10  # channel radii over the mean velocity
+SAMPLES = 401  # of the way in that time
+TIMES = 3  # that an undecided run is made, each for twice the time
+
+
+def stays(time, way, radius, speed):
+    """Returns True if a centroid's way shows that it stays, None if it does not."""
+    last = LAST * radius / speed
+    if time[-1] - time[0] < last:
+        return None
+    at = time[-1] - last * numpy.linspace(1, 0, SAMPLES)
+    places = numpy.interp(at, time, way)
+    wanders = numpy.std(places - numpy.polyval(numpy.polyfit(at - at[-1], places, 2), at - at[-1]))
+    first, second = 2 * numpy.diff(places[[0, SAMPLES // 2, -1]]) / last
+    by_chance = 6**0.5 * wanders * 2 / last  # of the end less the middle twice and the beginning
+    return True if abs(first
+                       + second) / 2 < SLOW * speed and second - first < NOISE * SLOW * speed + by_chance else None
+
+
+class Search:
+    """Runs at one value of the key after the other."""
+
+    def __init__(self, parsed):
+        self.parsed, self.runs, self.deck = parsed, common.study(parsed), deck_at(parsed.deck)
+        self.settings = {"Time/end when past": parsed.past} | settings_of(parsed.set)
+
+    def stays(self, value):
+        held, settings = None, self.settings | {self.parsed.key: value}
+        for _ in range(TIMES):
+            run, held = self.one(value, settings)
+            if held is not None:
+                return held
+            settings = settings | {"Time/final time": 2 * run.value("Time/final time")}
+        raise Mistake(f"{self.parsed.key}={value:.6g} neither passes nor stays")
+
+    def one(self, value, settings):
+        outcome = self.runs.run(self.deck, settings)
+        expect(outcome.done, f"{self.parsed.key}={value:.6g}: {outcome.message}")
+        run, series = outcome.run, outcome.series
+        speed = run.value("Flow/mean velocity", 1.0)
+        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"],
+                                                         run.value("Channel/radius", 1.0), speed)
+        said = {True: "stays", False: "passes", None: f"neither passes nor stays by {series['time'][-1]:g}"}[held]
+        log.info(f"{self.parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
+                 f"{series['velocity_x1'][-1] / speed:.2g} of the mean "
+              f"velocity; smallest film {series['gap'].min():.3g}, largest error of the volume "
+              f"{numpy.abs(series['volume_error']).max():.1g}; "
+              f"{outcome.processor_seconds:.0f} processor seconds")
+        return run, held
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("deck", type=pathlib.Path, help="the deck of a particle in a channel")
+    parser.add_argument("--key", default="Flow/mean velocity", help="the key (default: %(default)s)")
+    parser.add_argument("--between", nargs=2, type=float, required=True, metavar=("LOW", "HIGH"),
+                        help="values of the key, at the first of which it stays")
+    parser.add_argument("--within", type=float, default=0.02, metavar="PART",
+                        help="of the value, to which it is found (default: %(default)s)")
+    parser.add_argument("--past", type=float, required=True, metavar="X1", help="where it has passed")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
+                        help="another key of all runs; may be there many times")
+    common.arguments(parser, pathlib.Path("results/critical"))
+    parser.set_defaults(limit=None)
+    parsed = parser.parse_args()
+    low, high = parsed.between
+    expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")
+    search = Search(parsed)
+    found, how = common.edge(search.stays, low, high, 1 + parsed.within)
+    expect(how == "edge",
+           f"{'it passes' if how == 'fails from here' else 'it stays'} at {found:g} already: --between other values")
+    log.info(f"critical {parsed.key}: {found:.5g} to {found * (1 + parsed.within):.5g}")
+    return 0

@@ -1,0 +1,115 @@
+"""From an experiment to moduli with error bars: unknown keys of a deck by weighted least squares from outlines,
+lengths, velocities or curves.
+
+    tanktread-fit inputs/studies/experiment.yaml      # results/experiment/fit.txt, fit.yaml, fit.png
+
+An experiment is a YAML file: `deck` (one, or several that overlay each other), `set` (keys of all runs), `unknown`,
+`laws` and `experiments`; inputs/studies/experiment.yaml is an example.
+
+    unknown: {Membrane/shear modulus: {start: 1}}
+        from, to: bounds; known, error: a value known beforehand; spacing: linear for what may be negative
+    laws: {skalak: {Membrane/law: Skalak, unknown: {…}}}
+        each is fitted and compared with the others; its own unknowns are added or start elsewhere
+    experiments: {slow: {set: {…}, unknown: {…}, data: [datum, …]}}
+        each is a run, with unknowns of its own. Values may have units if the deck has the section Units;
+        start, from, to, known and what is found are numbers in the deck's units
+    datum: {outline: points.csv, error: 0.5, scale: 0.01}
+        the edge as seen along x2: columns x1, x3 in the picture's unit, its error in that unit (or a third column, as
+        tanktread-outline writes it); the flow goes to the right; plane: [x1, x3]; scale: the deck's length per unit;
+        scale error: its relative error, or free; at: time of the snapshot (default: the last)
+    datum: {series: velocity_x1, value: 1.2, error: 0.01}
+        the last value of a series, or at: time
+    datum: {series: taylor_inertia, curve: relaxation.csv}
+        columns time, value and, if `error` does not give it, error; over: length_x2 divides by another series;
+        origin: free if the curve's time does not start with the run's
+    next: {Flow/mean velocity: [1, 2, 4]}
+        settings of a further experiment with data like the first one's: which would determine most
+
+The position of an outline in its picture is free. Derivatives are differences of runs, made side by side: one per step
+for each unknown key and experiment, none for positions and scales. Runs are kept and found again if all their keys are
+equal, so it is best to leave a `start` as it was. Errors are those of the data carried on, of nothing else: a quantity
+known with an error belongs under `unknown`, such as Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too
+large for the errors of the data, errors that the residuals give are printed too; a mesh that is too coarse for the data
+is the first suspect.
+"""
+
+import argparse
+import os
+import pathlib
+
+import yaml
+
+from ..mistakes import expect, log, progress
+from ..runs import Study
+from .fit_data import Experiment, Unknown
+from .fit_model import Fit, Runs
+from .fit_report import draw, further, told
+from .reading import decks_of, keys_of, number, yaml_of
+
+KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
+
+
+def load(path, study):
+    """Returns the fits of all laws, not yet solved, and the content of the file."""
+    text = yaml_of(path, KEYS)
+    folder = pathlib.Path(path).parent
+    decks = decks_of(text, path)
+    study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
+    expect(keys_of(text.get("experiments"), f"{path}: experiments"), f"{path} has no experiments")
+    laws = {law: keys_of(settings, f"{path}: the law {law}") for law,
+            settings in keys_of(text.get("laws"), f"{path}: laws").items()}
+    lists = [text, *text["experiments"].values(), *laws.values()]
+    expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
+    unknowns = [Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()]
+    experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
+    for key, values in keys_of(text.get("next"), f"{path}: next").items():
+        expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
+    fixed, fits = keys_of(text.get("set"), f"{path}: set"), []
+    for law, settings in (laws or {"the deck's law": {}}).items():
+        settings = fixed | settings
+        own = {key: Unknown(key, given) for key, given in keys_of(settings.pop("unknown", None),
+                                                                  f"{path}: {law}, unknown").items()}
+        fits.append(Fit(law, settings, list(({one.key: one for one in unknowns} | own).values()), experiments,
+                        Runs(study, decks, law)))
+    return fits, text
+
+
+def run(path, directory=None, jobs=None, laws=None):
+    """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
+
+    `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
+    cores). `laws`: names of the laws that are fitted (default: all)."""
+    from ..figures import style
+
+    directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
+    fits, text = load(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count()))
+    known = [fit.law for fit in fits]
+    expect(set(laws or known) <= set(known), f"there is no such law; there are: {', '.join(known)}")
+    fits = [fit for fit in fits if fit.law in (laws or known)]
+    for fit in fits:
+        progress(fit.effort())
+        fit.solve()
+    fits.sort(key=lambda fit: fit.aic)
+    said = told(fits, further(fits, text.get("next") or {}))
+    progress("")
+    log.info(said)
+    (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
+    record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
+                        "runs": fit.runs.count, "unknown": {name: {"value": value, "error": float(error)}
+                                                            for name, (value, error) in fit.values.items()}}
+              for fit in fits}
+    (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
+    style.save(style.draw(draw, fits), directory / "fit.png")
+    return fits
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("experiment", help="the experiment, a YAML file")
+    parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
+                        help="where results go (default: results/<experiment>)")
+    parser.add_argument("--jobs", type=int, help="runs at a time (default: the number of cores)")
+    parser.add_argument("--law", nargs="+", metavar="NAME", help="fit these laws only")
+    arguments = parser.parse_args()
+    run(arguments.experiment, arguments.output, arguments.jobs, arguments.law)
+    return 0

@@ -1,0 +1,185 @@
+"""Unknowns and data of a fit: outlines and series, with what a run predicts of them."""
+
+import numpy
+
+from ..interpolation import interpolated
+from ..mistakes import Mistake, expect
+from . import silhouette
+from .reading import keys_of, number
+
+# from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
+FAR = numpy.log(1000)
+GAP = 0.1  # of an outline's length, from its last point to the first, at which it does not close
+
+
+def numbers_of(path, least):
+    """Returns a CSV file with `least` columns or more as (rows, columns), without a first row of names."""
+    try:
+        values = numpy.genfromtxt(path, delimiter=",", comments="#")
+    except (OSError, ValueError) as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
+    values = values[1:] if values.ndim == 2 and not numpy.isfinite(values[0]).any() else values
+    expect(values.ndim == 2 and values.shape[1] >= least and numpy.isfinite(values[:, :least]).all(),
+           f"{path} must have {least} columns of numbers")
+    return values
+
+
+class Unknown:
+    """A key whose value is sought, as the number that the fit varies: the logarithm of what is positive."""
+
+    def __init__(self, key, given, owner=None):
+        given = given if isinstance(given, dict) else {"start": given}
+        self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
+        expect(isinstance(given.get("start", given.get("known")), (int, float)),
+               f"{self.name} needs a number to start from")
+        expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
+        self.start_value = float(given.get("start", given.get("known")))
+        self.logarithmic = given.get("spacing") != "linear"
+        expect(not self.logarithmic or self.start_value > 0,
+               f"{self.name} starts from a positive number, or has `spacing: linear`")
+        self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
+        start = self.number(self.start_value)
+        for word in {"known", "error", "from", "to"} & set(given):
+            number(given[word], f"{self.name}: {word}")
+        self.bounds = tuple(self.number(given[word]) if word in given else start + far for word,
+                            far in (("from", -FAR), ("to", FAR)))
+        self.known, self.error = given.get("known"), given.get("error")
+
+    def number(self, value):
+        return numpy.log(value) if self.logarithmic else value / self.unit
+
+    def value(self, number):
+        return float(numpy.exp(number) if self.logarithmic else number * self.unit)
+
+    def error_of(self, value, error):
+        """Returns the standard error of the value from that of the fitted number."""
+        return value * error if self.logarithmic else self.unit * error
+
+
+class OutlineData:
+    """Points of an edge in a plane. Unknown with it: where it lies, and its scale where that has an error."""
+
+    def __init__(self, given, name, folder):
+        known = {"outline", "plane", "error", "scale", "scale error", "at", "open"}
+        expect(set(given) <= known, f"{name}: an outline has {', '.join(sorted(known))}")
+        expect(isinstance(given.get("scale"), (int, float)),
+               f"{name} has no scale: the deck's length for a unit of its picture (1 if they are the same)")
+        self.name, self.at, self.scale, self.error = name, given.get("at"), float(given["scale"]), given.get("error")
+        plane = given.get("plane", ["x1", "x3"])
+        expect(len(set(plane)) == 2 and set(plane) <= {"x1", "x2", "x3"}, f"{name}: the plane is two of x1, x2, x3")
+        self.axis = 6 - sum(int(one[1]) for one in plane) - 1
+        table = numbers_of(folder / str(given["outline"]), 2)
+        self.points = table[:, :2][:, numpy.argsort(plane)]
+        if self.error is None and table.shape[1] > 2:
+            self.error = float(numpy.sqrt((table[:, 2] ** 2).mean()))
+        steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
+        expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
+               f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
+               "from the first (`open: true` takes it as it is)")
+        self.free_scale, self.scale_error = given.get("scale error") == "free", given.get("scale error", 0)
+        self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
+        self.count = len(self.points)
+
+    @property
+    def length(self):
+        """Returns the number of residuals: one per point, and one of a scale with an error."""
+        return self.count + (self.places > 2 and not self.free_scale)
+
+    def start(self, prediction):
+        """Returns the start of its position (2 or 3,), from the middles of data and prediction."""
+        low, high = self.points.min(0), self.points.max(0)
+        middle = (prediction.points.min(0) + prediction.points.max(0)) / 2
+        return numpy.concatenate([middle - self.scale * (low + high) / 2, numpy.zeros(self.places - 2)])
+
+    def prediction(self, run):
+        shot = run.snapshot_at(self.at)
+        expect(self.at is None or abs(shot.time - self.at) < 1e-6 * max(1, abs(self.at)),
+               f"{self.name}: there is no snapshot at {self.at}: set Output/interval")
+        return silhouette.seen(shot, self.axis).centred()  # where a run carries its particle is not in the picture
+
+    def placed(self, place):
+        return self.points * self.scale * numpy.exp(place[2] if self.places > 2 else 0) + place[:2]
+
+    def residuals(self, prediction, place):
+        found = prediction.distances(self.placed(place)) / self.scale / (self.error or 1)
+        return numpy.append(found, place[2] / self.scale_error) if self.places > 2 and not self.free_scale else found
+
+
+class SeriesData:
+    """Values of a series, or of its ratio to another one, at times. Unknown with it: when a curve begins, where its
+    origin is free."""
+
+    length = property(lambda self: self.count)  # of its residuals
+
+    def __init__(self, given, name, folder):
+        known = {"series", "over", "value", "curve", "error", "at", "origin"}
+        expect(set(given) <= known and ("value" in given) != ("curve" in given),
+               f"{name}: a series has value or curve, and error, at, over, origin")
+        for word in {"value", "error"} & set(given):
+            number(given[word], f"{name}: {word}")
+        self.name, self.series, self.error = name, [given["series"],
+                                                    *([given["over"]] if "over" in given else [])], given.get("error")
+        self.places = int("origin" in given)
+        expect(not self.places or given["origin"] == "free" and "curve" in given,
+               f"{name}: `origin: free` is of a curve, and there is no other origin")
+        if "curve" in given:
+            table = numbers_of(folder / str(given["curve"]), 2)
+            self.times, self.values = table[:, 0], table[:, 1]
+            self.error = table[:, 2] if self.error is None and table.shape[1] > 2 else self.error
+            self.span = float(numpy.ptp(self.times))  # which the place is told in
+        else:
+            self.times, self.values = given.get("at"), numpy.array([float(given["value"])])
+        self.count = len(self.values)
+
+    def start(self, prediction):
+        """Returns the time of the run at which the curve begins: the last one at which the run passes the first value,
+        or is nearest to it."""
+        if not self.places:
+            return numpy.array([])
+        times, values = prediction
+        passed = numpy.flatnonzero((values[1:] - self.values[0]) * (values[:-1] - self.values[0]) <= 0)
+        nearest = passed[-1] if len(passed) else numpy.argmin(abs(values - self.values[0]))
+        return (times[[nearest]] - self.times[0]) / self.span
+
+    def prediction(self, run):
+        for name in self.series:
+            expect(name in run.series,
+                   f"{self.name}: there is no series {name}; there are: {', '.join(sorted(run.series))}")
+        values, times = run.series[self.series[0]], run.series["time"]
+        last = 0 if self.times is None or self.places else numpy.max(self.times)
+        expect(last <= times[-1] * (1 + 1e-9),
+               f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
+        values = values / run.series[self.series[1]] if len(self.series) > 1 else values
+        defined = ~numpy.isnan(values)
+        expect(defined[-1] if self.times is None else defined.any(),
+               f"{self.name}: {' / '.join(self.series)} is undefined (NaN) in the run")
+        return times[defined], values[defined]
+
+    def predicted(self, prediction, place):
+        """Returns the values of the run at the data's times."""
+        times, values = prediction
+        if self.times is None:
+            return values[-1:]
+        wanted = numpy.atleast_1d(self.times) + (place[0] * self.span if self.places else 0)
+        return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
+
+    def residuals(self, prediction, place):
+        return (self.values - self.predicted(prediction, place)) / (1 if self.error is None else self.error)
+
+
+class Experiment:
+    def __init__(self, name, given, folder):
+        expect(isinstance(given, dict) and given.get("data"), f"the experiment {name} has no data")
+        expect(set(given) <= {"set", "unknown", "data"}, f"the experiment {name} has set, unknown and data")
+        self.name, self.settings = name, keys_of(given.get("set"), f"{name}: set")
+        self.unknowns = [Unknown(key, one, name) for key,
+                         one in keys_of(given.get("unknown"), f"{name}: unknown").items()]
+        kinds = {"outline": OutlineData, "series": SeriesData}
+        self.data = []
+        expect(isinstance(given["data"], list), f"{name}: data must be a list of outlines and series")
+        for k, one in enumerate(given["data"]):
+            one = keys_of(one, f"{name}: a datum")
+            kind = next((kind for word, kind in kinds.items() if word in one), None)
+            expect(kind, f"{name}: a datum is an outline or a series")
+            self.data.append(kind(one, f"{name}: {one.get('outline') or one['series']}" if k
+                                  or len(given["data"]) > 1 else f"{name}: data", folder))

@@ -1,0 +1,205 @@
+"""What a fit found, as text and as a figure, and which further experiment would determine more."""
+
+import copy
+import itertools
+
+import numpy
+import scipy.optimize
+import scipy.stats
+
+from .fit_data import OutlineData
+from .fit_model import SERIES, Fit
+
+
+def further(fits, settings):
+    """Returns for each further experiment (settings, {unknown: standard error with it}, {other law: expected rise of
+    chi square}). Each has data like the first experiment's, at the prediction of the best law."""
+    best, first = fits[0], fits[0].experiments[0]
+    rows = []
+    for key, value in [(key, value) for key, values in settings.items() for value in values]:
+        candidate = copy.copy(first)
+        candidate.settings, candidate.data = first.settings | {key: value}, []
+        truth = best.runs.all([(first, best.settings | candidate.settings | dict(_values(best, first)))])[0]
+        if truth is None:
+            rows.append(({key: value}, None, None))
+            continue
+        for datum, prediction in zip(first.data, truth):
+            one = copy.copy(datum)
+            if isinstance(datum, OutlineData):
+                one.points, one.scale = prediction.even(datum.count), 1.0
+                one.error = (datum.error or _scatter(best)) * datum.scale
+            else:
+                one.values = datum.predicted(prediction, datum.start(prediction))
+                one.error = datum.error if datum.error is not None else _scatter(best)
+            candidate.data.append(one)
+        rows.append(({key: value}, _errors_with(best, candidate),
+                     {other.law: _rise(other, candidate) for other in fits[1:]}))
+    return rows
+
+
+def _scatter(fit):
+    return numpy.sqrt(fit.square / fit.freedom)
+
+
+def _values(fit, experiment):
+    return [(one.key, one.value(x)) for one, x in zip(fit.unknowns, fit.x) if one.owner in (None, experiment.name)]
+
+
+def _alone(fit, candidate):
+    """Returns a fit of the candidate only, at the values of `fit`."""
+    one = Fit(fit.law, fit.settings, [], [candidate], fit.runs)
+    one.index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
+    one.unknowns = [copy.copy(fit.unknowns[k]) for k in one.index]
+    for unknown in one.unknowns:
+        unknown.known = None  # what is known beforehand counts once
+    one.x = fit.x[one.index]
+    predictions = one.predictions(one.x)
+    if predictions is None:
+        return None
+    one.x = numpy.concatenate([one.x, *(datum.start(prediction) for datum,
+                                        prediction in zip(candidate.data, predictions))])
+    numbers, places = one.split(one.x)
+    if len(places):
+        placed = scipy.optimize.least_squares(lambda p: one.residuals(predictions, numbers, p), places)
+        one.x = numpy.concatenate([numbers, placed.x])
+    one.residual = one.residuals(predictions, *one.split(one.x))
+    one.square = float(one.residual @ one.residual)
+    return one
+
+
+def _errors_with(fit, candidate):
+    one = _alone(fit, candidate)
+    one.errors()
+    both = numpy.zeros((len(fit.unknowns),) * 2)
+    both[numpy.ix_(fit.told, fit.told)] += fit.information() / (1 if fit.stated else _scatter(fit) ** 2)
+    index = numpy.array(one.index)[one.told]
+    both[numpy.ix_(index, index)] += one.information()
+    errors = numpy.sqrt(numpy.diag(numpy.linalg.pinv(both)))
+    errors = numpy.where((errors > 0) & (errors < 1), errors, numpy.inf)  # as in Fit.errors: others stay undetermined
+    return {unknown.name: unknown.error_of(unknown.value(x), error) for unknown, x,
+            error in zip(fit.unknowns, fit.x, errors)}
+
+
+def _rise(fit, candidate):
+    one = _alone(fit, candidate)
+    return one.square if one else numpy.inf
+
+
+def rounded(value, error):
+    """Returns a value with one digit more than its error determines."""
+    digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value and error else 6
+    return f"{value:.{digits}g}"
+
+
+def told(fits, rows):
+    """Returns the report as text."""
+    lines = []
+    for fit in fits:
+        said = f"chi square {fit.square:.4g} for {fit.freedom} degrees of freedom"
+        said += f" (probability {fit.probability:.2g})" if fit.stated else ""
+        lines += [f"{fit.law}: {said}, AIC {fit.aic:.2f}, {fit.runs.count} runs"]
+        if not fit.stated:
+            lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing "
+                      "about the law"]
+        if fit.stated and len(fit.data) > 1:
+            lines.append("  of it: " + ", ".join(f"{name} {square:.3g} of {count}" for name,
+                                                 (square, count) in fit.squares.items()))
+        larger = numpy.sqrt(fit.square / fit.freedom) if fit.missed else 1
+        if fit.missed:
+            lines.append(f"  the residuals are {larger:.3g} times what the errors of the data say: a finer mesh, a "
+                         "free scale or another law first")
+        for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
+            unit = fit.runs.unit(unknown.key).replace(",", "", 1)
+            if numpy.isfinite(error):
+                also = f"; by the residuals ± {larger * error:.2g}" if fit.missed else ""
+                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
+            else:
+                lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
+                             f"{value:.3g}{unit})")
+        shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
+        if len(shown) > 1:
+            size = numpy.sqrt(numpy.diag(fit.covariance))
+            correlation = fit.covariance / numpy.outer(size, size)
+            lines += [f"  correlation of {a} and {b}: {correlation[i, j]:.3f}" for (i, a),
+                      (j, b) in itertools.combinations(enumerate(shown), 2)]
+        if any(datum.count >= SERIES for datum in fit.data):
+            z = fit.runs_test()
+            meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
+            lines.append(f"  signs of the residuals along the data: {meaning} "
+                         f"({z:.1f} standard deviations)")
+    if len(fits) > 1:
+        gap = [fit.aic - fits[0].aic for fit in fits]
+        total = sum(numpy.exp(-one / 2) for one in gap)
+        lines.append("laws, best first: "
+                     + ", ".join(f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit,
+                                 one in zip(fits, gap)))
+        said = "do not tell these laws apart (a difference in AIC below 10)"
+        said = f"tell {fits[0].law} from the others" if gap[1] > 10 else said
+        lines.append(f"the data {said}{', but none of them describes the data' if fits[0].missed else ''}")
+    for settings, errors, rises in rows:
+        name = ", ".join(f"{key} {value}" for key, value in settings.items())
+        if errors is None:
+            lines.append(f"a further experiment, {name}: its run fails")
+            continue
+        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined" for key,
+                error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
+        lines.append(f"a further experiment, {name}: " + ", ".join(said))
+    return "\n".join(lines)
+
+
+def draw(fits, axes=None):
+    """Returns a figure of outlines, curves and values with the fit, residuals, and the ellipses of pairs of
+    unknowns."""
+    from ..figures import style
+
+    best = fits[0]
+    predictions, places = best.predictions(best.x[:len(best.unknowns)]), best.split(best.x)[1]
+    pairs = list(itertools.combinations(range(int(best.told.sum())), 2))[:3]
+    figure, axes = style.panels(axes, 1, 2 + len(pairs), 4.6 * (2 + len(pairs)), 4.4)
+    data, residual, start, row = axes[0], axes[1], 0, 0
+    for k, (datum, prediction) in enumerate(zip(best.data, predictions)):
+        color = style.RUNS[k % len(style.RUNS)]
+        if isinstance(datum, OutlineData):
+            data.plot(*numpy.vstack([prediction.even(400), prediction.even(1)]).T, color=color, linewidth=1)
+            data.plot(*datum.placed(places[start:start + datum.places]).T, ".", color=color, ms=2.5, label=datum.name)
+            data.set_aspect("equal")
+        elif numpy.size(datum.times) > 1:
+            line = numpy.linspace(datum.times.min(), datum.times.max(), 200)
+            along = copy.copy(datum)
+            along.times = line
+            data.plot(line, along.predicted(prediction, places[start:start + datum.places]), color=color, linewidth=1)
+            data.errorbar(datum.times, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
+        else:
+            data.errorbar(datum.name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=4)
+            data.plot(datum.name, datum.predicted(prediction, [])[0], "_", color=color, ms=12)
+        start += datum.places
+        residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".", ms=2.5,
+                      color=color)
+        row += datum.length
+    if data.get_legend_handles_labels()[0]:
+        data.legend(fontsize=7)
+    curves = [datum for datum in best.data if not isinstance(datum, OutlineData) and numpy.size(datum.times) > 1]
+    if curves:
+        data.set_xlabel("time" + best.runs.unit("Time/final time"))
+        data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in curves)))
+    elif not all(isinstance(datum, OutlineData) for datum in best.data):
+        data.tick_params(axis="x", rotation=60, labelsize=7)
+    data.set_title(f"data and {best.law}")
+    residual.set_title("residuals over their errors")
+    names = [one for one, yes in zip(best.unknowns, best.told) if yes]
+    for axis, (i, j) in zip(axes[2:], pairs):
+        angle = numpy.linspace(0, 2 * numpy.pi, 200)
+        values, vectors = numpy.linalg.eigh(best.covariance[numpy.ix_([i, j], [i, j])])
+        for share, line in (0.683, "-"), (0.954, "--"):
+            circle = numpy.sqrt(scipy.stats.chi2.ppf(share,
+                                                     2)) * (vectors
+                                                            * numpy.sqrt(values)) @ [numpy.cos(angle), numpy.sin(angle)]
+            index = [best.unknowns.index(names[k]) for k in (i, j)]
+            x, y = ([names[k].value(best.x[at] + one) for one in circle[m]] for m,
+                    (k, at) in enumerate(zip((i, j), index)))
+            axis.plot(x, y, line, color=style.RUNS[0], label=f"{share:.1%}")
+        axis.plot(*(names[k].value(best.x[best.unknowns.index(names[k])]) for k in (i, j)), "+", color=style.INK)
+        axis.set_xlabel(names[i].name + best.runs.unit(names[i].key))
+        axis.set_ylabel(names[j].name + best.runs.unit(names[j].key))
+        axis.legend()
+    return figure

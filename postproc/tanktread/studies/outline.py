@@ -1,0 +1,147 @@
+"""The edge of a particle in a picture (PNG), to a part of a pixel, and the standard error of a point: points for
+tanktread-fit, in pixels, x1 to the right and x3 up from the upper left corner (so below 0; a fit does not mind).
+
+    tanktread-outline picture.png -o profile.csv --overlay check.png
+
+The particle is darker or brighter than its surroundings and lies within the picture; of several the largest is taken.
+On rays from its middle the edge is where a sharp step has the same area below it as the picture has on average over all
+rays, which blur does not move. Each ray's own edge is found by least squares with that average profile. A point is the
+mean of the rays around it, so the errors of points are independent. Blur of variance s moves an edge by s/2 times its
+curvature to the inner side of the bend; points are moved back.
+"""
+
+import argparse
+import pathlib
+
+import numpy
+
+from ..mistakes import Mistake, expect, log, optional
+
+scipy = optional("scipy", "tanktread-outline")
+optional("scipy.ndimage", "tanktread-outline", "scipy")
+
+WINDOW = 8   # pixels along a ray to either side of the edge, over which its step is summed
+FINE = 0.25  # pixels between samples of a ray
+
+
+def grey(path):
+    """Returns the picture's brightness (rows, columns), rows from above."""
+    try:
+        picture = optional("matplotlib.image", "tanktread-outline", "matplotlib").imread(path)
+    except Mistake:
+        raise
+    except Exception as error:  # the reader has many kinds
+        raise Mistake(f"{path} is no picture that can be read: {error}") from None
+    return numpy.asarray(picture, float) if picture.ndim == 2 else numpy.asarray(picture[..., :3], float).mean(2)
+
+
+def split(picture):
+    """Returns the brightness that best splits the picture in two classes (Otsu)."""
+    numbers, edges = numpy.histogram(picture, 256)
+    middles = (edges[1:] + edges[:-1]) / 2
+    below = numpy.cumsum(numbers)
+    sums = numpy.cumsum(numbers * middles)
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        between = below * (below[-1] - below) * (sums / below - (sums[-1] - sums) / (below[-1] - below)) ** 2
+    return middles[numpy.nanargmax(between)]
+
+
+def body(picture, path):
+    """Returns a mask of the largest thing that differs from the frame, holes filled."""
+    smooth = scipy.ndimage.gaussian_filter(picture, 2)
+    level = split(smooth)
+    frame = numpy.concatenate([smooth[0], smooth[-1], smooth[:, 0], smooth[:, -1]])
+    labels, count = scipy.ndimage.label((smooth > level) != (numpy.median(frame) > level))
+    expect(count, f"{path}: nothing is set off from its surroundings")
+    sizes = scipy.ndimage.sum_labels(numpy.ones_like(labels), labels, range(1, count + 1))
+    mask = scipy.ndimage.binary_fill_holes(labels == 1 + int(numpy.argmax(sizes)))
+    expect(mask.sum() > 200, f"{path}: what is set off is {int(mask.sum())} pixels large, too small for an outline")
+    expect(not (mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any()),
+           f"{path}: the outline does not close within the picture")
+    return mask
+
+
+def edge(picture, mask, points):
+    """Returns points (n, 2) of the edge as column and row, and the standard error of a point, in pixels. An odd number
+    of rays, about two pixels apart, is averaged for a point, after the bend of the outline between them is removed."""
+    row, column = scipy.ndimage.center_of_mass(mask)
+    each = max(1, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
+    angle = 2 * numpy.pi * numpy.arange(points * each) / (points * each)
+    ray = numpy.stack([numpy.sin(angle), numpy.cos(angle)])[:, :, None]
+    middle = numpy.array([row, column])[:, None, None]
+    radius = numpy.arange(0, numpy.hypot(*mask.shape), FINE)
+    inside = scipy.ndimage.map_coordinates(mask.astype(float), middle + ray * radius, order=1) > 0.5
+    found = radius[inside.shape[1] - 1 - inside[:, ::-1].argmax(1)]
+    reach = min(WINDOW, 0.5 * found.min())
+    off = numpy.linspace(-reach, reach, 1 + 2 * int(WINDOW / FINE))
+
+    def profiles():
+        """Returns the brightness on the windows, from 1 inside to 0 outside."""
+        values = scipy.ndimage.map_coordinates(picture, middle + ray * (found[:, None] + off), order=3, mode="nearest")
+        ends = numpy.stack([values[:, :len(off) // 5].mean(1), values[:, -len(off) // 5:].mean(1)])
+        ends = scipy.ndimage.gaussian_filter1d(ends, len(angle) / 40, axis=1, mode="wrap")[:, :, None]
+        return (values - ends[1]) / (ends[0] - ends[1])
+
+    for _ in range(3):  # blur keeps the area of a disc, not its diameter: rings count by their radius
+        rings = (profiles() * (found[:, None] + off)).mean(1)
+        found = numpy.sqrt((found - reach) ** 2 + 4 * reach * rings)
+    for _ in range(3):
+        values = profiles()
+        typical = values.mean(0)
+        slope = numpy.gradient(typical, off)
+        found = found - (values - typical) @ slope / (slope @ slope)
+    variance = -numpy.trapz(off**2 * slope, off)
+    found -= (variance / (2 * found)).mean()  # what the area of the rings, that of a disc, made of the bend
+    places, error = averaged(angle, found, points, each, row, column)
+    return unbent(places, variance), error
+
+
+def unbent(points, variance):
+    """Returns the points (n, 2) of a blurred outline, in the order of their angle, moved to where they are without blur
+    of this variance."""
+    before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
+    chord, lengths = before + after, [numpy.linalg.norm(one, axis=1) for one in (before, after, before + after)]
+    # of the circle through three points
+    curvature = 2 * (before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) / numpy.prod(lengths, axis=0)
+    outwards = chord[:, ::-1] * [1, -1] / lengths[2][:, None]
+    return points + (variance / 2 * curvature)[:, None] * outwards
+
+
+def averaged(angle, radius, points, each, row, column):
+    """Returns the value in the middle of a parabola through the rays around every point, and its standard error from
+    the scatter of the rays."""
+    order = (numpy.arange(points)[:, None] * each + numpy.arange(each) - each // 2) % len(angle)
+    x = numpy.linspace(-1, 1, each) if each > 1 else numpy.zeros(1)
+    basis = numpy.vander(x, 3 if each > 4 else 1, increasing=True)
+    weights = numpy.linalg.pinv(basis)
+    middle = radius[order] @ weights[0]
+    rest = radius[order] - radius[order] @ weights.T @ basis.T
+    error = numpy.sqrt((rest**2).sum() / max(1, points * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
+    at = angle[order[:, each // 2]]
+    return numpy.column_stack([column + middle * numpy.cos(at), row + middle * numpy.sin(at)]), float(error)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("picture", help="a PNG")
+    parser.add_argument("-o", "--output", default="outline.csv", metavar="FILE",
+                        help="the points (default: %(default)s)")
+    parser.add_argument("--points", type=int, default=60, help="how many (default: %(default)s)")
+    parser.add_argument("--overlay", metavar="FILE", help="a picture with the points on it, to look at")
+    arguments = parser.parse_args()
+    expect(arguments.points >= 8, "--points must be at least 8")
+    picture = grey(arguments.picture)
+    points, error = edge(picture, body(picture, arguments.picture), arguments.points)
+    expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
+    table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
+    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="", fmt="%.4f")
+    log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
+    if arguments.overlay:
+        from ..figures import style
+
+        figure, (axis,) = style.panels(None, 1, 1, 6, 6 * picture.shape[0] / picture.shape[1])
+        axis.imshow(picture, cmap="gray")
+        axis.plot(*points.T, ".", color=style.RUNS[1], ms=2)
+        axis.axis("off")
+        style.save(figure, arguments.overlay)
+    return 0

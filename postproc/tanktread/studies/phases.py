@@ -1,0 +1,244 @@
+"""A phase diagram of a particle: below which value of a key it moves in one way and above which in another, by
+bisection, over another key.
+
+    tanktread-phases inputs/studies/red_cell_phases.yaml      # results/phases/borders.csv, runs.csv and phases.png
+    tanktread-phases inputs/studies/red_cell_capillary.yaml --output results/capillary
+
+A study is a small YAML file: `deck`; `motion`, `shear` or `capillary`; `set`, keys of all runs; `along`, the key that
+is bisected: {key, from, to, within: a factor, to which a border is found}; `across`, {another key: its values};
+`curves`, {name: keys}, where a list as long as that of `across` goes with it, and `across` may have other values;
+`begin`, the share of a run that is left out (0.4); `literature`, {name: rows of a value across, the lowest and the
+highest one along}.
+
+In shear the shape is followed by `inclination`, the membrane by `phase`. A run tumbles if its shape turns by a right
+angle or more after `begin`, whether its membrane goes around on it (then it does both in turn) or not. It treads if
+only its membrane goes half around. A run that does neither ends its border with a message. In a capillary a cell is
+askew by sqrt(d^2 + D^2 sin^2 2i), d the distance of its centroid from the axis over R_C, D its Taylor parameter, i its
+inclination, which is 0 for shapes that are symmetric about the axis. After `begin` a run slips if that is beyond 0.1,
+or if its largest value in the last third is beyond 0.005 and half as much again as in the first. Otherwise it is a
+parachute. The particle starts as the deck states; where both motions are stable, a border is that of this start.
+"""
+
+import argparse
+import collections
+import pathlib
+
+import numpy
+
+from ..mistakes import Mistake, expect, log
+from . import common
+from .reading import decks_of, keys_of, number, values_of, yaml_of
+
+NEAR = 1.5  # factor about the last border between which the next one is looked for first
+KEYS = {"deck", "motion", "set", "along", "across", "curves", "begin", "literature"}
+SWING = 0.5  # half turns that a tumbling shape makes at least; one whose membrane treads swings by less
+HALF = 180  # degrees: a shape, or its membrane, looks as before
+ASKEW, STRAIGHT = 0.1, 0.005  # of a cell that has left the axis or turned away from it; what its mesh may leave
+GROWS = 1.5  # a cell that leaves the axis is more than so many times as askew as before
+
+# Two motions, the one below the border first, by the names that `tell` gives; what it measures, and the series used.
+Kind = collections.namedtuple("Kind", "below above tell measures series")
+
+
+def in_shear(series, begin):
+    """Returns `tumbles`, `both`, `treads` or None; half turns of the shape against the phase, and of the membrane on
+    it, after the share `begin` of the time."""
+    begins = series["time"][0] + begin * numpy.ptp(series["time"])
+    defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
+    time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
+    late = time >= begins
+    if not late.any():
+        return None, numpy.nan, numpy.nan
+    turned = -numpy.unwrap(inclination, period=HALF)  # in the sense of the phase
+    over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
+    if over >= SWING:
+        return ("both" if around >= 1 else "tumbles"), over, around
+    return ("treads" if around >= 1 else None), over, around
+
+
+def in_capillary(series, begin):
+    """Returns `slips` or `parachute`, and by how much the cell is askew in the first and in the last third of the time
+    after `begin`."""
+    time = series["time"]
+    away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
+    # if NaN, D is 0
+    askew = numpy.hypot(away, series["taylor_inertia"]
+                        * numpy.sin(2 * numpy.radians(numpy.nan_to_num(series["inclination"]))))
+    thirds = time[0] + (time[-1] - time[0]) * numpy.linspace(begin, 1, 301)
+    first, middle, last = (values.max() for values in numpy.array_split(numpy.interp(thirds, time, askew), 3))
+    return ("slips" if max(first, middle, last) > ASKEW
+            or last > max(GROWS * first, STRAIGHT) else "parachute"), first, last
+
+
+MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane"),
+                         ("inclination", "phase")),
+           "capillary": Kind(("slips",), "parachute", in_capillary, ("askew before", "at the end"),
+                             ("centroid_x2", "centroid_x3", "volume", "taylor_inertia", "inclination"))}
+class Diagram:
+    """A study file and the borders that are found, {curve: rows of the value across, the two values that a border lies
+    between, and how it ended}."""
+
+    def __init__(self, path, runs):
+        text = yaml_of(path, KEYS)
+        self.runs, self.decks, self.fixed = runs, decks_of(text, path), keys_of(text.get("set"), f"{path}: set")
+        kind = str(text.get("motion", "shear"))
+        expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
+        self.kind = MOTIONS[kind]
+        # there is no border in the range
+        self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"
+        self.along, across, curves, literature = (keys_of(text.get(name), f"{path}: {name}")
+                                                  for name in ("along", "across", "curves", "literature"))
+        expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
+        self.along |= {name: number(self.along[name], f"{path}: along, {name}") for name in ("from", "to", "within")}
+        expect(0 < self.along["from"] < self.along["to"] and self.along["within"] > 1,
+                     f"{path}: along needs positive values that ascend and a factor above 1, but is from "
+                     f"{self.along['from']} to {self.along['to']} within "
+                     f"{self.along['within']}")
+        expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
+        self.across, self.begin = next(iter(across)), number(text.get("begin", 0.4), f"{path}: begin")
+        expect(0 <= self.begin < 1, f"{path}: begin is a share of a run, from 0 to less than 1, but is {self.begin:g}")
+        self.literature = {name: self.known(name, rows) for name, rows in literature.items()}
+        self.rows = {name: self.settings(name, across | keys_of(keys, f"{path}: the curve {name}")) for name,
+                     keys in curves.items()}
+        self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
+
+    @staticmethod
+    def known(name, rows):
+        """Returns the rows of the literature, checked before anything is run."""
+        expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
+                     f"{name}: literature has rows of a value across, the lowest and the highest one along")
+        return [[number(value, name) for value in row] for row in rows]
+
+    def settings(self, name, keys):
+        """Returns the settings of a curve, one dict for each of its values across."""
+        values = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
+        lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: values}
+        for key, given in lists.items():
+            expect(len(given) == len(values),
+                   f"{name}: {key} has {len(given)} values where {self.across} has {len(values)}")
+        return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
+
+    def holds(self, name, row, value):
+        """Returns whether the motion is the one below the border."""
+        key = name, row[self.across], value
+        if key not in self.made:
+            self.made[key] = self.motion_at(name, row, value)
+        said = self.made[key][0]
+        expect(said in (*self.kind.below, self.kind.above),
+                     f"it neither {self.kind.below[0]} nor {self.kind.above}: it needs a later Time/final time"
+               if said == "neither" else said)
+        return said != self.kind.above
+
+    def motion_at(self, name, row, value):
+        """Returns the motion of one run, or why there is none, its two measures, processor seconds and directory."""
+        outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
+        said, *measures = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
+        if outcome.done:
+            outcome.run.require(*self.kind.series)
+            said, *measures = self.kind.tell(outcome.series, self.begin)
+        said = said or "neither"
+        told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))
+        log.info(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} ({told}; "
+              f"{outcome.processor_seconds:.0f} processor seconds)")
+        return said, *measures, outcome.processor_seconds, outcome.directory.name
+
+    def border(self, name, row, last):
+        """Returns the border and how the search ended. Searches about the last border first, then in the rest of the
+        range."""
+        low, high, factor = self.along["from"], self.along["to"], self.along["within"]
+
+        def holds(value):
+            return self.holds(name, row, value)
+
+        if last:
+            found, how = common.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
+            if how == "edge" or (how == "fails from here"
+                                 and found == low) or (how == "holds to here" and found == high):
+                return found, how
+            low, high = (low, found) if how == "fails from here" else (found, high)
+        return common.edge(holds, low, high, factor)
+
+    def find(self):
+        last = None
+        for name, row in ((name, row) for name, rows in self.rows.items() for row in rows):
+            try:
+                low, how = self.border(name, row, last)
+            except Mistake as mistake:
+                low, how = numpy.nan, str(mistake)
+            above = [key[2] for key, run in self.made.items() if key[:2] == (name, row[self.across]) and key[2] > low
+                     and run[0] == self.kind.above]
+            low, high, how = {"fails from here": (numpy.nan, low, self.from_here),
+                              "holds to here": (low, numpy.nan, self.to_here)}.get(
+                how, (low, min(above, default=numpy.nan), how))
+            self.borders[name].append((row[self.across], low, high, how))
+            last = low if how == "edge" else last
+
+    def write(self, directory):
+        common.write_table(directory / "borders.csv",
+                           ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"],
+                          [(name, *row) for name, rows in self.borders.items() for row in rows])
+        common.write_table(directory / "runs.csv", ["curve", self.across, self.along["key"], "motion",
+                                                    *self.kind.measures,
+                                                   "processor seconds", "directory"],
+                           [(*key, *run) for key, run in self.made.items()])
+
+    @property
+    def found(self):
+        """Returns whether there is anything to draw."""
+        return any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows)
+
+    def draw(self, axes=None):
+        """Returns a figure of the borders, with those of the literature."""
+        from matplotlib.ticker import LogLocator, NullLocator
+
+        from ..figures import style
+
+        figure, (axes,) = style.panels(axes, 1, 1, 6.2, 4.2)
+        for (name, rows), color in zip(self.borders.items(), style.RUNS * len(self.borders)):
+            edges = numpy.array(sorted(row[:3] for row in rows if row[3] == "edge")).reshape(-1, 3)
+            if len(edges):
+                middle = numpy.sqrt(edges[:, 1] * edges[:, 2])
+                bars = [middle - edges[:, 1], edges[:, 2] - middle]
+                axes.errorbar(edges[:, 0], middle, bars, fmt="o-", color=color, markersize=3.5, capsize=2, label=name)
+            for how, at, mark in (self.from_here, 2, "v"), (self.to_here, 1, "^"):
+                there = [(row[0], row[at]) for row in rows if row[3] == how]
+                label = None if len(edges) else name + (", below" if mark == "v" else ", above")
+                axes.plot(*numpy.array(there).reshape(-1, 2).T, mark, color=color, markersize=6, label=label
+                          if there else None)
+        for (name, rows), mark in zip(self.literature.items(), style.MARKS[1:] * len(self.literature)):
+            x, low, high = numpy.array(rows, float).T
+            middle = numpy.sqrt(low * high)
+            axes.errorbar(x, middle, [middle - low, high - middle], fmt=mark, color=style.FAINT, markersize=4,
+                          linewidth=0.8, capsize=2, label=name)
+        axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
+        for axis, words in (axes.xaxis, {"xscale": "linear"}), (axes.yaxis, {}):
+            # there is no power of ten to go by
+            if axis.get_data_interval()[0] <= 0 or numpy.divide(*axis.get_view_interval()[::-1]) < 10:
+                axes.set(**words)
+                axis.set_major_locator(axis.get_major_locator() if words else LogLocator(subs=(1, 1.5, 2, 3, 4, 6)))
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_locator(NullLocator())
+        axes.text(0.02, 1.01, f"above: {self.kind.above}; below: {self.kind.below[0]}", transform=axes.transAxes,
+                  color=style.FAINT)
+        axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.14))
+        return figure
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("study", type=pathlib.Path, help="the study, a YAML file")
+    common.arguments(parser, pathlib.Path("results/phases"))
+    parser.set_defaults(limit=None)
+    parsed = parser.parse_args()
+    diagram = Diagram(parsed.study, common.study(parsed))
+    try:
+        diagram.find()
+    finally:  # what is there, when it is stopped
+        diagram.write(parsed.output)
+        if diagram.found:
+            from ..figures import style
+
+            style.save(style.draw(diagram.draw), parsed.output / "phases.png")
+    expect(diagram.found,
+           f"no border was found, and nothing is drawn: {parsed.output / 'borders.csv'} says how each search ended")
+    return 0

@@ -1,0 +1,140 @@
+"""The outline of a surface as a camera sees it, or its section, and the distances of points from it."""
+
+import numpy
+import scipy.interpolate
+
+ZERO = 1e-11  # relative to the largest value of what vanishes on the outline: less is 0
+
+
+class Outline:
+    """A closed smooth curve through `points` (n, 2), in their order, counter-clockwise: a periodic cubic spline over
+    the length of its chords."""
+
+    def __init__(self, points):
+        closed = numpy.vstack([points, points[:1]])
+        along = numpy.concatenate([[0], numpy.cumsum(numpy.linalg.norm(numpy.diff(closed, axis=0), axis=1))])
+        self.points, self.length = numpy.asarray(points), along[-1]
+        self._curve = scipy.interpolate.CubicSpline(along, closed, bc_type="periodic")
+
+    def at(self, share):
+        """Returns the points (n, 2) at shares of the length, from 0 to 1."""
+        return self._curve(numpy.asarray(share) * self.length)
+
+    def even(self, n):
+        """Returns n points (n, 2) at equal distances."""
+        return self.at(numpy.arange(n) / n)
+
+    @property
+    def centroid(self):
+        """Returns the centroid (2,) of the enclosed area."""
+        a = self.even(8 * len(self.points))
+        b = numpy.roll(a, -1, axis=0)
+        area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        return ((a + b) * area[:, None]).sum(0) / (3 * area.sum())
+
+    def centred(self):
+        """Returns the same outline about its centroid."""
+        return Outline(self.points - self.centroid)
+
+    def distances(self, points):
+        """Returns the distances (m,) of points (m, 2) from the curve along its normal, positive outside."""
+        u = numpy.linspace(0, self.length, 2 * len(self.points), endpoint=False)
+        known = self._curve(u)
+        u = u[((points[:, None] - known) ** 2).sum(2).argmin(1)]
+        for _ in range(6):
+            off, slope, bend = self._curve(u) - points, self._curve(u, 1), self._curve(u, 2)
+            curvature = (slope**2 + off * bend).sum(1)
+            u = u - (off * slope).sum(1) / numpy.where(curvature > 0.1 * (slope**2).sum(1), curvature,
+                                                       (slope**2).sum(1))
+        slope = self._curve(u, 1)
+        normal = numpy.column_stack([slope[:, 1], -slope[:, 0]]) / numpy.linalg.norm(slope, axis=1)[:, None]
+        return ((points - self._curve(u)) * normal).sum(1)
+
+
+def seen(shot, axis=1, k=8):
+    """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: the outermost points, by their direction
+    from the middle, of those where the normal is across the line of sight. `k`: lines of parameters per cell on which
+    these points are found, exactly. Raises ValueError of a shape whose outline is met twice in a direction from its
+    middle."""
+
+    def across(cells, s, t):
+        tangent_s, tangent_t = (shot.evaluate(shot.points, cells, s, t, *order) for order in ((1, 0), (0, 1)))
+        return numpy.cross(tangent_s, tangent_t)[:, axis]
+
+    return _outermost(numpy.delete(_zeros(shot, across, k), axis, axis=1))
+
+
+def cut(shot, axis=1, place=None, k=8):
+    """Returns the Outline of the section of a snapshot's surface by the plane x_{axis+1} = place (default: its
+    middle)."""
+    place = (shot.points[:, axis].min() + shot.points[:, axis].max()) / 2 if place is None else place
+    return _outermost(numpy.delete(_zeros(shot, lambda cells, s,
+                                          t: shot.evaluate(shot.points[:, axis], cells, s, t) - place, k), axis,
+                                   axis=1))
+
+
+def _zeros(shot, function, k):
+    """Returns the positions (n, 3) on the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each
+    parameter in every cell."""
+    number = len(shot.cells)
+    cell, s, t = (array.ravel() for array in numpy.meshgrid(numpy.arange(number), numpy.arange(k + 1) / k,
+                                                            numpy.arange(k + 1) / k, indexing="ij"))
+    values = function(cell, s, t).reshape(number, k + 1, k + 1)
+    tiny = ZERO * abs(values).max()
+    found = [numpy.array([cell, s, t])[:, abs(values).ravel() <= tiny]]
+    for along in 1, 2:  # sign changes between neighbours on a line, by bisection and secants (Illinois)
+        low, high = numpy.moveaxis(values, along, 0)[:-1], numpy.moveaxis(values, along, 0)[1:]
+        index = numpy.argwhere((low * high < 0) & (abs(low) > tiny) & (abs(high) > tiny))
+        if not len(index):
+            continue
+        step, which, other = index.T
+        fixed = other / k
+
+        def at(x):
+            return function(which, *((x, fixed) if along == 1 else (fixed, x)))
+
+        a, b = step / k, (step + 1) / k
+        fa, fb = at(a), at(b)
+        for _ in range(14):
+            x = (a * fb - b * fa) / (fb - fa)
+            fx = at(x)
+            turned = fx * fb < 0
+            a, fa = numpy.where(turned, b, a), numpy.where(turned, fb, fa / 2)
+            b, fb = x, fx
+            if (abs(fx) <= tiny * 1e-3).all():
+                break
+            fb = numpy.where(fb == 0, 1e-300, fb)
+        found.append(numpy.array([which, *((b, fixed) if along == 1 else (fixed, b))]))
+    which, s, t = numpy.concatenate(found, axis=1)
+    return shot.evaluate(shot.points, which.astype(int), s, t)
+
+
+def _outermost(points):
+    """Returns the Outline of the outermost points in a plane, by direction from their middle; of points close together
+    one is kept."""
+    middle = (points.min(0) + points.max(0)) / 2
+    angle, radius = numpy.arctan2(*(points - middle).T[::-1]), numpy.linalg.norm(points - middle, axis=1)
+    order = numpy.argsort(angle)
+    angle, radius, points = angle[order], radius[order], points[order]
+    window = 2 * numpy.pi * 4 / len(points)
+    wide = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi])
+    first, last = numpy.searchsorted(wide, angle - window), numpy.searchsorted(wide, angle + window)
+    far = numpy.tile(radius, 3)
+    top = numpy.array([far[a:b].max() for a, b in zip(first, last)])
+    # an outline does not fall off faster within the window, but an inner curve does
+    points = points[radius > top * (1 - 3 * window)]
+    spacing = numpy.linalg.norm(points - numpy.roll(points, 1, axis=0), axis=1).sum() / len(points)
+    kept = [0]
+    for i in range(1, len(points)):
+        if numpy.linalg.norm(points[i] - points[kept[-1]]) > 0.3 * spacing:
+            kept.append(i)
+    if numpy.linalg.norm(points[kept[-1]] - points[0]) < 0.3 * spacing:
+        kept.pop()
+    points = points[kept]
+    before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
+    chord = before + after
+    off = (chord[:, 0] * before[:, 1] - chord[:, 1] * before[:, 0]) / numpy.linalg.norm(chord, axis=1)
+    if abs(off).max() > 0.3 * spacing:
+        raise ValueError("the outline is met more than once in a direction from its middle: the shape is hollow as it "
+                         "is seen")
+    return Outline(points)

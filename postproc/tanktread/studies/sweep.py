@@ -1,0 +1,261 @@
+"""Many runs of a deck over values of its keys, side by side and resumable, with a table of results and plots of it.
+
+    tanktread-sweep inputs/studies/study.yaml                                        # results/study/table.csv, table.h5
+    tanktread-sweep inputs/studies/study.yaml --plot D 'Membrane/capillary number'   # and results/study/D.png
+    tanktread-sweep inputs/studies/study.yaml --plot 'D(t)' time                     # whole series, a line per run
+
+A study is a small YAML file: `deck` (one, or several that overlay each other), `set` (keys of all runs), and the keys
+that vary: `grid` (every combination), `together` (lists side by side), `random` (number, seed, keys). If several of
+these are given, their combinations are run. The values of a key are a list, or {from, to, number, spacing: linear |
+logarithmic}; those of a random key {from, to, spacing}, or a list to draw from. `record` names the columns: the name of
+a series for its last value, or {series, take: last | smallest | largest | mean | all, at: time}.
+inputs/studies/study.yaml is an example.
+
+A run that was made is not made again, even if the study has changed. One that was interrupted is resumed. One that
+fails has a row with its message.
+"""
+
+import argparse
+import collections
+import csv
+import itertools
+import os
+import pathlib
+import sys
+import time
+
+import h5py
+import numpy
+
+from ..mistakes import Mistake, expect, log, progress
+from ..runs import Study, text_of
+from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
+
+TAKES = {"last": lambda values: values[-1], "smallest": numpy.min, "largest": numpy.max, "mean": numpy.mean,
+         "all": None}
+KEYS = {"deck", "set", "grid", "together", "random", "record", "limit", "ranks"}
+
+
+def drawn(text):
+    """Returns rows of random settings."""
+    expect("number" in text and keys_of(text.get("keys"), "random: keys"), "random needs a number and keys")
+    size, seed = whole(text["number"], "random: number"), text.get("seed", 1)
+    expect(isinstance(seed, int) and seed >= 0, f"random: seed must be a whole number, 0 or above, but is {seed}")
+    generator = numpy.random.default_rng(seed)
+    columns = {}
+    for key, given in text["keys"].items():
+        if isinstance(given, list):
+            given = values_of(key, given)
+            columns[key] = [given[k] for k in generator.integers(len(given), size=size)]
+        else:
+            expect(isinstance(given, dict) and {"from", "to"} <= set(given),
+                   f"{key}: random values have from and to, or are a list to draw from")
+            low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
+            columns[key] = [float(value) for value in spaced(key, given, low, high)(generator.random(size))]
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
+
+
+def combinations(text):
+    """Returns the settings of every run that a study asks for, each once."""
+    grid = {key: values_of(key, given) for key, given in keys_of(text.get("grid"), "grid").items()}
+    together = {key: values_of(key, given) for key, given in keys_of(text.get("together"), "together").items()}
+    expect(len({len(values) for values in together.values()}) <= 1, "the lists of `together` must be equally long")
+    groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
+              [dict(zip(together, row)) for row in zip(*together.values())] or [{}],
+              drawn(text["random"]) if keys_of(text.get("random"), "random") else [{}]]
+    fixed = keys_of(text.get("set"), "set")
+    rows = [fixed | a | b | c for a, b, c in itertools.product(*groups)]
+    return [row for k, row in enumerate(rows) if row not in rows[:k]]
+
+
+def columns_of(text, path):
+    """Returns {column: (series, take, at)}."""
+    record = text.get("record")
+    expect(record, f"{path} records nothing: name series under `record`")
+    if isinstance(record, list):
+        expect(all(isinstance(name, str) for name in record), f"{path}: `record` as a list is of names of series")
+        record = {name: name for name in record}
+    found = {}
+    for name, given in keys_of(record, f"{path}: record").items():
+        given = {"series": given} if isinstance(given, str) else keys_of(given, f"{path}: {name}")
+        take = str(given.get("take", "last"))
+        expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
+        expect(not set(given) - {"series", "take", "at"}, f"{path}: {name} has series, take and at")
+        found[name] = (given.get("series", name), take, number(given["at"], f"{path}: {name}, at")
+                       if "at" in given else None)
+    return found
+
+
+def recorded(outcome, columns):
+    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end."""
+    row = {}
+    for name, (series, take, at) in columns.items():
+        values = outcome.series.get(series) if outcome.done else None
+        if outcome.done and values is None:
+            raise Mistake(f"a run of this study has no series {series} (column {name}); there are: "
+                          f"{', '.join(sorted(outcome.series))}")
+        if values is None or not len(values):
+            row[name] = numpy.array([]) if take == "all" else numpy.nan
+        elif take == "all":
+            row[name] = values
+        else:
+            # a series is NaN where it is undefined
+            defined = values if take == "last" else values[~numpy.isnan(values)]
+            row[name] = numpy.interp(at, outcome.series["time"],
+                                     values) if at is not None else TAKES[take](defined) if len(defined) else numpy.nan
+            row[name] = float(row[name])
+    return row
+
+
+class Sweep:
+    """A study file and its runs: `keys` that vary, `rows` of settings, `outcomes` in the same order once they are
+    made."""
+
+    def __init__(self, path, study):
+        text = yaml_of(path, KEYS)
+        self.name, self.study, self.decks = pathlib.Path(path).stem, study, decks_of(text, path)
+        self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
+        self.rows, self.columns = combinations(text), columns_of(text, path)
+        self.study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
+        self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
+                     if len({str(row.get(key)) for row in self.rows}) > 1]
+
+    def make(self):
+        """Makes the runs, the progress of the whole on standard error."""
+        start, ends = time.monotonic(), collections.Counter()
+
+        def told(outcome):
+            ends[outcome.status] += 1
+            if ends["done"] == 1:  # a column that no run has is told after the first one, not after the last
+                recorded(outcome, self.columns)
+            made = sum(ends.values())
+            left = (time.monotonic() - start) / made * (len(self.rows) - made)
+            said = ", ".join(f"{number} {status}" for status, number in ends.items())
+            if sys.stderr.isatty() or made * 10 // len(self.rows) > (made - 1) * 10 // len(self.rows):
+                progress(f"{made} of {len(self.rows)} runs: {said}; {left:.0f} s left")
+
+        self.outcomes = self.study.all([(self.decks, row, self.ranks) for row in self.rows], told)
+        progress("")
+
+    def write(self, directory):
+        """Writes table.csv, without whole series, and table.h5 with them (/columns/<name>, rows padded with NaN)."""
+        found = [recorded(outcome, self.columns) for outcome in self.outcomes]
+        whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
+        single = [name for name in self.columns if name not in whole]
+        with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
+            out = csv.writer(file)
+            out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
+            for row, values, outcome in zip(self.rows, found, self.outcomes):
+                out.writerow([*(row.get(key, "") for key in self.keys), *(values[name] for name in single),
+                              outcome.status,
+                              f"{outcome.processor_seconds:.3g}", outcome.directory.name,
+                              "" if outcome.done else outcome.message])
+        with h5py.File(directory / "table.h5", "w") as file:
+            file["status"] = [outcome.status for outcome in self.outcomes]
+            file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
+            file.attrs["keys"] = self.keys
+            for key in self.keys:
+                values = [row.get(key, numpy.nan) for row in self.rows]
+                numbers = all(isinstance(value, (int, float)) for value in values)
+                file[f"keys/{key}"] = values if numbers else [str(value) for value in values]
+            if whole:
+                found = [values | {"time": outcome.series["time"] if outcome.done else numpy.array([])} for values,
+                         outcome in zip(found, self.outcomes)]
+            file.attrs["columns"] = [*single, *whole, *(["time"] if whole else [])]
+            for name in file.attrs["columns"]:
+                longest = max(numpy.size(values[name]) for values in found)
+                one = [numpy.pad(numpy.atleast_1d(values[name]), (0, longest - numpy.size(values[name])),
+                                 constant_values=numpy.nan) for values in found]
+                every = name in whole or name == "time"
+                file[f"columns/{name}"] = numpy.array(one) if every else numpy.array(one)[:, 0]
+        for name in "table.csv", "table.h5":
+            log.info(directory / name)
+
+
+def table(directory):
+    """Returns {column or key: values} of a sweep's table.h5, and the keys that vary."""
+    with h5py.File(directory / "table.h5", "r") as file:
+        keys = list(file.attrs["keys"])
+        found = {key: file[f"keys/{key}"] for key in keys} | {name: file[f"columns/{name}"]
+                                                              for name in file.attrs["columns"]}
+        return {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}, keys
+
+
+def plot(directory, column, key, axes=None):
+    """Returns a figure of a column of the table against a key, or of whole series against time, with a line for every
+    combination of the other keys."""
+    from ..figures import style
+
+    columns, keys = table(directory)
+    for name in column, key:
+        expect(name in columns, f"the table has no {name}; there are: {', '.join(columns)}")
+    expect(columns[column].ndim == columns[key].ndim,
+           f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
+    figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
+    others = [name for name in keys if name != key]
+    labels = [", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
+              for k in range(len(columns[column]))]
+    numbers = columns[key].dtype.kind in "fi"
+    for k, label in enumerate(dict.fromkeys(labels)):
+        chosen = [i for i, one in enumerate(labels) if one == label]
+        x, y = columns[key][chosen], columns[column][chosen]
+        if y.ndim > 1:
+            for i, (along, values) in enumerate(zip(x, y)):
+                axis.plot(along, values, color=style.RUNS[k % len(style.RUNS)], label=label if i == 0 else None)
+            continue
+        order = numpy.argsort(x)
+        few = len(set(labels)) <= 12
+        axis.plot(x[order], y[order], "o-" if few else "o", ms=3.5,
+                  color=style.RUNS[k % len(style.RUNS)] if few else style.RUNS[0], label=label if few else None)
+    if numbers and columns[key].ndim == 1 and columns[key].min() > 0 and columns[key].max() > 30 * columns[key].min():
+        axis.set_xscale("log")
+    axis.set_xlabel(key)
+    axis.set_ylabel(column)
+    if axis.get_legend_handles_labels()[1] and others:
+        axis.legend(fontsize=7.5)
+    return figure
+
+
+def run(path, directory=None, jobs=None, fresh=False):
+    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`.
+
+    `directory`: of table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the
+    number of cores). `fresh`: makes every run anew."""
+    directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
+    sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
+    directory.mkdir(parents=True, exist_ok=True)
+    sweep.make()
+    sweep.write(directory)
+    return sweep
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("study", help="the study, a YAML file")
+    parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
+                        help="of the table and, under runs/, of results (default: results/<study>)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="runs at a time (default: the number of cores)")
+    parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
+    parser.add_argument("--list", action="store_true", help="print the settings of the runs, and make none")
+    parser.add_argument("--plot", nargs=2, metavar=("COLUMN", "KEY"),
+                        help="draw a column of the table against a key, or one column against another")
+    parser.add_argument("-o", "--picture", type=pathlib.Path, metavar="FILE",
+                        help="the picture (default: <COLUMN>.png beside the table)")
+    arguments = parser.parse_args()
+    directory = arguments.output or pathlib.Path("results") / pathlib.Path(arguments.study).stem
+    expect(arguments.jobs > 0, "--jobs must be at least 1")
+    if arguments.list:
+        for row in Sweep(arguments.study, Study()).rows:
+            log.info(", ".join(f"{key}={text_of(value)}" for key, value in row.items()))
+        return 0
+    sweep = run(arguments.study, directory, arguments.jobs, arguments.fresh)
+    if not any(outcome.done for outcome in sweep.outcomes):
+        progress(f"tanktread-sweep: none of the runs came to its end; the first one: {sweep.outcomes[0].message}\n")
+        return 1
+    if arguments.plot:
+        name = "".join(c if c.isalnum() or c in "._-" else "_" for c in arguments.plot[0]).strip("_")
+        from ..figures import style
+
+        style.save(style.draw(plot, directory, *arguments.plot), arguments.picture or directory / f"{name}.png")
+    return 0

@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""Cubic arrays of spheres: the drag of held ones, and how the viscosity that free ones add begins to grow with the
+volume fraction.
+
+    tests/benchmark/arrays.py drag 0.2 0.45 --elements 6 8
+    tests/benchmark/arrays.py viscosity
+
+`drag`: K = F/(6 pi mu a U), U the mean velocity over the cell, by the tractions of the first kind. `viscosity`: at time
+zero the stress is 2 mu (1 + v) E, v = 5/2 phi/(1 - k phi + ...), where the array is stretched along its axes (alpha) or
+sheared in them (beta); k from v at three volume fractions, less what grows like phi^(2/3) and phi^(4/3), beside that of
+Nunan & Keller (J. Fluid Mech. 142, 1984).
+"""
+
+import argparse
+import pathlib
+
+from package import answer, numpy, tanktread
+
+ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2),
+          "face-centred": (4, (1 - numpy.eye(3)) / 2)}
+K = {"simple": (3.787, -0.858), "body-centred": (0.14079, 1.57281), "face-centred": (0.23611, 1.50926)}
+FLOWS = {"alpha": {"Flow/type": "uniaxial extension"}, "beta": {"Flow/type": "simple shear"}}
+DECK = """Tanktread:
+  Particles: {sphere: {shape: sphere}}
+  Time: {scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("drag", "viscosity"))
+    parser.add_argument("fractions", nargs="*", type=float,
+                        help="volume fractions (default: 0.001 0.064 0.2; 0.0025 0.005 0.01)")
+    parser.add_argument("--elements", nargs="+", type=int, default=[6], help="per side of a sphere (default: 6)")
+    parser.add_argument("--quadrature", type=float, default=1e-7, help="Quadrature/tolerance (default: %(default)g)")
+    parser.add_argument("--arrays", nargs="+", choices=ARRAYS, default=list(ARRAYS), help="(default: all)")
+    arguments = parser.parse_args()
+    deck = pathlib.Path("results/arrays.yaml").resolve()
+    deck.parent.mkdir(exist_ok=True)
+    deck.write_text(DECK)
+    (drag if arguments.what == "drag" else viscosity)(arguments, deck)
+
+
+def of(arguments, deck, array, fraction, n, settings):
+    """The last row of the series of a run."""
+    spheres, vectors = ARRAYS[array]
+    side = (4 * numpy.pi / 3 * spheres / fraction) ** (1 / 3)
+    lattice = "[" + ", ".join(repr(float(x)) for x in (side * vectors).ravel()) + "]"
+    return tanktread.run(deck, {"Domain/lattice vectors": lattice, "Particles/sphere/Surface/elements per side": n,
+                                "Quadrature/tolerance": arguments.quadrature, **settings}).series
+
+
+def drag(arguments, deck):
+    held = {"Flow/type": "uniform", "Flow/velocity": "[1, 0, 0]", "Particles/sphere/motion": "prescribed",
+            "Solvers/rigid bodies": "first kind"}
+    for array in arguments.arrays:
+        for fraction in arguments.fractions or (0.001, 0.064, 0.2):
+            for n in arguments.elements:
+                series = of(arguments, deck, array, fraction, n, held)
+                print(f"{array}, {fraction:g}, n = {n}: K = {series['sphere/drag_x1'][0] / (6 * numpy.pi):.10g}",
+                      flush=True)
+
+
+def viscosity(arguments, deck):
+    fractions = numpy.array(arguments.fractions or (0.0025, 0.005, 0.01))
+    powers = fractions[:, None] ** (2 / 3 * numpy.arange(len(fractions)))
+    for array in arguments.arrays:
+        for flow, expected in zip(FLOWS, K[array]):
+            free = {"Particles/sphere/motion": "free", **FLOWS[flow]}
+            for n in arguments.elements:
+                v = [of(arguments, deck, array, fraction, n, free)["relative_viscosity"][0] - 1
+                     for fraction in fractions]
+                k = numpy.linalg.solve(powers, (1 - 2.5 * fractions / v) / fractions)[0]
+                print(f"{array}, {flow}, n = {n}: k = {k:.5f} (Nunan & Keller: {expected:.5f})", flush=True)
+
+
+if __name__ == "__main__":
+    answer(main)

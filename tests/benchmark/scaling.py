@@ -1,0 +1,99 @@
+#!/usr/bin/python3
+"""How the phases of a run scale with the number of ranks.
+
+    tests/benchmark/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
+
+Runs the deck on one rank, on several, and as that many one-rank runs at the same time, in turns, and prints medians
+over the repetitions:
+
+    ratio       seconds a phase of one rank alone over those of the first of several ranks
+    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side.
+                No program scales better: cores that share memory, cache, power or a host slow each other down
+    efficiency  ratio over capacity
+
+Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; `start` holds that of MPI. The last
+lines say whether both runs did the same. The machine should have a free core for every rank.
+"""
+
+import argparse
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import yaml
+
+from package import answer, tanktread
+
+
+def summaries(program, deck, settings, ranks, copies):
+    """summary.yaml of each of some runs at the same time."""
+    with tempfile.TemporaryDirectory() as where:
+        places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
+        runs = []
+        for place in places:
+            words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output",
+                     str(place)]
+            for setting in settings:
+                words += ["--set", setting]
+            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                         env=os.environ | tanktread.ENVIRONMENT))
+        said = [run.communicate()[1] for run in runs]
+        for place, error in zip(places, said):
+            if not (place / "summary.yaml").exists():
+                sys.exit(error.strip() or "the run wrote no summary")
+        return [yaml.safe_load((place / "summary.yaml").read_text()) for place in places]
+
+
+def seconds(summary):
+    """By phase, and of all of them."""
+    times = summary["seconds"]
+    return times | {"all but start": sum(times.values()) - times.get("start", 0)}
+
+
+def difference(one, many, name="taylor_inertia"):
+    """Largest of a series at the end, of any particle."""
+    return max((abs(value - many["final"][key]) for key, value in one["final"].items() if key.split("/")[-1] == name),
+               default=0)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / "inputs/shear_neo_hookean.yaml")
+    parser.add_argument("--ranks", type=int, default=2)
+    parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
+    parser.add_argument("--set", dest="settings", action="append", metavar="KEY=VALUE",
+                        help="(default: 24 elements a side, to time 0.4)")
+    parser.add_argument("--capacity", action=argparse.BooleanOptionalAction, default=True,
+                        help="measure what the machine gives (default: do)")
+    parser.add_argument("--program", default=tanktread.PROGRAM)
+    arguments = parser.parse_args()
+    settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]
+    many = arguments.ranks
+    kinds = {"one": (1, 1), "many": (many, 1)} | ({"side": (1, many)} if arguments.capacity else {})
+    runs = {kind: [] for kind in kinds}
+    for _ in range(arguments.repeat):
+        for kind, (ranks, copies) in kinds.items():
+            runs[kind] += summaries(arguments.program, arguments.deck, settings, ranks, copies)
+    times = {kind: [seconds(summary) for summary in of_kind] for kind, of_kind in runs.items()}
+    titles = ["1 rank", f"{many} ranks", "ratio"] + (["capacity", "efficiency"] if arguments.capacity else [])
+    print(f"{'seconds':>18}" + "".join(f"{title:>11}" for title in titles))
+    for phase in times["one"][0]:
+        middle = {kind: statistics.median(run.get(phase, 0) for run in all_runs) for kind, all_runs in times.items()}
+        if min(middle.values()) <= 0:
+            continue
+        ratio = middle["one"] / middle["many"]
+        line = f"{phase:>18}{middle['one']:>11.4g}{middle['many']:>11.4g}{ratio:>11.2f}"
+        if arguments.capacity:
+            capacity = many * middle["one"] / middle["side"]
+            line += f"{capacity:>11.2f}{ratio / capacity:>11.2f}"
+        print(line)
+    for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
+        print(f"{key:>24}{runs['one'][0]['counts'][key]:>16.10g}{runs['many'][0]['counts'][key]:>16.10g}")
+    print(f"{'difference of D':>24}{difference(runs['one'][0], runs['many'][0]):>16.1e}")
+
+
+if __name__ == "__main__":
+    answer(main)

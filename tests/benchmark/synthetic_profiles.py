@@ -1,0 +1,228 @@
+#!/usr/bin/python3
+"""Whether tanktread-fit gives moduli back, and its errors are right: profiles of a capsule in a tube at five speeds,
+made with one modulus and law.
+
+    # no noise, from a start a factor of 10 off, by runs of the program: minutes
+    tests/benchmark/synthetic_profiles.py --exact
+    # noise of 0.5 % and 2 % of the radius, both laws fitted to each sample: minutes
+    tests/benchmark/synthetic_profiles.py --samples 100
+    tests/benchmark/synthetic_profiles.py --pictures 20  # from pictures, 256 pixels across, blurred and noisy
+    # outlines with noise, from a finer mesh, as inputs/studies has them
+    tests/benchmark/synthetic_profiles.py --write DIR
+
+The steady shape depends on the capillary number alone, so fits to samples and pictures use an emulator: outlines of
+NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how far it is from runs in between is printed.
+"""
+
+import argparse
+import os
+import pathlib
+
+from package import answer, numpy, tanktread
+import scipy.interpolate
+import scipy.ndimage
+
+from tanktread.studies import fit_data, fit_model, outline, silhouette
+
+DECK = tanktread.SOURCE / "inputs" / "studies" / "capsule_in_tube.yaml"
+FINE = {"Quadrature/tolerance": 1e-8, "Steady/tolerance": 1e-10}  # shapes that noise is not to hide
+LAWS = {"neo-Hookean": {"Membrane/law": "neo-Hookean"},
+        "Skalak, C = 1": {"Membrane/law": "Skalak", "Membrane/area dilatation": 1.0}}
+SPEEDS = [0.3, 0.5, 0.8, 1.1, 1.5]
+MODULUS, RADIUS, POINTS = 20.0, 0.8, 60
+NODES = 11
+# capillary numbers viscosity x speed / modulus, below which the rear is not hollow
+SPANS = {"neo-Hookean": (0.006, 0.09), "Skalak, C = 1": (0.008, 0.17)}
+ANGLES = 2 * numpy.pi * numpy.arange(160) / 160
+
+
+def profile(study, settings):
+    outcome = study.run(DECK, settings)
+    if not outcome.done:
+        raise SystemExit(f"a run failed: {outcome.message}")
+    return silhouette.seen(outcome.run.snapshots()[-1]).centred()
+
+
+def radii(curve):
+    """Distances of a curve from its centroid at ANGLES."""
+    points = curve.even(3000)
+    angle = numpy.unwrap(numpy.arctan2(points[:, 1], points[:, 0]))
+    closed = numpy.append(angle, angle[0] + 2 * numpy.pi)
+    length = numpy.linalg.norm(numpy.vstack([points, points[:1]]), axis=1)
+    return scipy.interpolate.CubicSpline(closed, length,
+                                         bc_type="periodic")(angle[0] + (ANGLES - angle[0]) % (2 * numpy.pi))
+
+
+class Emulator:
+    """In place of fit_model.Runs: outlines of a law by interpolation over the logarithm of the capillary number."""
+
+    messages, count = ["beyond the emulator"], 0
+
+    def __init__(self, study, law):
+        low, high = numpy.log(SPANS[law])
+        nodes = (low + high) / 2 + (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(NODES) + 0.5) / NODES)
+        jobs = [LAWS[law] | FINE | {"Membrane/shear modulus": float(numpy.exp(-node))} for node in nodes]
+        study.all([(DECK, job) for job in jobs])
+        self._span, self._known = SPANS[law], {}
+        values = numpy.array([radii(profile(study, job)) for job in jobs])
+        self._radii = scipy.interpolate.BarycentricInterpolator(nodes, values)
+
+    def curve(self, capillary_number):
+        return silhouette.Outline(self._radii(numpy.log(capillary_number))[:,
+                                                                           None]
+                                  * numpy.column_stack([numpy.cos(ANGLES), numpy.sin(ANGLES)])).centred()
+
+    def all(self, jobs):
+        numbers = [settings["Flow/mean velocity"] / settings["Membrane/shear modulus"] for _, settings in jobs]
+        for number in numbers:
+            if number not in self._known:
+                self._known[number] = [self.curve(number)] if self._span[0] < number < self._span[1] else None
+        return [self._known[number] for number in numbers]
+
+
+def experiments(curves, errors):
+    """Experiments of a fit with these points (n, 2), one a speed."""
+    found = []
+    for speed, points, error in zip(SPEEDS, curves, errors):
+        datum = fit_data.OutlineData.__new__(fit_data.OutlineData)
+        datum.name, datum.at, datum.axis, datum.scale, datum.error = f"speed {speed}", None, 1, 1.0, error
+        datum.points, datum.count, datum.places, datum.free_scale, datum.scale_error = points, len(points), 2, False, 0
+        one = fit_data.Experiment.__new__(fit_data.Experiment)
+        one.name, one.settings, one.unknowns, one.data = datum.name, {"Flow/mean velocity": speed}, [], [datum]
+        found.append(one)
+    return found
+
+
+def fitted(law, data, runs, start, settings=None):
+    unknown = fit_data.Unknown("Membrane/shear modulus", {"start": start})
+    return fit_model.Fit(law, LAWS[law] | (settings or {}), [unknown], data, runs).solve()
+
+
+def exact(study):
+    for law in LAWS:
+        curves = [profile(study, LAWS[law] | FINE | {"Flow/mean velocity": speed,
+                                                     "Membrane/shear modulus": MODULUS}).even(POINTS)
+                  for speed in SPEEDS]
+        runs = fit_model.Runs(study, [DECK], law)
+        one = fitted(law, experiments(curves, [0.005 * RADIUS] * len(SPEEDS)), runs, 10 * MODULUS, FINE)
+        print(f"{law}, no noise, start {10 * MODULUS:g}: G_s / true - 1 = "
+              f"{one.unknowns[0].value(one.x[0]) / MODULUS - 1:.1e}, {runs.count} runs", flush=True)
+
+
+def told(law, noise, fits):
+    """One row about many samples: fits of the true law and of the other."""
+    values = numpy.array([true.unknowns[0].value(true.x[0]) for true, _ in fits]) / MODULUS - 1
+    stated = numpy.array([true.number_errors[0] for true, _ in fits])
+    n, apart = len(fits), sum(other.aic - true.aic > 10 for true, other in fits)
+    wrong, runs = sum(other.aic - true.aic < -10 for true, other in fits), sum(other.runs_test() < -2 for _,
+                                                                               other in fits)
+    print(f"| {law} | {noise} | {100 * values.mean():+.3f} % ± {100 * values.std(ddof=1) / numpy.sqrt(n):.3f} % | "
+          f"{100 * values.std(ddof=1):.3f} % | " f"{100 * stated.mean():.3f} % | "
+                                                 f"{values.std(ddof=1) / stated.mean():.2f} | {apart} of {n}, wrongly "
+                                                 f"{wrong} | {runs} |", flush=True)
+
+
+def emulators(study):
+    made = {law: Emulator(study, law) for law in LAWS}
+    for law, one in made.items():
+        off = [abs(one.curve(number).distances(profile(study,
+                                                       LAWS[law] | FINE
+                                                       | {"Membrane/shear modulus": 1 / number}).even(POINTS))).max()
+               for number in (0.02, 0.08)]
+        print(f"{law}: the emulator is {max(off) / RADIUS:.1e} of the radius from runs in between")
+    print("| law | noise | mean error of G_s ± its standard error | spread | stated error | spread / stated | law "
+          "told (AIC + 10) | runs test refuses the other |")
+    print("|---|---|---|---|---|---|---|---|")
+    return made
+
+
+def both(law, data, made):
+    other = next(name for name in LAWS if name != law)
+    return tuple(fitted(name, data, made[name], 1.5 * MODULUS) for name in (law, other))
+
+
+def samples(study, number):
+    made, generator = emulators(study), numpy.random.default_rng(1)
+    for law in LAWS:
+        truth = [made[law].curve(speed / MODULUS).even(POINTS) for speed in SPEEDS]
+        for noise in 0.005, 0.02:
+            fits = []
+            for _ in range(number):
+                noisy = [points + noise * RADIUS * generator.standard_normal(points.shape) for points in truth]
+                fits.append(both(law, experiments(noisy, [noise * RADIUS] * len(SPEEDS)), made))
+            told(law, f"{100 * noise:g} %", fits)
+
+
+def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
+    """A bright field with a dark particle 0.8 of it wide, blurred (pixels) and with noise (of the contrast); and the
+    length of a pixel."""
+    length = numpy.ptp(curve.even(400), axis=0).max() / (0.8 * pixels)
+    shift = generator.uniform(-3, 3, 2)
+    x = ((numpy.arange(pixels * finer) + 0.5) / finer - pixels / 2) * length
+    right, up = (axis + one * length for axis, one in zip(numpy.meshgrid(x, -x), shift))
+    rim = curve.even(3000)
+    reach = numpy.interp(numpy.arctan2(up, right), numpy.arctan2(rim[:, 1], rim[:, 0]), numpy.linalg.norm(rim, axis=1),
+                         period=2 * numpy.pi)
+    inside = (numpy.hypot(right, up) < reach).reshape(pixels, finer, pixels, finer).mean((1, 3))
+    image = scipy.ndimage.gaussian_filter(0.8 - 0.5 * inside, blur)
+    return image + 0.5 * noise * generator.standard_normal(image.shape), length, shift
+
+
+def pictures(study, number):
+    made, generator = emulators(study), numpy.random.default_rng(2)
+    for law in LAWS:
+        truth, fits, off = [made[law].curve(speed / MODULUS) for speed in SPEEDS], [], []
+        for _ in range(number):
+            points, errors = [], []
+            for curve in truth:
+                image, length, shift = picture(curve, generator)
+                found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
+                placed = (found - (image.shape[0] - 1) / 2) * [1, -1] + shift
+                off.append(curve.distances(placed * length) / length)
+                points.append(placed * length)
+                errors.append(error * length)
+            fits.append(both(law, experiments(points, errors), made))
+        off = numpy.concatenate(off)
+        told(law, f"pictures; edge {off.mean():+.3f} ± {off.std():.3f} pixel", fits)
+
+
+def write(study, directory):
+    """Outlines of a finer mesh than the fit's, in units of 0.01 tube radii, with noise of half a per cent of the
+    radius, each at a place of its own."""
+    generator = numpy.random.default_rng(5)
+    directory.mkdir(parents=True, exist_ok=True)
+    for speed in SPEEDS:
+        curve = profile(study, {"Surface/elements per side": 8, "Flow/mean velocity": speed,
+                                "Membrane/shear modulus": MODULUS})
+        points = 100 * (curve.even(POINTS) + 0.005 * RADIUS
+                        * generator.standard_normal((POINTS, 2))) + generator.uniform(150, 250, 2)
+        path = directory / f"profile_{speed}.csv"
+        numpy.savetxt(path, points, delimiter=",", header="x1,x3", comments="", fmt="%.2f")
+        print(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--exact", action="store_true", help="fit outlines without noise")
+    parser.add_argument("--samples", type=int, default=0, metavar="N", help="samples of noise")
+    parser.add_argument("--pictures", type=int, default=0, metavar="N", help="samples of five pictures")
+    parser.add_argument("--write", type=pathlib.Path, metavar="DIR", help="write outlines there")
+    parser.add_argument("--output", default="results/synthetic_profiles", metavar="DIR",
+                        help="of runs (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(),
+                        help="runs at a time (default: the number of cores)")
+    parsed = parser.parse_args()
+    study = tanktread.Study(directory=parsed.output, jobs=parsed.jobs)
+    if parsed.write:
+        write(study, parsed.write)
+    if parsed.exact:
+        exact(study)
+    if parsed.samples:
+        samples(study, parsed.samples)
+    if parsed.pictures:
+        pictures(study, parsed.pictures)
+    return 0
+
+
+if __name__ == "__main__":
+    answer(main)
