@@ -215,7 +215,7 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   }
   find_shapes(scene, arguments, scene);
   for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
-  if (scene.domain.present) scene.domain.check(scene.flow);
+  if (scene.domain.present) scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
   scene.particles = with_copies(scene.particles, scene.domain);
   scene.check();
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);

@@ -121,7 +121,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
     return;
   }
   const surface::TubeWall& wall = *body.wall;
-  const double unknowns = 3.0 * wall.space.n_points / (wall.channel ? body.symmetry.order() : 1);
+  const double unknowns = 3.0 * static_cast<double>(wall.sites.size()) / (wall.channel ? body.symmetry.order() : 1);
   std::string flow = "quiescent fluid";
   if (scene.flow.type == "simple shear") flow = scene.flow.type + ", with which the wall goes along; the duct's own flow for the pressure drop";
   if (scene.flow.type == "duct")
@@ -134,8 +134,8 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   else
     lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
                                        wall.space.description.c_str()));
-  if (wall.images > 0)
-    lines.emplace_back("train", formatted("period %.6g, %d copies at either side, those beyond left out", *scene.tube.periodic_length, wall.images));
+  if (wall.period > 0)
+    lines.emplace_back("period", formatted("%.6g along x1: one period of the wall, all images by the kernels of one period", wall.period));
   const bool iterates = wall.channel && coupling::Wall::iterates(scene.solvers.wall, unknowns);
   const double megabytes = 8e-6 * unknowns * unknowns;
   const std::string how = iterates ? "found by GMRES and clusters in each velocity"

@@ -17,7 +17,9 @@ void DomainOptions::declare(deck::Section& section) {
   section.key("periodic", periodic, deck::Choice{"x1 x2 x3", "x1 x2", "x1 x3", "x2 x3", "x1", "x2", "x3"},
               "directions in which the scene repeats; of three the mean velocity over the cell, particles included, is that of the flow, and a net "
               "force is balanced by a uniform pressure gradient");
-  section.key("side lengths", side_lengths, deck::any(), "length", "of a box along x1, x2, x3; of a direction that does not repeat it says nothing");
+  section.key("side lengths", side_lengths, deck::any(), "length",
+              "lengths of a box along x1, x2, x3, of which those of directions that do not repeat have no meaning; with Tube or Channel the period along "
+              "x1 only");
   section.key("lattice vectors", lattice_vectors, deck::any(), "length",
               "of any other cell at time zero: nine numbers, the vector of x1, that of x2, that of x3. The flow carries them along");
 }
@@ -30,18 +32,20 @@ Mat3 DomainOptions::vectors() const {
   int n = 0;
   for (int d = 0; d < 3; ++d) {
     if (periodic.find(static_cast<char>('1' + d)) == std::string::npos) continue;
-    vectors.col(n++) = side_lengths ? Vec3((*side_lengths)[d] * Vec3::Unit(d)) : Vec3(lattice_vectors.value().row(d).transpose());
+    vectors.col(n++) = side_lengths ? Vec3((*side_lengths)[static_cast<std::size_t>(d)] * Vec3::Unit(d)) : Vec3(lattice_vectors.value().row(d).transpose());
   }
   return vectors;
 }
 
-void DomainOptions::check(const stokes::FlowOptions& flow) const {
+void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& duct) const {
+  if (!duct.empty()) return check_duct(duct);
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
   refuse(flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()), "Domain", flow.choice(),
          "a lattice can follow no flow but one whose gradient is the same everywhere");
   refuse(flow.history.has_value(), "Domain", "Flow/history", "a lattice can follow no flow but one that stays as it is");
+  if (side_lengths && side_lengths->size() != 3) throw UserError("Domain/side lengths needs three numbers, along x1, x2 and x3.");
   const Mat3 all = vectors();
   const auto columns = all.leftCols(directions());
   double product = 1;
@@ -54,10 +58,18 @@ void DomainOptions::check(const stokes::FlowOptions& flow) const {
     throw UserError(formatted("Domain/lattice vectors must span a cell, but those given have no volume: it is %.3g.", volume));
 }
 
+/// A wall of constant section, or a profile that comes back to it, repeats along x1.
+void DomainOptions::check_duct(const std::string& duct) const {
+  refuse(periodic != "x1", "Domain/periodic `" + periodic + "`", duct, "a duct repeats along x1 only: give `x1`");
+  refuse(lattice_vectors.has_value(), "Domain/lattice vectors", duct, "give the period along x1 as Domain/side lengths");
+  if (!side_lengths) throw UserError("Domain needs Domain/side lengths, the period of " + duct + " along x1.");
+  if (!(side_lengths->front() > 0)) throw UserError("Domain/side lengths must be positive in the directions of Domain/periodic.");
+}
+
 void DomainOptions::reject(const Scene& scene, Rejections& to) const {
+  if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
   to.pair(!scene.runs_in_time(), scene.sought(), "Domain", "the lattice moves along with the flow");
-  to.pair(scene.tube.present, "Domain", scene.tube.list(), "a tube does not repeat");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
   to.pair(directions() < 3 && (told || weight || scene.particle.force), "Domain/periodic `" + periodic + "`",
           told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/columns.hpp"
 #include "base/types.hpp"
@@ -19,13 +20,14 @@ struct DomainOptions {
   bool present = false;  ///< whether the scene repeats at all; nothing else counts without
 
   std::string periodic = "x1 x2 x3";    ///< directions in which it does
-  std::optional<Vec3> side_lengths;     ///< of a box
+  std::optional<std::vector<double>> side_lengths;  ///< of a box, three; with a duct its period alone; none: lattice vectors are given
   std::optional<Mat3> lattice_vectors;  ///< rows; those of directions that do not repeat count for nothing
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for keys that contradict each other or are missing, and for a flow that the lattice cannot follow.
-  void check(const stokes::FlowOptions& flow) const;
+  /// One sentence (UserError) for keys that contradict each other or are missing, and for a flow that the lattice cannot follow. `duct`: the name of
+  /// the duct that repeats, or none.
+  void check(const stokes::FlowOptions& flow, const std::string& duct) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< what a lattice excludes in the scene
 
@@ -37,6 +39,7 @@ struct DomainOptions {
 
  private:
   Mat3 vectors() const;
+  void check_duct(const std::string& duct) const;
 };
 
 /// Data of the lattice for one row.

@@ -72,7 +72,7 @@ double points(const Scene& scene) {
 }
 
 double wall_points(const Scene& scene) {
-  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : scene.tube.axial_elements;
+  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 
@@ -258,6 +258,10 @@ void Scene::declare(deck::Section& root) {
     tube.present = true;
   domain.present =
       root.optional_section("Domain", domain, "the lattice that particles repeat on, moved along by the flow; unbounded space without this list");
+  if (tube.present && !tube.channel && tube.periodic_length) {
+    refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
+    domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
+  }
   wall.present = root.optional_section("Wall", wall, "a plane wall that the fluid sticks to; none without this list");
   if ((wall.present || tube.present || domain.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
@@ -295,7 +299,7 @@ void Scene::check() const {
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
-  if (domain.present) domain.check(flow);
+  if (domain.present) domain.check(flow, tube.present ? tube.list() : "");
   if (wall.present) wall.check(flow);
   particle.shape.check();
   surface.check();

@@ -130,7 +130,7 @@ struct Scene : ParticleKind {
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is one rigid body and its resistance problem, which
   /// knows neither the balance of power, nor searches, nor forces of a wall, nor registered series, nor prescribed motion in a flow that changes.
   bool in_system() const {
-    return !particles.empty() || !name.empty() || !particle.rigid() || domain.present || output.power_balance || !runs_in_time() ||
+    return !particles.empty() || !name.empty() || !particle.rigid() || (domain.present && !tube.present) || output.power_balance || !runs_in_time() ||
            tube.repulsion || !series.empty() || (flow.history && particle.motion == Motion::prescribed);
   }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.

@@ -64,7 +64,7 @@ void check_fits(const Scene& scene, const Body& body) {
 
 /// Adds the flow rate, and the pressure drop of the empty channel if it is one.
 TubeRow with_channel(const coupling::Tube& tube, TubeRow now) {
-  now.flow_rate = tube.flow_rate(now.pressure_drop * tube.copies());
+  now.flow_rate = tube.flow_rate(now.pressure_drop);
   const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
   if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
   return now;
@@ -83,6 +83,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, flow.choice(),
           "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
           "with which the wall goes along");
+  to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the tube is as long as its period");
   to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined, "the wall is not closed");
   to.pair(scene.viscous_membrane() && tube && all_blocks, "Membrane viscosity", system,
           "the system of all blocks leaves the membrane's own load out; `schur` has it");
@@ -116,25 +117,19 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   const surface::Outline& outline = body.duct->outline();
   const double centroid = surface::measures(body.space, body.rest).centroid[0];
   const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
-  const double length = x1.maxCoeff() - x1.minCoeff(), period = scene.tube.periodic_length.value_or(0);
-  const int images = surface::train_images(scene.tube, outline.radius(), scene.quadrature.tolerance);
-  if (images > 0 && period <= length)
-    throw UserError(formatted("Tube/periodic length = %.4g must be more than the particles are long, which reach from x1 = %.4g to %.4g seen from "
-                              "their centroid.",
-                              period, x1.minCoeff(), x1.maxCoeff()));
+  const double length = x1.maxCoeff() - x1.minCoeff();
   surface::TubeOptions options = scene.tube;
-  const double chain = length + 2 * images * period, alone = surface::tube_length({}, outline.radius(), length);
-  const double along_chain = std::ceil((chain - length) / alone * options.axial_elements), most = most_wall_points() / options.azimuthal_elements;
-  if (options.axial_elements + along_chain > most)
-    throw UserError(formatted("Tube/periodic length = %.4g with %d copies at either side asks for %.3g elements along the wall, but at most %.0f fit "
-                              "into memory: give a shorter one.",
-                              period, images, options.axial_elements + along_chain, most));
-  options.axial_elements += static_cast<int>(along_chain);
-  double along = surface::tube_length(scene.tube, outline.radius(), chain);
-  if (images > 0 && options.grading == 1) along = surface::repeat_elements(options, along, period);
-  auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, chain / 2));
-  wall->images = images;
-  surface::check_length(*wall, x1.minCoeff() - images * period, x1.maxCoeff() + images * period);
+  if (scene.domain.present) {
+    const double period = scene.domain.side_lengths->front();
+    const int elements = surface::elements_per_period(options, outline.radius(), period, std::min(length, period) / 2);
+    if (const double most = most_wall_points() / options.azimuthal_elements; elements > most)
+      throw UserError(formatted("A period of %.4g asks for %d elements along the wall, but at most %.0f fit into memory: give a shorter one.", period,
+                                elements, most));
+    return std::make_shared<surface::TubeWall>(surface::periodic_tube_wall(outline, options, period, elements, std::min(length, period) / 2));
+  }
+  const double along = surface::tube_length(scene.tube, outline.radius(), length);
+  auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, length / 2));
+  surface::check_length(*wall, x1.minCoeff(), x1.maxCoeff());
   return wall;
 }
 
@@ -145,8 +140,6 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   parameters.viscosity_ratio = scene.particle.viscosity_ratio;
   if (scene.tube.channel) parameters.symmetry = body.symmetry;
   parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
-  parameters.period = scene.tube.periodic_length.value_or(0);
-  parameters.copies = body.wall->images;
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
   if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
@@ -171,7 +164,7 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(checks.flux, {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", {}, tube});
   to.add(checks.force, {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: "
          "should vanish (2.14)", {}, tube});
-  to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
+  if (to.when(!scene.domain.present)) to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
   to.add(checks.pressure_by_flux, {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance "
          "vanishes", {}, tube});
   to.add(checks.pressure_by_force, {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance", {},
@@ -180,7 +173,7 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
 
 TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e) {
   const coupling::Tube::Checks checks = e.checks();
-  return with_channel(tube, {.pressure_drop = e.response().pressure_drop / tube.copies(), .gap = tube.gap(), .checks = checks});
+  return with_channel(tube, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = checks});
 }
 
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop) {
@@ -188,17 +181,12 @@ TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop)
 }
 
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
-  if (wall.channel || (scene.particles.empty() && !scene.tube.periodic_length)) return;
+  if (wall.channel || wall.period > 0 || scene.particles.empty()) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
-  const double period = scene.tube.periodic_length.value_or(0), chain = wall.images * period;
-  if (period > 0 && x1.maxCoeff() - x1.minCoeff() >= period)
-    throw RunFailure(formatted("the particles reach from x1 = %.4g to %.4g seen from their centroid, into their copies: Tube/periodic length = %.4g "
-                               "is too short",
-                               x1.minCoeff(), x1.maxCoeff(), period));
-  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + chain + wall.radius());  // nearer to an end the disturbance has not died out
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out
   if (wall.length() < needed)
-    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
-                               "an end, Tube/length = %.4g is too short",
+    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at an "
+                               "end, Tube/length = %.4g is too short",
                                x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
 }
 

@@ -52,13 +52,14 @@ void Layer::set_reference(const Net& unstressed, std::vector<bool> present) {
   surface_.self_field.forget_weights(), measure_.reset();
 }
 
-void Layer::repeat(const PeriodicCell& cell) {
+void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   constexpr int least_images = 27;
   if (cell_ && *cell_ == cell) return;
   if (!cell_) surface_.repeat();
   if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance, precision());
-  cell_ = cell;
+  cell_ = cell, repetition_ = how;
   near_images_ = cell.around({2, 2, 2});
+  if (!how.itself) std::erase(near_images_, Vec3::Zero());
   measure_.reset();
 }
 
@@ -86,7 +87,7 @@ void Layer::place(const Net& x, Measure measure) {
 }
 
 void Layer::place_in_cell() {
-  std::array<Vec3, 2> extent{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
+  std::array<Vec3, 2> extent = repetition_.across;
   for (int e = 0; e < surface_.panels.size(); ++e) {
     const int n = surface_.panels[e].table->n_bernstein;
     const double* x = &surface_.bezier[surface_.panels[e].first_bezier];
@@ -175,6 +176,7 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 /// The far sum over all panels, and in its place better rules for those that are close to a target or that it lies on.
 void Layer::integrate(const Targets& targets, Net& u) {
   add_far(targets, u);
+  if (cell_ && !repetition_.itself) subtract_itself(targets, u);
   if (cell_) add_rest(targets, u);
   if (images_) add_images(targets, u);
   {
@@ -233,6 +235,16 @@ void Layer::add_far(const Targets& targets, Net& u) {
   }
   for (std::size_t k = 0; k < places.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
+}
+
+/// Takes the surfaces themselves out of the far sum. Nodes are put into the cell one by one, so that none of the images there is the identity for all.
+void Layer::subtract_itself(const Targets& targets, Net& u) {
+  const auto clock = phases_.time("far");
+  const std::vector<Vec3> at = rows_of(targets.at, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
+  Net sums(targets.far_rows.size(), 3);
+  single() ? far_sums(forces(surface_.node), at, sums.data(), precision()) : far_sums(stresslets(surface_.node), at, f0, sums.data(), precision());
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.far_rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
+  evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
 }
 
 /// What images beyond those in the far sum do, and of a double layer the pressure of (2.28).
@@ -417,29 +429,35 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   const auto clock = phases_.time("near");
   Near kept{{0}, {}, {}};
   for (const int i : targets) {
-    const Vec3 y = at.row(i).transpose();
-    for (const int e : surface_.near(y, {})) {
-      const Panel& panel = surface_.panels[e];
-      const NodeTable& t = *panel.table;
-      const std::size_t first = kept.moments.size();
-      kept.panels.push_back(e);
-      kept.moments.resize(first + static_cast<std::size_t>(6) * t.n_bernstein);
-      double* moments = &kept.moments[first];
-      const PointTable& table = surface_.near_field.rule(e, y, {});
-      panel_moments(e, table, nullptr, y, moments);
-      evaluations_.near += table.points + t.n_nodes;
-      for (int k = 0; k < t.n_nodes; ++k) {  // less those of the far rule
-        const int node = panel.first_node + k;
-        const Vec3 r = Vec3(surface_.node[0][node], surface_.node[1][node], surface_.node[2][node]) - y;
-        const Mat3 g = single() ? Mat3(weight_[node] * stokeslet(r)) : stresslet(r, Vec3(normal_[0][node], normal_[1][node], normal_[2][node]));
-        const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
-        for (int b = 0; b < t.n_bernstein; ++b)
-          for (int c = 0; c < 6; ++c) moments[6 * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
+    for (const Vec3& image : near_images_) {
+      const Vec3 y = at.row(i).transpose() - image;
+      for (const int e : surface_.near(y, {})) {
+        const std::size_t first = kept.moments.size();
+        kept.panels.push_back(e);
+        kept.moments.resize(first + static_cast<std::size_t>(6) * surface_.panels[e].table->n_bernstein);
+        const PointTable& table = surface_.near_field.rule(e, y, {});
+        moments_beyond_far_sum(e, table, nullptr, y, &kept.moments[first]);
+        evaluations_.near += table.points + surface_.panels[e].table->n_nodes;
       }
     }
     kept.first.push_back(kept.panels.size());
   }
   return kept;
+}
+
+/// Bernstein moments of panel e by a rule, less those of its far nodes.
+void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
+  const Panel& panel = surface_.panels[e];
+  const NodeTable& t = *panel.table;
+  panel_moments(e, table, pair, at, moments);
+  for (int k = 0; k < t.n_nodes; ++k) {
+    const int node = panel.first_node + k;
+    const Vec3 r = Vec3(surface_.node[0][node], surface_.node[1][node], surface_.node[2][node]) - at;
+    const Mat3 g = single() ? Mat3(weight_[node] * stokeslet(r)) : stresslet(r, Vec3(normal_[0][node], normal_[1][node], normal_[2][node]));
+    const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
+    for (int b = 0; b < t.n_bernstein; ++b)
+      for (int c = 0; c < 6; ++c) moments[6 * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
+  }
 }
 
 void Layer::add_kept(const Targets& targets, Net& u) const {

@@ -1,6 +1,7 @@
 #pragma once
 // Layer potentials of spline surfaces: what they do to the fluid on them and off them.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,6 +31,13 @@ using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor
 struct NearPoints {
   std::vector<std::size_t> first{0};
   std::vector<int> point;
+};
+
+/// How images of surfaces that repeat count.
+struct Repetition {
+  bool itself = true;      ///< false: the images without the surfaces themselves
+  bool assembled = false;  ///< assembled rows hold the images too, but for the smooth rest (PeriodicSum), which `assemble_rest` adds
+  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest coordinates of targets, in the cell's axes
 };
 
 /// One layer of spline surfaces p, open or closed, at targets x0 on or off them, without the viscosity, of a density with control values f_B:
@@ -69,8 +77,8 @@ class Layer {
   ///
   ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p,                                              (2.28)
   ///
-  /// and int T n is that of (2.3). Again for each cell of one that deforms. What is assembled leaves images out.
-  void repeat(const PeriodicCell& cell);
+  /// and int T n is that of (2.3). Again for each cell of one that deforms. What is assembled leaves images out unless `how` says otherwise.
+  void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
   /// States that there is a plane wall, which all shapes to come are in front of: G and T are those that vanish on it, (2.35) and (2.36). Not on a
   /// lattice. What is assembled of near control points alone leaves the wall out.
@@ -112,6 +120,9 @@ class Layer {
   void assemble(std::span<const int> sites, Rows<double>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
+
+  /// Adds to rows of a single layer, at sites or at points, what the images that are not near do.
+  void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
   /// The same of what the wall adds alone.
   void assemble_images(std::span<const int> sites, Rows<double>& a);
@@ -183,6 +194,8 @@ class Layer {
   void add_stresslets_by_clusters(const Targets& targets, Net& u);
   Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count);
   void add_kept(const Targets& targets, Net& u) const;
+  void moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
+  void subtract_itself(const Targets& targets, Net& u);
   const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
   void panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
   void add_images(const Targets& targets, Net& u);
@@ -212,6 +225,7 @@ class Layer {
   std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times the weight in a single layer; normal times area and k
   std::optional<TreeSum> tree_;                                    // where clusters are faster
   std::optional<PeriodicCell> cell_;                               // of a lattice of images
+  Repetition repetition_;                                          // over it
   std::optional<PeriodicSum> periodic_;                            // the sum over it
   std::vector<double> in_cell_[3];                                 // far nodes in the cell
   std::vector<Vec3> near_images_{Vec3::Zero()};                    // of panels that a target may be close to

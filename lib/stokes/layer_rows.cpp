@@ -48,11 +48,11 @@ struct FarBasis {
   }
 
   /// What the far nodes of the k-th panel need but for weights or normals.
-  PanelNodes<Real> nodes(const LayerSurface& surface, std::size_t k) const {
+  PanelNodes<Real> nodes(const LayerSurface& surface, const std::vector<double> (&x)[3], std::size_t k) const {
     const Panel& p = surface.panels[panels[k]];
     PanelNodes<Real> nodes;
     nodes.n_nodes = p.table->n_nodes, nodes.functions = (p.functions + assembly_tile - 1) / assembly_tile * assembly_tile;
-    nodes.x = &surface.node[0][p.first_node], nodes.y = &surface.node[1][p.first_node], nodes.z = &surface.node[2][p.first_node];
+    nodes.x = &x[0][p.first_node], nodes.y = &x[1][p.first_node], nodes.z = &x[2][p.first_node];
     nodes.basis = &values[first_value[k]], nodes.rows = &rows[first_row[k]];
     return nodes;
   }
@@ -104,13 +104,17 @@ class Layer::RowSums {
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
-    double place[3 * assembly_block];
-    for (int l = 0; l < assembly_block; ++l) {
-      const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
-      for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = x0[c];
+    const bool repeats = layer_.repetition_.assembled;
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) repeats ? add_close_images(targets[l], l) : add_close_panels(targets[l], l);
+    for (const Vec3& image : repeats ? layer_.periodic_->images() : std::vector<Vec3>{Vec3::Zero()}) {
+      double place[3 * assembly_block];
+      for (int l = 0; l < assembly_block; ++l) {
+        const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
+        const Vec3 seen = repeats ? Vec3(layer_.periodic_->wrapped(x0) - image) : x0;
+        for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = seen[c];
+      }
+      for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
     }
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], l);
-    for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
   }
 
  private:
@@ -127,19 +131,36 @@ class Layer::RowSums {
       if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
   }
 
+  /// The same on a lattice, where all nodes are in the far sum, each with the images that are near in the cell.
+  void add_close_images(int target, int l) {
+    LayerSurface& surface = layer_.surface_;
+    for (const Vec3& image : layer_.near_images_) {
+      const Vec3 x0 = place_of(target) - image;
+      const std::span<SelfPair> own = !at_ && image.isZero(0) ? surface.own(target) : std::span<SelfPair>();
+      for (const int e : surface.near(x0, own))
+        if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, own), nullptr, x0, l);
+      for (SelfPair& pair : own)
+        if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
+    }
+  }
+
   void add_panel(int e, const PointTable& table, SelfPair* pair, const Vec3& x0, int l) {
     const Panels& panels = layer_.surface_.panels;
     const auto k = static_cast<std::size_t>(basis.index[e]);
-    skip_[k] |= 1u << l;
     moments_.resize(static_cast<std::size_t>(6) * panels[e].table->n_bernstein);
-    layer_.panel_moments(e, table, pair, x0, moments_.data());
+    if (layer_.repetition_.assembled) {
+      layer_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
+    } else {
+      skip_[k] |= 1u << l;
+      layer_.panel_moments(e, table, pair, x0, moments_.data());
+    }
     add_moments(panels, e, &basis.rows[basis.first_row[k]], moments_.data(), &sums[l]);
     (pair ? layer_.evaluations_.self : layer_.evaluations_.near) += table.points;
   }
 
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
     const int first = layer_.surface_.panels[basis.panels[k]].first_node;
-    PanelNodes<Real> nodes = basis.nodes(layer_.surface_, k);
+    PanelNodes<Real> nodes = basis.nodes(layer_.surface_, layer_.repetition_.assembled ? layer_.far_places() : layer_.surface_.node, k);
     if (layer_.single())
       nodes.weight = &layer_.weight_[first];
     else
@@ -195,6 +216,29 @@ void Layer::assemble(std::span<const int> sites, Rows<float>& a) { assemble_rows
 void Layer::assemble(std::span<const int> sites, Rows<double>& a) { assemble_rows(sites, nullptr, a); }
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a) { assemble_rows(targets, &at, a); }
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
+
+void Layer::assemble_rest(std::span<const int> sites, Rows<double>& a) {
+  assert(single() && cell_);
+  const auto clock = phases_.time("assembly");
+  std::vector<Vec3> at, nodes;
+  for (const int i : sites) at.push_back(periodic_->wrapped(surface_.site(i)));
+  for (std::size_t k = 0; k < in_cell_[0].size(); ++k) nodes.emplace_back(in_cell_[0][k], in_cell_[1][k], in_cell_[2][k]);
+  const Eigen::MatrixXd to = periodic_->lagrange(at);
+  Eigen::MatrixXd from = periodic_->lagrange(nodes), basis(from.cols(), surface_.n_points);  // int L_a N_B dG
+  for (Eigen::Index a = 0; a < from.cols(); ++a) {
+    from.col(a).array() *= Eigen::Map<const Eigen::ArrayXd>(weight_.data(), n_nodes());
+    basis.row(a) = moments({from.col(a).data(), from.col(a).data() + from.rows()}).transpose();
+  }
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = upper[c];
+    const Eigen::MatrixXd part = over_8_pi * (to * (periodic_->between_nodes(c) * basis));
+    for (Eigen::Index k = 0; k < part.rows(); ++k)
+      for (Eigen::Index b = 0; b < part.cols(); ++b) {
+        a(3 * k + i, 3 * b + j) += part(k, b);
+        if (i != j) a(3 * k + j, 3 * b + i) += part(k, b);
+      }
+  }
+}
 
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
   assert(single());

@@ -199,14 +199,13 @@ void TubeOptions::declare(deck::Section& list) {
              "of the tube's piece that is modelled; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length "
              "and 4.6 R_T where that is more");
     list.key("periodic length", periodic_length, deck::positive(), "length",
-             "L: the particles repeat along x1 with this period, as a train without end; only once if not given");
-    list.key("images", images, deck::between(1, 100), "1",
-             "M: copies of a train modelled at either side; those beyond count for exp(-2.6 M L/R_T), on the axis exp(-4.5 M L/R_T); if not given as "
-             "many as make the former less than `Quadrature/tolerance`");
-    list.key("axial elements", axial_elements, deck::between(4, 400), "1", "of the wall, along; of a train for each copy");
+             "period L after which tube and particles repeat along x1, as a train without end; short for a Domain that is periodic along x1");
+    list.key("images", images, deck::between(1, 100), "1", "no effect any more: a tube that repeats has all images");
+    list.key("axial elements", axial_elements, deck::between(4, 400), "1",
+             "number of elements of the wall along the tube, or along one period; 25 if not given, and of a period as dense as they would be in a "
+             "tube that does not repeat");
     list.key("grading", grading, deck::between(1.0, 20.0), "1",
-             "g: the wall's elements along the tube are denser around the particle, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform, a whole "
-             "number in each period of a train");
+             "g: the wall's elements along the tube are denser around the particles, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest gap between particle and wall; a run that comes closer stops with a checkpoint. Integrals keep their accuracy down to "

@@ -127,7 +127,8 @@ struct TubeOptions {
   std::optional<double> periodic_length;  ///< L: the particles repeat along x1, a train; none: they do not
   std::optional<int> images;              ///< M: copies modelled at either side; from the tolerance of integrals if not given
   int azimuthal_elements = 24;   ///< of the wall, around
-  int axial_elements = 25;       ///< of the wall, along; three more control points
+  static constexpr int default_axial_elements = 25;
+  std::optional<int> axial_elements;  ///< of the wall, along, or of one period; three more control points where it is open
   double grading = 4;            ///< density of elements along the tube, at the particle over far away
 
   double contact_gap = 0.02;  ///< between particle and wall, over R_C: a run that comes closer stops

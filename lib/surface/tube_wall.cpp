@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "spline/bernstein.hpp"
@@ -103,6 +105,17 @@ std::vector<double> graded_knots(double length, int elements, double grading, do
   return knots;
 }
 
+std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around) {
+  std::vector<std::vector<spline::Site>> all;
+  for (const auto& in_s : along.sites)
+    for (const auto& in_t : around.sites) {
+      std::vector<spline::Site>& sites = all.emplace_back();
+      for (const auto& [i, s] : in_s)
+        for (const auto& [k, t] : in_t) sites.push_back({i * static_cast<int>(around.pieces.size()) + k, s, t});
+    }
+  return all;
+}
+
 spline::Space product(const Line& along, const Line& around) {
   spline::Space space;
   space.n_points = along.n * around.n;
@@ -122,22 +135,61 @@ spline::Space product(const Line& along, const Line& around) {
       element.extraction = std::make_shared<const Eigen::MatrixXd>(std::move(extraction));
       space.elements.push_back(std::move(element));
     }
-  for (const auto& in_s : along.sites)
-    for (const auto& in_t : around.sites) {
-      std::vector<spline::Site> sites;
-      for (const auto& [i, s] : in_s)
-        for (const auto& [k, t] : in_t) sites.push_back({i * m + k, s, t});
-      space.collocation.push_back(std::move(sites));
-    }
+  space.collocation = sites_of(along, around);
   spline::share_extraction(std::array{&space});
   return space;
 }
 
-/// A wall with everything but its control points; the control points of the outline.
-std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements) {
+/// Makes densities periodic on a wall whose elements along `open` are those of the periodic splines between `knots`, with the last of these cut at
+/// the seam: open.pieces[0] is the rest of it.
+void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<double>& knots) {
+  const double period = wall.end - wall.start;
+  std::vector<double> ends{wall.start}, cycle = knots;
+  ends.insert(ends.end(), knots.begin(), knots.end());
+  ends.push_back(wall.end), cycle.push_back(knots.front() + period);
+  Line closed;
+  add(closed, cycle, true, false);
+  open.sites.clear();
+  for (int i = 0; i < closed.n; ++i) {  // Greville points, as add() has them
+    const auto knot = [&](int k) { return cycle[static_cast<std::size_t>((k + closed.n) % closed.n)] + period * std::floor(1. * k / closed.n); };
+    const double u = (knot(i - 1) + knot(i) + knot(i + 1)) / 3;
+    open.add_site(u < wall.start ? u + period : u >= wall.end ? u - period : u, ends, 0, false);
+  }
+  wall.sites = sites_of(open, around);
+  const int last = static_cast<int>(closed.pieces.size()) - 1, m = static_cast<int>(around.pieces.size());
+  const double seam = (wall.end - knots.back()) / (cycle.back() - knots.back());  // share of the last element before the end
+  const auto fill = [&](int piece, int of_closed, double from, double to) {
+    const Line::Piece &here = open.pieces[static_cast<std::size_t>(piece)], &there = closed.pieces[static_cast<std::size_t>(of_closed)];
+    const Eigen::Matrix4d values = there.extraction * spline::restriction(3, from, to).transpose();
+    return std::pair(here, Eigen::Matrix4d(here.extraction.transpose().inverse() * values.transpose()));
+  };
+  Eigen::MatrixXd e = Eigen::MatrixXd::Zero(open.n, closed.n);
+  for (int piece = 0; piece <= last + 1; ++piece) {
+    const int of_closed = piece == 0 ? last : piece - 1;
+    const auto [here, part] = piece == 0 ? fill(piece, last, seam, 1) : fill(piece, of_closed, 0, piece == last + 1 ? seam : 1);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b) e(here.functions[a], closed.pieces[static_cast<std::size_t>(of_closed)].functions[b]) = part(a, b);
+    for (int k = 0; k < m; ++k) wall.middle_of.push_back((piece == last + 1 ? 0 : piece) * m + k);
+    if (piece > last) continue;
+    const double middle = piece == 0 ? (0.5 - seam) / (1 - seam) : 0.5;
+    for (int k = 0; k < m; ++k) wall.middles.push_back({piece * m + k, middle, 0.5});
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < open.n; ++i)
+    for (int j = 0; j < closed.n; ++j)
+      for (int k = 0; k < around.n && std::abs(e(i, j)) > 1e-15; ++k) entries.emplace_back(i * around.n + k, j * around.n + k, e(i, j));
+  wall.open_from_periodic.resize(open.n * around.n, closed.n * around.n);
+  wall.open_from_periodic.setFromTriplets(entries.begin(), entries.end());
+  wall.period = period;
+}
+
+/// A wall with everything but its control points; the control points of the outline. `periodic`: knots of densities that repeat, between those of the
+/// two ends, or none.
+std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
+                                             const std::vector<double>& periodic = {}) {
   Line along, around;
   add(along, knots, false, false);
-  TubeWall wall{{}, {}, section.spline(azimuthal_elements), knots.front(), knots.back(), 0, 0, 0, 0, {}};
+  TubeWall wall{.space = {}, .net = {}, .outline = section.spline(azimuthal_elements), .start = knots.front(), .end = knots.back()};
   std::vector<Vec2> ring;
   for (int k = 0; k < wall.outline.n_sides(); ++k) {
     const CubicCurve& side = std::get<CubicCurve>(wall.outline.side(k));
@@ -150,25 +202,50 @@ std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::
   wall.space.description = formatted("%d x %d cubic elements, %d control points", static_cast<int>(around.pieces.size()),
                                      static_cast<int>(along.pieces.size()), wall.space.n_points);
   wall.net.resize(wall.space.n_points, 3);
+  if (!periodic.empty()) {
+    repeat(wall, std::move(along), around, periodic);
+  } else {
+    wall.sites = wall.space.collocation;
+    for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e) wall.middles.push_back({e, 0.5, 0.5}), wall.middle_of.push_back(e);
+  }
   return {std::move(wall), std::move(ring)};
 }
 
 }  // namespace
 
-TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
-  const double width = std::max(section.radius(), half_length);
-  const std::vector<double> knots = graded_knots(length, options.axial_elements, options.grading, width);
-  auto [wall, ring] = woven(section, knots, options.azimuthal_elements);
+namespace {
+
+TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std::vector<double>& knots, const std::vector<double>& periodic) {
+  auto [wall, ring] = woven(section, knots, azimuthal_elements, periodic);
   wall.space.description = "tube, " + wall.space.description;
-  const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, options.axial_elements))]; };
+  const int last = static_cast<int>(knots.size()) - 1;
+  const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // the control points of x1 itself
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
   }
-  const int middle = options.axial_elements / 2;
-  wall.widest = std::max(knot(middle + 1) - knot(middle), wall.outline.length() / options.azimuthal_elements);
-  return wall;
+  wall.widest = std::max(knot(last / 2 + 1) - knot(last / 2), wall.outline.length() / azimuthal_elements);
+  return std::move(wall);
+}
+
+}  // namespace
+
+TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
+  const int elements = options.axial_elements.value_or(TubeOptions::default_axial_elements);
+  const double width = std::max(section.radius(), half_length);
+  return straight_wall(section, options.azimuthal_elements, graded_knots(length, elements, options.grading, width), {});
+}
+
+TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length) {
+  const std::vector<double> twice = graded_knots(period, 2 * elements, options.grading, std::max(section.radius(), half_length));
+  std::vector<double> knots;
+  for (std::size_t k = 1; k < twice.size(); k += 2) knots.push_back(twice[k]);
+  const double start = -period / 2 - (twice[1] - twice[0]) / 2;
+  std::vector<double> ends{start};
+  ends.insert(ends.end(), knots.begin(), knots.end());
+  ends.push_back(start + period);
+  return straight_wall(section, options.azimuthal_elements, ends, knots);
 }
 
 namespace {
@@ -223,17 +300,11 @@ double tube_length(const TubeOptions& options, double radius, double particle_le
   return options.length.value_or(std::max(2 * std::numbers::pi * radius, particle_length + 4.6 * radius));
 }
 
-double repeat_elements(TubeOptions& options, double length, double period) {
-  const auto whole = [](double number) { return static_cast<int>(std::ceil(number - 1e-9)); };
-  const int in_period = whole(options.axial_elements * period / length), odd = in_period % 2;
-  options.axial_elements = 2 * whole((length * in_period / period - odd) / 2) + odd;
-  return options.axial_elements * period / in_period;
-}
-
-int train_images(const TubeOptions& options, double radius, double tolerance) {
-  if (!options.periodic_length) return 0;
-  constexpr double decay = 2.57;  // of what a particle off the axis does, over R_T
-  return options.images.value_or(std::max(1, static_cast<int>(std::ceil(-std::log(tolerance) * radius / (decay * *options.periodic_length)))));
+int elements_per_period(const TubeOptions& options, double radius, double period, double half_length) {
+  if (options.axial_elements) return *options.axial_elements;
+  const double width = std::max(radius, half_length), usual = tube_length({}, radius, 0);
+  const auto share = count(period / (2 * width), options.grading) / count(usual / (2 * radius), options.grading) * width / radius;
+  return std::max(4, static_cast<int>(std::ceil(TubeOptions::default_axial_elements * share - 1e-9)));
 }
 
 void check_length(const TubeWall& wall, double first, double last) {

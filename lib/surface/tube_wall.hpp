@@ -2,6 +2,9 @@
 // The wall of a tube as a spline surface.
 
 #include <memory>
+#include <vector>
+
+#include <Eigen/SparseCore>
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
@@ -22,8 +25,12 @@ struct TubeWall {
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
   double widest = 0;  ///< the larger side of the largest element at x1 = 0, of a channel where it is narrowest, about
-  int images = 0;  ///< copies of a train at either side that it is laid around
   std::shared_ptr<const Channel> channel;  ///< that this is the wall of; none: a straight tube
+  std::vector<std::vector<spline::Site>> sites;  ///< collocation points of densities; of an open wall those of the space
+  std::vector<spline::Site> middles;             ///< of the elements of densities
+  std::vector<int> middle_of;                    ///< number of the middle for each element of the space
+  double period = 0;                             ///< L, after which it repeats along x1; 0: it is open, with two ends
+  Eigen::SparseMatrix<double> open_from_periodic;  ///< E: control values on the space from those of a periodic density; of an open wall empty
 
   double length() const { return end - start; }
   double radius() const { return outline.radius(); }  ///< R_T
@@ -33,6 +40,11 @@ struct TubeWall {
 /// or `half_length` of the particle where that is more.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
+/// One period [-period/2, period/2) of the wall of a section, about, with this number of elements along it and the grading of the options. Its
+/// geometry is an open spline surface, on which densities are periodic splines: (control values on the space) = E (those of the density). The seam is
+/// inside of an element, at a quarter of it, so that neither a collocation point nor the middle of an element lies on it.
+TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length = 0);
+
 /// The wall of a channel: (C, f2 N, f3 e3) interpolated by cubic splines at the channel's knots, times the outline. `start` and `end` count along its
 /// centre line.
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements);
@@ -41,13 +53,8 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
 /// decays like exp(-4.5 x1/R_T)).
 double tube_length(const TubeOptions& options, double radius, double particle_length);
 
-/// A length, no less than this one, and its number of elements, that are not wider: a whole number fits into a period, and one ends half a period
-/// from the middle. So all copies of a train see the same wall, and those of a period twice as long.
-double repeat_elements(TubeOptions& options, double length, double period);
-
-/// How many copies of a train's particle are modelled at either side: those of the options, or such that exp(-2.57 M L/R_T) is below the tolerance.
-/// Nothing repeats: 0.
-int train_images(const TubeOptions& options, double radius, double tolerance);
+/// Number of elements along a period: those of the options, or as dense as those around a short particle in a tube that does not repeat.
+int elements_per_period(const TubeOptions& options, double radius, double period, double half_length);
 
 /// Throws UserError when the particle, from x1 = `first` to `last`, is closer than 1.7 R_T to an end of the wall: what is neglected
 /// there is 1e-5 at 1.7 R_T.

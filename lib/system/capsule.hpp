@@ -181,6 +181,13 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< at the time told last
 
+  /// Moves every particle into the cell by a lattice vector, and returns these vectors. The cell is around the origin, or in a straight tube, whose wall
+  /// goes along, around the mean of the particles.
+  std::vector<Vec3> put_into_cell(Net& x);
+
+  /// How much faster the flow is a lattice vector further; a duct's flow repeats.
+  Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.gradient(Vec3::Zero()) * shift); }
+
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< of both layers
   const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< none: velocities are collocated
@@ -201,11 +208,11 @@ class Capsule : public Dynamics {
   Net solve(Evaluation& e, Net x, const Net& guess);
   Net solve_tractions(Evaluation& e, const Net& x);
   bool deform_cell(double time);
-  std::vector<Vec3> put_into_cell(Net& x) const;
   Net single_layer_of(const Net& x, const Net& f);
   Net double_layer_of(const Net& v);
   Net membrane_load(Evaluation& e, const Net& x, Net* other);
   void place(const Net& x);
+  Vec3 cell_origin(const Net& x) const;
   Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
   void own(const surface::Share& share);
@@ -294,6 +301,7 @@ class Capsule : public Dynamics {
   std::shared_ptr<Evaluation> latest_;
   std::array<Net, 2> forces_;  // their work, of contacts and of fields on what deforms; empty nets: none
   Net placed_;     // the tube's particle
+  std::optional<double> along_, placed_along_;  // origin of the frame of a straight wall that repeats; of the particle placed
 };
 
 }  // namespace tanktread::coupling

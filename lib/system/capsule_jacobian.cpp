@@ -186,7 +186,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
   Net in_cell = x, slower = u;
   const std::vector<Vec3> shifts = put_into_cell(in_cell);
   for (std::size_t p = 0; p < shifts.size(); ++p)
-    particles()[p].block.rows(slower).rowwise() -= (flow_.gradient(Vec3::Zero()) * shifts[p]).transpose();
+    particles()[p].block.rows(slower).rowwise() -= faster_beyond(shifts[p]).transpose();
   return defect_here(in_cell, slower);
 }
 

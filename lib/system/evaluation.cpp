@@ -61,7 +61,9 @@ const RigidParticles& Evaluation::rigid() {
 
 const Tube::Response& Evaluation::response() {
   if (!response_ && (known_.size() == 0 || !system_->unknowns_follow())) solve();
-  system_->place(x_);
+  Net inside = x_;
+  if (system_->cell()) system_->put_into_cell(inside);
+  system_->place(inside);
   if (!response_ && !solved_) {
     unknowns_ = known_;
     load_ = system_->membrane_load(*this, x_, nullptr);

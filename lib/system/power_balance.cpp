@@ -83,7 +83,7 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   if (flow.duct()) {
     const Tube& tube = *capsule_.tube();
     const double drop = e.response().pressure_drop;
-    return flow.amplitude() * tube.flow_rate(drop) * drop / tube.copies();
+    return flow.amplitude() * tube.flow_rate(drop) * drop;
   }
   const Net& x = e.x();
   const Net flux = capsule_.geometry().volume_gradient(x);
@@ -130,11 +130,14 @@ Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell()) {
-    single_.repeat(*cell);
-    if (double_) double_->repeat(*cell);
-    for (const Particle& particle : capsule_.particles()) {
-      const Vec3 shift = cell->shift(particle.block.rows(x).colwise().mean().transpose()), slower = flow.gradient(Vec3::Zero()) * shift;
-      particle.block.rows(x).rowwise() -= shift.transpose();
+    if (!capsule_.tube()) {
+      single_.repeat(*cell);
+      if (double_) double_->repeat(*cell);
+    }
+    const std::vector<Vec3> shifts = capsule_.put_into_cell(x);
+    for (std::size_t p = 0; p < shifts.size(); ++p) {
+      const Particle& particle = capsule_.particles()[p];
+      const Vec3 slower = capsule_.faster_beyond(shifts[p]);
       particle.block.rows(v).rowwise() -= slower.transpose();
       if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
     }

@@ -76,7 +76,7 @@ void contract(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& by, s
 
 }  // namespace
 
-PeriodicCell::PeriodicCell(const Mat3& vectors, int n) : vectors_(vectors), n_(n) {
+PeriodicCell::PeriodicCell(const Mat3& vectors, int n, double reference) : vectors_(vectors), n_(n), reference_(reference) {
   reduce(vectors_, n);
   if (n == 1) vectors_.col(1) = vectors_.col(0).unitOrthogonal();
   if (n < 3) vectors_.col(2) = vectors_.col(0).cross(vectors_.col(1)).normalized();
@@ -219,6 +219,16 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   add(end + 1, 1 / 48.), add(end - 1, -1 / 48.);
 }
 
+/// The constant of (2.45), less the limits of the images that are near.
+void PeriodicKernel::add_constant(double* values) const {
+  if (kind_ == Kind::stresslet || cell_.reference() == 0) return;
+  const double h = cell_.vectors().col(0).norm();
+  const Vec3 e = cell_.vectors().col(0) / h;
+  double factor = 2 / h * (std::log(cell_.reference() / (2 * h)) + std::numbers::egamma + 0.5);
+  for (int n = 1; n <= near_[0]; ++n) factor -= 2 / (n * h);
+  for (int c = 0; c < 6; ++c) values[c] += factor * (delta(pairs[c][0], pairs[c][1]) + e[pairs[c][0]] * e[pairs[c][1]]);
+}
+
 std::vector<double> PeriodicKernel::values(const std::array<std::vector<double>, 3>& s) const {
   const std::size_t n = s[0].size() * s[1].size() * s[2].size();
   std::vector<double> all = cell_.n() == 1 ? std::vector<double>(n * static_cast<std::size_t>(components()), 0.) : waves(s);
@@ -227,7 +237,7 @@ std::vector<double> PeriodicKernel::values(const std::array<std::vector<double>,
     const std::size_t plane = s[1].size() * s[2].size();
     const Vec3 r = box_ * Vec3(s[0][k / plane], s[1][k / s[2].size() % s[1].size()], s[2][k % s[2].size()]);
     std::fill_n(own, 18, 0.);
-    if (cell_.n() == 1) add_row(r, own);
+    if (cell_.n() == 1) add_row(r, own), add_constant(own);
     if (cell_.n() > 1) add_smooth_images(r, own);
     if (cell_.n() == 2) add_mode_across(r, own);
     for (std::size_t c = 0; c < static_cast<std::size_t>(components()); ++c) all[n * c + k] += own[c];

@@ -11,12 +11,14 @@ namespace tanktread::stokes {
 /// n = 1, 2 or 3 vectors after which everything repeats, the shortest of their lattice, and unit vectors across for the other directions.
 class PeriodicCell {
  public:
-  /// The first n columns of `vectors` are the lattice's, linearly independent.
-  PeriodicCell(const Mat3& vectors, int n);
+  /// The first n columns of `vectors` are the lattice's, linearly independent. `reference`: of one period the distance across at which the axial
+  /// velocity of a row of unit forces changes its sign (2.45), which fixes the constant of the Stokeslet; 0: the constant is left open.
+  PeriodicCell(const Mat3& vectors, int n, double reference = 0);
 
   int n() const { return n_; }
   const Mat3& vectors() const { return vectors_; }  ///< columns
   double volume() const { return volume_; }         ///< area of two, length of one
+  double reference() const { return reference_; }
 
   /// Lattice coordinates of a place: of directions across lengths.
   Vec3 coordinates(const Vec3& x) const { return inverse_ * x; }
@@ -30,12 +32,14 @@ class PeriodicCell {
   /// The lattice vectors with up to `most[d]` steps along vector d, either way.
   std::vector<Vec3> around(const std::array<int, 3>& most) const;
 
-  bool operator==(const PeriodicCell& other) const { return n_ == other.n_ && vectors_ == other.vectors_; }
+  bool operator==(const PeriodicCell& other) const {
+    return n_ == other.n_ && vectors_ == other.vectors_ && reference_ == other.reference_;
+  }
 
  private:
   Mat3 vectors_, inverse_;
   int n_;
-  double volume_ = 0;
+  double volume_ = 0, reference_;
 };
 
 /// What images of the Stokeslet G or the stresslet T do that are not near: the sum over the lattice, less those of `near`, at places r = x - x0 in a
@@ -51,7 +55,11 @@ class PeriodicCell {
 ///
 ///   G = G^P - (4 pi/(S L3)) z^2 (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                                  (2.27)
 ///
-/// One period is a sum to its end, by Euler and Maclaurin's formula. Of one and two periods G is known up to a constant.
+/// One period h e is a sum to its end, by Euler and Maclaurin's formula. Of one and two periods G is known up to a constant; that of one period is
+/// fixed by the reference distance l of the cell, so that far from the row with rho the distance across
+///
+///   G^P = sum_n G(r + n h e) - sum_{n != 0} (I + e e)/|n h| + (2/h) (ln(l/2h) + gamma + 1/2) (I + e e),
+///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.45)
 class PeriodicKernel {
  public:
   enum class Kind { stokeslet, stresslet };
@@ -71,6 +79,7 @@ class PeriodicKernel {
   void add_smooth_images(const Vec3& r, double* values) const;  // A - G of those near
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
+  void add_constant(double* values) const;
   void add_free(const Vec3& r, double factor, double* values) const;
 
   Kind kind_;

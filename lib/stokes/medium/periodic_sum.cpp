@@ -194,6 +194,37 @@ void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& 
   }
 }
 
+Eigen::MatrixXd PeriodicSum::lagrange(std::span<const Vec3> places) const {
+  std::array<Eigen::MatrixXd, 3> along;
+  for (std::size_t d = 0; d < 3; ++d) {
+    std::vector<double> at;
+    for (const Vec3& x : places) at.push_back(2 * in_box(x)[static_cast<Eigen::Index>(d)]);
+    along[d] = interpolation(at, chebyshev(box_.order[d]));
+  }
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(places.size()), n_nodes());
+  const auto [n0, n1, n2] = box_.order;
+  for (int c = 0; c < n2; ++c)
+    for (int b = 0; b < n1; ++b)
+      for (int a = 0; a < n0; ++a)
+        all.col(a + n0 * (b + n1 * c)) = along[0].col(a).cwiseProduct(along[1].col(b)).cwiseProduct(along[2].col(c));
+  return all;
+}
+
+Eigen::MatrixXd PeriodicSum::between_nodes(int component) const {
+  constexpr int entry[6] = {0, 1, 2, 5, 6, 10};  // 4 column + row
+  const auto [n0, n1, n2] = box_.order;
+  const int n = n_nodes(), rows = static_cast<int>(differences_[1]), columns = static_cast<int>(differences_[2]);
+  Eigen::MatrixXd all(n, n);
+  for (int b = 0; b < n; ++b)
+    for (int a = 0; a < n; ++a) {
+      const int d0 = difference_[0][static_cast<std::size_t>(n0 * (a % n0) + b % n0)];
+      const int d1 = difference_[1][static_cast<std::size_t>(n1 * (a / n0 % n1) + b / n0 % n1)];
+      const int d2 = difference_[2][static_cast<std::size_t>(n2 * (a / (n0 * n1)) + b / (n0 * n1))];
+      all(a, b) = table_[static_cast<std::size_t>(12 * ((d0 * rows + d1) * columns + d2) + entry[component])];
+    }
+  return all;
+}
+
 void PeriodicSum::add_rest(const Charges& sources, std::span<const Vec3> targets, double* u) {
   const int in = kind_ == PeriodicKernel::Kind::stokeslet ? 3 : 6, n_nodes = box_.n_nodes();
   std::vector<double> at[3], q[6];

@@ -33,6 +33,13 @@ class PeriodicSum {
   /// StressletKernel.
   void add_rest(const Charges& sources, std::span<const Vec3> targets, double* u);
 
+  /// Lagrange polynomials of the nodes that the rest is interpolated between, at places in the cell: shape (number of places, n_nodes).
+  Eigen::MatrixXd lagrange(std::span<const Vec3> places) const;
+
+  /// Component c = 11, 12, 13, 22, 23, 33 of the rest of the Stokeslet between these nodes, shape (n_nodes, n_nodes).
+  Eigen::MatrixXd between_nodes(int component) const;
+  int n_nodes() const { return box_.n_nodes(); }
+
  private:
   Vec3 in_box(const Vec3& wrapped) const;
   void apply(const std::vector<double> (&q)[6], std::vector<double>& u) const;

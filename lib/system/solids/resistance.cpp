@@ -94,12 +94,12 @@ void Resistance::factor() {
 
 Net Resistance::ambient(const stokes::AmbientFlow& flow) const { return collocation_.solve(Net(flow.velocities(sites_ * place_) * turn_)); }
 
-double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) / tube_->copies() : 0; }
+double Resistance::pressure_drop(const Net& f) { return tube_ ? -tube_->pressure_of(f * turn_.transpose()) : 0; }
 
 double Resistance::lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work) {
   if (!tube_ || !flow.duct()) return 0;
   const Net at_places = flow.velocities(between().values * place_);
-  return tube_->lacking_pressure(between(), at_places, flow.amplitude(), f * turn_.transpose(), work) / tube_->copies();
+  return tube_->lacking_pressure(between(), at_places, flow.amplitude(), f * turn_.transpose(), work);
 }
 
 const BetweenSites& Resistance::between() {

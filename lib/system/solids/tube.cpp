@@ -10,7 +10,7 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
     : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
   const auto clock = phases_.time("wall assembly");
   wall_ = std::make_shared<Wall>(wall, parameters.quadrature, &phases_);
-  particle_ = std::make_unique<Particle>(particle, parameters);
+  particle_ = std::make_unique<Particle>(particle, parameters, *wall_);
   particle_->ranks.measure(phases_);
 }
 
@@ -21,12 +21,12 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
     wall_ = flow->wall(phases_, parameters.symmetry);
     flow->pressure_drop();
   }
-  particle_ = std::make_unique<Particle>(particle, parameters);
+  particle_ = std::make_unique<Particle>(particle, parameters, *wall_);
   particle_->ranks.measure(phases_);
 }
 
 Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_) {
-  particle_ = std::make_unique<Particle>(particle, tube.particle_->parameters);
+  particle_ = std::make_unique<Particle>(particle, tube.particle_->parameters, *wall_);
   particle_->ranks.measure(phases_);
 }
 
@@ -35,7 +35,7 @@ Tube::~Tube() = default;
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
-int Tube::copies() const { return 1 + static_cast<int>(particle_->shifts.size()); }
+const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
   return wall_->evaluations() + particle_->evaluations();
@@ -44,6 +44,7 @@ stokes::Evaluations Tube::kernel_evaluations() const {
 void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }
 
 void Tube::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
+  if (particle_->images) particle_->images->set_reference(unstressed, present);
   particle_->single.set_reference(unstressed, std::move(present));
   particle_->measure = measure;
 }
@@ -53,9 +54,10 @@ Net Tube::in_wall_frame(Net x) const {
   return x;
 }
 
-void Tube::place(const Net& x) {
+void Tube::place(const Net& x, std::optional<double> centroid) {
   const auto clock = phases_.time("wall");
-  particle_->place(x, *flow_, *wall_);
+  if (!centroid && !fixed()) centroid = particle_->geometry.measures(x).centroid[0];
+  particle_->place(x, centroid.value_or(0), *flow_, *wall_, empty_pressure_drop());
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {
@@ -67,18 +69,17 @@ double Tube::pressure_of(const Net& f, const Net& v) {
 double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   weigh_flow();
   const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(on_wall)) : dot(flow_of_wall_, on_wall);
-  return (taken_away - dot(particle_->flow_of_strength(wall_->inlet()), particle_->strength(v))) / flow_of_pressure_;
+  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->strength(v))) / flow_of_pressure_;
 }
 
 double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
   if (fixed()) work += dot(between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient)), f);
-  return -copies() * work / (amplitude * flow_->flow_rate());
+  return -work / (amplitude * flow_->flow_rate());
 }
 
 Net Tube::load_on_wall(const Net& f) {
   Net u(wall_->targets().rows(), 3);
   particle_->single.apply(f, wall_->targets(), wall_->own_targets(), u);
-  particle_->add_copies(particle_->single, f, wall_->targets(), wall_->own_targets(), u);
   return wall_->collocated(u) / -viscosity();
 }
 
@@ -87,22 +88,18 @@ Net Tube::velocity_on_wall(const Net& v) {
   const Net strength = particle_->strength(v), &targets = wall_->targets();
   Net u(targets.rows(), 3);
   particle_->dual->apply(strength, particle_->nearest_values(strength), targets, wall_->own_targets(), u, particle_->kept(particle_->dual_on_wall));
-  particle_->add_copies(*particle_->dual, strength, targets, wall_->own_targets(), u);
   return wall_->collocated(u);
 }
 
 Net Tube::wall_on_particle(const Net& traction) {
   const auto& [sites, own] = std::tie(particle_->sites, particle_->own);
   return particle_->ranks.filled(sites.rows(), [&](Net& u) {
-    wall_->layer().apply(traction, sites, own, u, particle_->kept(particle_->wall_on_sites));
+    wall_->layer().apply(wall_->on_space(traction), sites, own, u, particle_->kept(particle_->wall_on_sites));
   }) / -viscosity();
 }
 
-Net Tube::copies_on_particle(const Net& f, const Net& v) {
-  return particle_->ranks.filled(particle_->sites.rows(), [&](Net& u) {
-    if (f.size() > 0) particle_->add_copies(particle_->single, -f / viscosity(), particle_->sites, particle_->own, u);
-    if (v.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(v), particle_->sites, particle_->own, u);
-  });
+Net Tube::images_on_particle(const Net& f, const Net& v) {
+  return particle_->ranks.filled(particle_->sites.rows(), [&](Net& u) { particle_->add_images(f, v, particle_->sites, particle_->own, u); });
 }
 
 Net Tube::wall_on_wall(const Net& traction) { return wall_->apply(traction) / viscosity(); }
@@ -125,26 +122,35 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
   if (f.size() > 0) on_wall += load_on_wall(f);
   response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
   response.velocity = wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
-  if (copies() > 1) response.velocity += copies_on_particle(f, v), response.load = f, response.moves = v;
+  if (cell()) response.velocity += images_on_particle(f, v), response.load = f, response.moves = v;
   if (const double slower = slowed(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
 }
 
+/// Of the duct as long as it is modelled, or of a period.
+double Tube::empty_pressure_drop() const {
+  const auto* channel = dynamic_cast<const ChannelFlow*>(flow_.get());
+  return channel ? channel->pressure_drop() : flow_->pressure_gradient() * wall().length();
+}
+
 /// By what part of it the flow is slower where its pressure drop is held.
 double Tube::slowed(double pressure_drop) const {
-  if (!particle_->parameters.holds_pressure_drop) return 0;
-  const auto* channel = dynamic_cast<const ChannelFlow*>(flow_.get());
-  const double length = copies() > 1 ? copies() * particle_->parameters.period : wall().length();
-  return pressure_drop / (channel ? channel->pressure_drop() : flow_->pressure_gradient() * length);
+  return particle_->parameters.holds_pressure_drop ? pressure_drop / empty_pressure_drop() : 0;
+}
+
+/// c times mu at points in the wall's frame: what a unit pressure drop does beside the wall's own answer.
+Net Tube::driven(const Net& at) const {
+  return cell() ? Net(viscosity() / empty_pressure_drop() * flow_->velocities(at)) : wall_->inlet().integral(at);
 }
 
 void Tube::velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u) {
   Net at = x;
   at.col(0).array() -= particle_->centroid;
-  wall_->layer().apply(response.wall_traction, at, rows, u);
-  for (const int i : rows) u.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - u.row(i)) / viscosity();
-  if (response.load.size() > 0) particle_->add_copies(particle_->single, -response.load / viscosity(), at, rows, u);
-  if (response.moves.size() > 0 && particle_->dual) particle_->add_copies(*particle_->dual, particle_->strength(response.moves), at, rows, u);
+  wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
+  const Net some = at(rows, Eigen::all), by_pressure = driven(some);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
+  if (cell()) particle_->add_images(response.load, response.moves, at, rows, u);
   if (const double slower = slowed(response.pressure_drop); slower != 0) {
     const Net ambient = flow_->velocities(x);
     for (const int i : rows) u.row(i) -= slower * ambient.row(i);
@@ -158,7 +164,7 @@ void Tube::freeze() {
   if (by_flow) weigh_flow();
   particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
   if (!by_flow) return;
-  const Net& through_inlet = particle_->flow_of_strength(wall_->inlet());
+  const Net& through_inlet = particle_->flow_of_strength(*wall_);
   particle_->frozen.pressure_of_velocity -= particle_->contrasts.asDiagonal() * through_inlet / flow_of_pressure_;
 }
 
@@ -179,8 +185,6 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
   const Net traction = solve_wall(on_wall) + pressure * wall_->pumped();
   const Net u = particle_->ranks.filled(particle_->sites.rows(), [&](Net& own) {
     frozen.wall.apply(traction, own);
-    if (loads && copies() > 1) add(1, frozen.single_of_copies, f, own);
-    if (moves && copies() > 1) add(-viscosity(), frozen.dual_of_copies, particle_->strength(v), own);
   });
   return -u / viscosity() + pressure * frozen.inlet - slowed(pressure) * frozen.ambient;
 }

@@ -2,6 +2,7 @@
 // Particles in a tube: the wall's traction and the pressure drop, eliminated.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,6 @@ struct TubeParameters {
   double viscosity_ratio = 1;                            ///< lambda, of all particles, if they do not differ
   surface::Symmetry symmetry;  ///< of channel, particle and all that is asked for; of no points: none
   bool holds_pressure_drop = false;  ///< of the duct's flow, in place of its flow rate
-  double period = 0;                 ///< of a train along x1, and how many copies of its particle are modelled at either side
-  int copies = 0;
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
 };
@@ -50,9 +49,9 @@ struct TubeParameters {
 /// Where the pressure drop dp_0 of the duct's flow is held, not its flow rate, the answer is less by dp/dp_0 of that flow; dp is what the particle
 /// adds to the empty tube of the flow rate that is left, Q (1 - dp/dp_0).
 ///
-/// In a train the particle has copies m L away along x1, |m| <= M, with its own f and v, and C is all of them: what those beyond would do decays like
-/// exp(-k M L/R_T) between the copies and the caps, for each period is free of forces but for its pressure. dp is that of all copies; the answer
-/// contains what the others do to the particle.
+/// A duct that repeats along x1 has one period of its wall, no ends, and the kernels of one period (Layer::repeat). c is the empty duct's flow v_inf
+/// per unit pressure drop of a period, which vanishes on the wall, so that the answer without it is that of a held pressure drop; dp is that of one
+/// period, and the answer contains what the images of the particle do to it.
 ///
 /// The wall of a channel stays where it is, v_inf is that of ChannelFlow, and what v does to dp follows from the flow rate of the disturbance (2.14),
 /// which vanishes, in place of f_inf.
@@ -74,14 +73,18 @@ class Tube {
   /// 1 - lambda of the particle that each control point is of, -1 of a rigid body, whose `v` is w of (2.23): where there are several.
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
-  /// The particle's control net, in true places. All that follows belongs to this shape.
-  void place(const Net& x);
+  /// Takes the particle's control net, in true places; what follows belongs to this shape. `centroid`: where the frame of a straight wall has its
+  /// origin along x1; none: the particle's centroid.
+  void place(const Net& x, std::optional<double> centroid = {});
+
+  /// The lattice of a duct that repeats.
+  const std::optional<stokes::PeriodicCell>& cell() const;
 
   struct Response {
     Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< f^D, control values on the wall
     double pressure_drop = 0;
-    Net load, moves;  ///< f and v of a train's copies, else empty
+    Net load, moves;  ///< f and v of the images in a duct that repeats, else empty
   };
 
   /// Either net may be empty: then it is zero. v counts for lambda != 1 only. `lacking`: what is known to lack of the pressure drop.
@@ -101,8 +104,8 @@ class Tube {
   Net velocity_on_wall(const Net& v);         ///< (1 - lambda) (1 / 8 pi) int T v n
   Net wall_on_particle(const Net& traction);  ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);      ///< (1/mu) G_W f^D
-  Net copies_on_particle(const Net& f, const Net& v = {});  ///< what the other copies of a train do
-  const Net& inlet_on_particle() const;       ///< c
+  Net images_on_particle(const Net& f, const Net& v = {});  ///< what the particle's images in a duct that repeats do
+  const Net& inlet_on_particle() const;       ///< c; in a duct that repeats the empty duct's flow per unit pressure drop of a period
   const Net& ambient() const;                 ///< v_inf at the collocation points, of the amplitude 1
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
@@ -117,7 +120,7 @@ class Tube {
     double flux = 0;                                     ///< disturbance of the flow rate through the inlet, over Q
     double force = 0;                                    ///< A dp less the axial forces on wall and particle, over the duct's own A G R_T
     double cap_velocity = 0;                             ///< largest disturbance velocity left on the caps, over the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< the pressure drop with which flux or force would vanish, of one copy of a train
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< the pressure drop with which flux or force would vanish
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
@@ -134,9 +137,6 @@ class Tube {
 
   /// Flow rate where the particle adds this pressure drop: Q, or what is left of it.
   double flow_rate(double pressure_drop) const { return flow_->flow_rate() * (1 - slowed(pressure_drop)); }
-
-  /// How many of the particle there are: of a train, each with its part of the pressure drop.
-  int copies() const;
 
   /// Smallest distance of the particle's surface to the wall; negative where they cross.
   double gap() const;
@@ -159,7 +159,9 @@ class Tube {
   struct Particle;
   double viscosity() const;
   double cap_velocity(const Net& f, const Net& v, const Response& response);
+  double empty_pressure_drop() const;
   double slowed(double pressure_drop) const;
+  Net driven(const Net& at) const;
   double pressure_of_velocity(const Net& v, const Net& on_wall);
   void weigh_flow();
 

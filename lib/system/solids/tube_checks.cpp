@@ -53,7 +53,7 @@ void Tube::weigh_flow() {
   flow_weights_ = wall_->flow_weights();
   force_weights_ = wall_->force_weights();
   if (!wall_->iterates()) flow_of_wall_ = wall_->solve_transposed(flow_weights_);
-  own_flow_ = wall_->inlet().own_flow();
+  own_flow_ = cell() ? viscosity() * flow_->flow_rate() / empty_pressure_drop() : wall_->inlet().own_flow();
   flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
 }
 
@@ -62,31 +62,29 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   Particle& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
-  const stokes::Cap& inlet = wall_->inlet();
   weigh_flow();
   double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
-  double force = area * dp - dot(force_weights_, response.wall_traction);
+  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // of a period the wall takes that of the pressure drop
   std::vector<double> value[3];
   if (f.size() > 0) {
     particle.single.values(f, value);
     const auto& node = particle.single.nodes();
-    for (const double shift : particle.all_shifts())
-      for (std::size_t k = 0; k < value[0].size(); ++k) {
-        const Net at = (Net(1, 3) << node[0][k] + shift, node[1][k], node[2][k]).finished();
-        const Vec3 strength = particle.single.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
-        flow -= inlet.integral(at).row(0).dot(strength) / mu;
-        force -= strength[0];
-      }
+    for (std::size_t k = 0; k < value[0].size(); ++k) {
+      const Net at = (Net(1, 3) << node[0][k], node[1][k], node[2][k]).finished();
+      const Vec3 strength = particle.single.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
+      flow -= wall_->flow_of_forces(at).row(0).dot(strength) / mu;
+      force -= strength[0];
+    }
   }
-  if (v.size() > 0 && particle.dual) flow += dot(particle.flow_of_strength(inlet), particle.strength(v));
+  if (v.size() > 0 && particle.dual) flow += dot(particle.flow_of_strength(*wall_), particle.strength(v));
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
 
   Checks checks;
   checks.flux = flow / flow_->flow_rate();
   checks.force = force / (area * flow_->pressure_gradient() * flow_->radius());
-  checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
-  checks.pressure_by_flux = (dp - flow / flow_of_pressure_) / copies();
-  checks.pressure_by_force = (dp - force / force_of_pressure) / copies();
+  if (!cell()) checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
+  checks.pressure_by_flux = dp - flow / flow_of_pressure_;
+  checks.pressure_by_force = dp - force / force_of_pressure;
   return checks;
 }
 
@@ -98,15 +96,16 @@ Tube::Leak Tube::leak(const Net& f) {
   quadrature::Options options = particle_->parameters.quadrature;
   options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
+  if (cell()) layer.repeat(*cell());
   layer.place(wall.net);
   const Net u = wall_->ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
     Net of_wall(at.rows(), 3), of_load = of_wall;
-    layer.apply(response.wall_traction, own, of_wall);
+    layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
     particle_->single.apply(f, at, own, of_load);
     for (const int i : own)
-      velocity.row(i) = (response.pressure_drop * wall_->inlet().integral(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
+      velocity.row(i) = (response.pressure_drop * driven(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
   });
-  return {weights * u, checks(f, {}, response).flux * flow_->flow_rate()};
+  return {wall_->from_space(Net(weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
 }
 
 double Tube::work(const Leak& leak, const Response& of) const {
@@ -121,16 +120,14 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   for (std::size_t k = 0; k < points.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = points[k].transpose();
   const std::vector<int> all = everybody(at.rows());
   Net u = response.pressure_drop / mu * wall_->inlet().integral(at);
-  wall_->layer().apply(response.wall_traction, at, all, part);
+  wall_->layer().apply(wall_->on_space(response.wall_traction), at, all, part);
   u -= part / mu;
   if (f.size() > 0) {
     particle.single.apply(f, at, all, part);
-    particle.add_copies(particle.single, f, at, all, part);
     u -= part / mu;
   }
   if (v.size() > 0 && particle.dual) {
     particle.dual->apply(particle.strength(v), at, all, part);
-    particle.add_copies(*particle.dual, particle.strength(v), at, all, part);
     u += part;
   }
   return u.rowwise().norm().maxCoeff();

@@ -25,65 +25,75 @@ void set_columns(const Net& net, std::vector<double> (&columns)[3]) {
 
 }  // namespace
 
-Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& how)
+Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& how, const Wall& wall)
     : space(particle),
       parameters(how),
       geometry(particle),
       collocation(collocation_matrix(particle)),
       from_sites(how.direct),
-      single(Layer::Kernel::single_layer, particle, {}, how.quadrature) {
+      single(Layer::Kernel::single_layer, particle, {}, how.quadrature),
+      cell(wall.cell()) {
   own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
   from_sites.factor(collocation);
-  for (int m = 1; m <= how.copies; ++m) shifts.insert(shifts.end(), {m * how.period, -m * how.period});
+  if (cell) {
+    across = wall.across();
+    single.repeat(*cell, {.assembled = true, .across = across});
+    images.emplace(Layer::Kernel::single_layer, particle, stokes::Sites(), how.quadrature);
+    images->repeat(*cell, {.itself = false, .across = across});
+  }
   set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
 }
 
 void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
   contrasts = of_points;
-  if (contrasts.isZero(0))
-    dual.reset();
-  else
-    dual.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
+  dual.reset(), dual_of_images.reset();
+  if (contrasts.isZero(0)) return;
+  dual.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
+  if (!cell) return;
+  dual->repeat(*cell, {.assembled = true, .across = across});
+  dual_of_images.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
+  dual_of_images->repeat(*cell, {.itself = false, .across = across});
 }
 
-void Tube::Particle::place(const Net& x, const stokes::DuctFlow& flow, Wall& wall) {
-  centroid = wall.surface().channel ? 0 : geometry.measures(x).centroid[0];
+void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
+  centroid = origin;
   shape = x;
   shape.col(0).array() -= centroid;
   sites = collocation * shape;
   flow_of_strength_.resize(0, 3);
-  inlet = wall.inlet().integral(sites) / parameters.viscosity;
+  if (!cell) inlet = wall.inlet().integral(sites) / parameters.viscosity;
   single.place(shape, measure);
+  if (images) images->place(shape, measure);
   if (dual) {
     dual->place(shape);
+    if (dual_of_images) dual_of_images->place(shape);
     find_nearest(wall.targets());
     dual_on_wall = dual->near(wall.targets(), wall.own_targets());
     wall_on_sites = wall.layer().near(sites, own);
   }
   weigh_pressure(flow, !wall.surface().channel);
-  pressure_of_load *= static_cast<double>(1 + shifts.size());
-  pressure_of_velocity *= static_cast<double>(1 + shifts.size());
+  if (cell) inlet = ambient / pressure_drop;
 }
 
-void Tube::Particle::add_copies(Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u) {
-  Net part(at.rows(), 3), seen = at;
-  for (const double shift : shifts) {
-    seen.col(0) = at.col(0).array() - shift;
-    layer.apply(density, seen, rows, part);
+void Tube::Particle::add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u) {
+  Net part(at.rows(), 3);
+  const auto add = [&](Layer& layer, const Net& density) {
+    layer.apply(density, at, rows, part);
     for (const int i : rows) u.row(i) += part.row(i);
-  }
+  };
+  if (f.size() > 0) add(*images, -f / parameters.viscosity);
+  if (v.size() > 0 && dual_of_images) add(*dual_of_images, strength(v));
 }
 
-const Net& Tube::Particle::flow_of_strength(const stokes::Cap& end) {
+const Net& Tube::Particle::flow_of_strength(const Wall& wall) {
   if (flow_of_strength_.size() > 0) return flow_of_strength_;
   const auto &node = dual->nodes(), &normal = dual->normals();
   std::vector<double> flow[3];
   for (auto& component : flow) component.assign(node[0].size(), 0.);
-  for (const double shift : all_shifts())
-    for (std::size_t k = 0; k < node[0].size(); ++k) {
-      const Vec3 one = end.double_layer_flow(Vec3(node[0][k] + shift, node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
-      for (int c = 0; c < 3; ++c) flow[c][k] += one[c];
-    }
+  for (std::size_t k = 0; k < node[0].size(); ++k) {
+    const Vec3 one = wall.flow_of_double_layer(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
+    for (int c = 0; c < 3; ++c) flow[c][k] = one[c];
+  }
   flow_of_strength_.resize(sites.rows(), 3);
   for (int c = 0; c < 3; ++c) flow_of_strength_.col(c) = dual->moments(flow[c]);
   return flow_of_strength_;
@@ -129,7 +139,10 @@ void Tube::Particle::find_nearest(const Net& targets) {
   nearest.resize(static_cast<std::size_t>(targets.rows()));
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     Eigen::Index at = 0;
-    (sites.rowwise() - targets.row(static_cast<Eigen::Index>(i))).rowwise().squaredNorm().minCoeff(&at);
+    Net apart = sites.rowwise() - targets.row(static_cast<Eigen::Index>(i));
+    if (cell)
+      for (Eigen::Index k = 0; k < apart.rows(); ++k) apart.row(k) -= cell->shift(apart.row(k).transpose()).transpose();
+    apart.rowwise().squaredNorm().minCoeff(&at);
     nearest[i] = static_cast<int>(at);
   }
 }
@@ -143,21 +156,10 @@ Net Tube::Particle::nearest_values(const Net& v) const {
 
 void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
   using Targets = std::span<const int>;
-  const auto of_copies = [&](Layer& layer, const Net& at, bool itself) {
-    return [&, itself](Targets targets, stokes::Rows<float>& rows) {
-      rows.setZero(3 * static_cast<Eigen::Index>(targets.size()), 3 * space.n_points);
-      if (itself) layer.assemble(at, targets, rows);
-      stokes::Rows<float> part;
-      Net seen = at;
-      for (const double shift : shifts) {
-        seen.col(0) = at.col(0).array() - shift;
-        layer.assemble(seen, targets, part);
-        rows += part;
-      }
-    };
-  };
   const auto on_wall = [&](Layer& layer) {
-    return [&](Targets targets, stokes::Rows<float>& rows) { wall.collocate<float>(targets, of_copies(layer, wall.targets(), true), rows); };
+    return [&](Targets targets, stokes::Rows<float>& rows) {
+      wall.collocate<float>(targets, [&](Targets at, stokes::Rows<float>& some) { layer.assemble(wall.targets(), at, some); }, rows);
+    };
   };
   frozen.single.assemble(wall.own(), space.n_points, on_wall(single));
   const Net weights = ranks.assembled<Net>(space.n_points, 3, [&](Net& sums) {
@@ -169,18 +171,19 @@ void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
         for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
     });
   });
-  if (!shifts.empty()) {
-    frozen.single_of_copies.assemble(own, space.n_points, of_copies(single, sites, false));
-    if (dual) frozen.dual_of_copies.assemble(own, space.n_points, of_copies(*dual, sites, false));
-  }
-  frozen.wall.assemble(own, wall.surface().space.n_points,
-                       [&](Targets targets, stokes::Rows<float>& rows) { wall.layer().assemble(sites, targets, rows); });
+  frozen.wall.assemble(own, static_cast<int>(wall.sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
+    wall.layer().assemble(sites, targets, rows);
+    wall.from_space(rows);
+  });
   frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
   if (pressure_of_wall.size() > 0) frozen.pressure_of_velocity = contrasts.asDiagonal() * weights;
 }
 
 stokes::Evaluations Tube::Particle::evaluations() const {
-  return dual ? single.evaluations() + dual->evaluations() : single.evaluations();
+  stokes::Evaluations sum = single.evaluations();
+  for (const auto* layer : {&dual, &images, &dual_of_images})
+    if (*layer) sum += (*layer)->evaluations();
+  return sum;
 }
 
 }  // namespace tanktread::coupling

@@ -1,6 +1,7 @@
 #pragma once
 // The particle in the tube: what changes with its shape.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -17,10 +18,11 @@
 namespace tanktread::coupling {
 
 struct Tube::Particle {
-  Particle(const spline::Space& space, const TubeParameters& parameters);
+  Particle(const spline::Space& space, const TubeParameters& parameters, const Wall& wall);
 
   void set_contrasts(const Eigen::VectorXd& of_points);
-  void place(const Net& x, const stokes::DuctFlow& flow, Wall& wall);
+  /// `origin`: of the wall's frame along x1. `pressure_drop`: of the empty duct.
+  void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
   /// `pressure_of_wall`: weights of a velocity on the wall in dp, which those of v are made from, for rows of few bits are too coarse; or none.
   void freeze(Wall& wall, const Net& pressure_of_wall);
@@ -30,21 +32,15 @@ struct Tube::Particle {
   /// v at the collocation point of the particle that is nearest to each target on the wall.
   Net nearest_values(const Net& v) const;
 
-  /// Along x1, of all copies, the particle itself first.
-  std::vector<double> all_shifts() const {
-    std::vector<double> all{0};
-    all.insert(all.end(), shifts.begin(), shifts.end());
-    return all;
-  }
-
   /// (1 - lambda) v: the strength of the double layer.
   Net strength(const Net& v) const { return contrasts.asDiagonal() * v; }
 
-  /// Adds to rows of u what a layer of this density does from the other copies of a train.
-  void add_copies(stokes::Layer& layer, const Net& density, const Net& at, std::span<const int> rows, Net& u);
+  /// Adds to rows of u the velocity at these points, in the wall's frame, that a load f and a velocity v, if there, cause by the images of the
+  /// particle in a duct that repeats.
+  void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Weights of (1 - lambda) v: the flow rate through an end of its double layer, copies included. Kept for the present shape.
-  const Net& flow_of_strength(const stokes::Cap& end);
+  /// Weights of (1 - lambda) v: the flow rate of its double layer along the duct. Kept for the present shape.
+  const Net& flow_of_strength(const Wall& wall);
 
   stokes::Evaluations evaluations() const;
 
@@ -58,8 +54,10 @@ struct Tube::Particle {
   membrane::DirectSolver from_sites;        ///< R^-1
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< where a lambda is not 1
+  std::optional<stokes::Layer> images, dual_of_images;  ///< the same without the particle itself, in a duct that repeats
+  std::optional<stokes::PeriodicCell> cell;             ///< of a duct that repeats
+  std::array<Vec3, 2> across;                           ///< extent of its wall
   Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
-  std::vector<double> shifts;              ///< along x1, of the other copies of a train
 
   Net shape;                                                            ///< in the wall's frame
   double centroid = 0;                                                  ///< where that frame has its origin
@@ -71,7 +69,7 @@ struct Tube::Particle {
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
 
   struct Frozen {
-    FrozenOperator single, dual, wall, single_of_copies, dual_of_copies;
+    FrozenOperator single, dual, wall;
     Net inlet, ambient, pressure_of_load, pressure_of_velocity;
   };
   Frozen frozen;

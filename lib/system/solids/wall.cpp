@@ -1,6 +1,7 @@
 #include "system/solids/wall.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -84,11 +85,18 @@ quadrature::Options sharper(quadrature::Options options) {
   return options;
 }
 
-Net collocation_points(const spline::Space& space, const Net& net) {
-  Net at(space.n_points, 3);
-  for (int i = 0; i < space.n_points; ++i)
-    at.row(i) = surface::value(space, net, space.collocation[static_cast<std::size_t>(i)].front()).transpose();
+Net collocation_points(const surface::TubeWall& wall) {
+  Net at(static_cast<Eigen::Index>(wall.sites.size()), 3);
+  for (Eigen::Index i = 0; i < at.rows(); ++i)
+    at.row(i) = surface::value(wall.space, wall.net, wall.sites[static_cast<std::size_t>(i)].front()).transpose();
   return at;
+}
+
+/// The Stokeslet's constant is such that its mode vanishes well outside of the duct, for with one of about the duct's radius the wall moves nothing.
+std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
+  constexpr double far = 4;
+  if (wall.period == 0) return {};
+  return stokes::PeriodicCell(wall.period * Mat3::Identity(), 1, far * wall.net.rightCols<2>().rowwise().norm().maxCoeff());
 }
 
 }  // namespace
@@ -96,49 +104,77 @@ Net collocation_points(const spline::Space& space, const Net& net) {
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
            const surface::Symmetry& symmetry, const std::string& solver)
     : surface_(wall),
-      symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(wall.space.n_points)),
+      symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(static_cast<int>(wall.sites.size()))),
+      cell_(lattice(wall)),
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
-      inlet_(wall.outline, wall.start, sharper(quadrature).tolerance),
-      sites_(collocation_points(wall.space, wall.net)),
+      sites_(collocation_points(wall)),
       tolerance_(residual * quadrature.tolerance) {
-  const int n = wall.space.n_points;
+  const auto n = static_cast<int>(wall.sites.size());
+  if (!cell_) inlet_.emplace(wall.outline, wall.start, sharper(quadrature).tolerance);
   own_ = ranks_.divide_in_order(symmetry_);
   if (phases) ranks_.measure(*phases);
+  if (cell_) layer_.repeat(*cell_, {.assembled = true});
   layer_.place(wall.net);
   targets_ = sites_, own_targets_ = own_;
   if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
   if (has_middles()) add_middles();
-  stokes::Sites sites = wall.space.collocation;
-  for (int e = 0; e < targets_.rows() - n; ++e) sites.push_back({{e, 0.5, 0.5}});
+  stokes::Sites sites = wall.sites;
+  for (int e = 0; e < targets_.rows() - n; ++e) sites.push_back({wall.middles[static_cast<std::size_t>(e)]});
   on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, sites, sharper(quadrature));
+  if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->place(wall.net);
-  if (iterates(solver, 3.0 * n / symmetry_.order())) {
+  if (cell_) find_pressure();
+  if (!cell_ && iterates(solver, 3.0 * n / symmetry_.order())) {
     patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
     krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
   } else {
     factors_ = DenseFactors(assembled());
   }
-  inlet_column_ = collocated(inlet_.integral(targets_));
-  pumped_ = solve(inlet_column_);
+  inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : collocated(inlet_->integral(targets_));
+  pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
+}
+
+std::array<Vec3, 2> Wall::across() const {
+  std::array<Vec3, 2> extent{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+  for (Eigen::Index i = 0; i < surface_.net.rows(); ++i) {
+    const Vec3 s = cell_->coordinates(surface_.net.row(i).transpose());
+    extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
+  }
+  return extent;
 }
 
 /// To the targets.
 void Wall::add_middles() {
-  const spline::Space& space = surface_.space;
-  const auto n = static_cast<int>(space.elements.size());
-  targets_.conservativeResize(space.n_points + n, 3);
-  for (int e = 0; e < n; ++e) targets_.row(space.n_points + e) = surface::value(space, surface_.net, {e, 0.5, 0.5}).transpose();
+  const auto n = static_cast<int>(surface_.middles.size()), first = static_cast<int>(sites_.rows());
+  targets_.conservativeResize(first + n, 3);
+  for (int e = 0; e < n; ++e)
+    targets_.row(first + e) = surface::value(surface_.space, surface_.net, surface_.middles[static_cast<std::size_t>(e)]).transpose();
   std::vector<bool> needed(static_cast<std::size_t>(n));
   for (const int i : own_)
-    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)]) needed[static_cast<std::size_t>(site.element)] = true;
+    for (const int e : middles_around(i)) needed[static_cast<std::size_t>(e)] = true;
   for (int e = 0; e < n; ++e)
-    if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(space.n_points + e);
+    if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(first + e);
 }
 
 /// Of the middle of each element around a collocation point, in the mean around that: what is left of a velocity is nearly a wave, which vanishes at
 /// these points and whose mean is `mean_of_wave` times what it is in the middles.
-double Wall::share_of_middle(int point) const {
-  return mean_of_wave / static_cast<double>(surface_.space.collocation[static_cast<std::size_t>(point)].size());
+double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
+
+/// Numbers of the elements of densities that hold a site.
+std::vector<int> Wall::middles_around(int point) const {
+  std::vector<int> all;
+  for (const spline::Site& site : surface_.sites[static_cast<std::size_t>(point)])
+    all.push_back(surface_.middle_of[static_cast<std::size_t>(site.element)]);
+  return all;
+}
+
+/// The two fields that make A regular, weighted so that a uniform pressure gives about what a tangential traction does.
+void Wall::find_pressure() {
+  flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
+  pressure_.resize(sites_.rows(), 3);
+  for (Eigen::Index i = 0; i < pressure_.rows(); ++i)
+    pressure_.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
+  pressure_ *= surface_.radius() / dot(flux_, pressure_);
 }
 
 /// The matrix between the components of fundamental points that are not zero by the symmetry (4.12), on every rank. Rows of this one are made many at
@@ -151,11 +187,19 @@ Eigen::MatrixXd Wall::assembled() {
   for (const int a : symmetry_.fundamental())
     for (int c = 0; c < 3; ++c)
       if (signs(a, c) != 0) of_component[3 * a + c] = n++;
-  return ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
+  const auto rows_of = [&](std::span<const int> targets, stokes::Rows<double>& rows) {
+    on_itself_->assemble(targets, rows);
+    if (!cell_) return;
+    on_itself_->assemble_rest(targets, rows);
+    const stokes::Rows<double> on_space = std::exchange(rows, stokes::Rows<double>(rows.rows(), 3 * sites_.rows()));
+    for (Eigen::Index r = 0; r < rows.rows(); ++r)
+      Eigen::Map<Net>(rows.row(r).data(), sites_.rows(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
+  };
+  Eigen::MatrixXd complete = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     stokes::Rows<double> part;
     for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
       const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
-      collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { on_itself_->assemble(targets, rows); }, part);
+      collocate<double>(some, rows_of, part);
       for (Eigen::Index p = 0; p < signs.rows(); ++p)
         for (int d = 0; d < 3; ++d) {
           if (signs(p, d) == 0) continue;
@@ -167,27 +211,38 @@ Eigen::MatrixXd Wall::assembled() {
         }
     }
   });
+  if (cell_) complete += Eigen::Map<const Eigen::VectorXd>(pressure_.data(), n) * Eigen::Map<const Eigen::RowVectorXd>(flux_.data(), n);
+  return complete;
+}
+
+void Wall::from_space(stokes::Rows<float>& rows) const {
+  if (!cell_) return;
+  const stokes::Rows<float> on_space = std::exchange(rows, stokes::Rows<float>(rows.rows(), 3 * sites_.rows()));
+  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+    const Net of_row = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(on_space.row(r).data(), surface_.space.n_points, 3)
+                           .cast<double>();
+    Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(rows.row(r).data(), sites_.rows(), 3) = from_space(of_row).cast<float>();
+  }
 }
 
 template <class Real>
 void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
                      stokes::Rows<Real>& rows) const {
   if (!has_middles()) return assemble(sites, rows);
-  const spline::Space& space = surface_.space;
-  std::vector<int> targets(sites.begin(), sites.end()), row(space.elements.size(), -1);  // of middles, among the targets
+  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // of middles, among the targets
   for (const int i : sites)
-    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(i)])
-      if (int& own = row[static_cast<std::size_t>(site.element)]; own < 0) {
+    for (const int e : middles_around(i))
+      if (int& own = row[static_cast<std::size_t>(e)]; own < 0) {
         own = static_cast<int>(targets.size());
-        targets.push_back(space.n_points + site.element);
+        targets.push_back(static_cast<int>(sites_.rows()) + e);
       }
   stokes::Rows<Real> all;
   assemble(targets, all);
   rows = static_cast<Real>(1 - mean_of_wave) * all.topRows(3 * static_cast<Eigen::Index>(sites.size()));
   for (std::size_t k = 0; k < sites.size(); ++k)
-    for (const spline::Site& site : space.collocation[static_cast<std::size_t>(sites[k])])
+    for (const int e : middles_around(sites[k]))
       rows.template middleRows<3>(3 * static_cast<Eigen::Index>(k)) +=
-          static_cast<Real>(share_of_middle(sites[k])) * all.template middleRows<3>(3 * row[static_cast<std::size_t>(site.element)]);
+          static_cast<Real>(share_of_middle(sites[k])) * all.template middleRows<3>(3 * row[static_cast<std::size_t>(e)]);
 }
 template void Wall::collocate(std::span<const int>, const std::function<void(std::span<const int>, stokes::Rows<float>&)>&,
                               stokes::Rows<float>&) const;
@@ -196,16 +251,16 @@ Net Wall::collocated(const Net& u) const {
   return ranks_.filled(sites_.rows(), [&](Net& all) {
     for (const int i : own_) {
       all.row(i) = (has_middles() ? 1 - mean_of_wave : 1) * u.row(i);
-      for (const spline::Site& site : surface_.space.collocation[static_cast<std::size_t>(i)])
-        if (has_middles()) all.row(i) += share_of_middle(i) * u.row(surface_.space.n_points + site.element);
+      if (!has_middles()) continue;
+      for (const int e : middles_around(i)) all.row(i) += share_of_middle(i) * u.row(sites_.rows() + e);
     }
   });
 }
 
 Net Wall::apply(const Net& f) const {
   Net u(targets_.rows(), 3);
-  on_itself_->apply(f, own_targets_, u);
-  return collocated(u);
+  on_itself_->apply(on_space(f), own_targets_, u);
+  return cell_ ? Net(collocated(u) + dot(flux_, f) * pressure_) : collocated(u);
 }
 
 Net Wall::solve(const Net& rhs) const {
@@ -268,7 +323,7 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
 }
 
 /// Along the wall with the points crowded towards the ends of each element, where the inlet's integral is steep at the rim: s = 3 q^2 - 2 q^3.
-Net Wall::weights(const std::function<Vec3(const Vec3&)>& field) const {
+Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);
   const spline::Space& space = surface_.space;
@@ -279,7 +334,7 @@ Net Wall::weights(const std::function<Vec3(const Vec3&)>& field) const {
         const double q = in_s.nodes[i];
         const spline::Site site{static_cast<int>(e), q * q * (3 - 2 * q), in_t.nodes[j]};
         const surface::Point at = surface::point(space, surface_.net, site);
-        const Vec3 value = in_s.weights[i] * 6 * q * (1 - q) * in_t.weights[j] * at.jacobian * field(at.x);
+        const Vec3 value = in_s.weights[i] * 6 * q * (1 - q) * in_t.weights[j] * at.jacobian * field(at);
         const Eigen::VectorXd basis = spline::basis(space.elements[e], site.s, site.t, 0).value;
         for (std::size_t a = 0; a < space.elements[e].points.size(); ++a)
           sum.row(space.elements[e].points[a]) += basis[static_cast<Eigen::Index>(a)] * value.transpose();
@@ -287,12 +342,25 @@ Net Wall::weights(const std::function<Vec3(const Vec3&)>& field) const {
   return sum;
 }
 
+Net Wall::flow_of_forces(const Net& at) const {
+  if (!cell_) return inlet_->integral(at);
+  Net flow = Net::Zero(at.rows(), 3);
+  flow.col(0) = -at.rightCols<2>().rowwise().squaredNorm() / (4 * surface_.period);
+  return flow;
+}
+
+Vec3 Wall::flow_of_double_layer(const Vec3& at, const Vec3& n) const {
+  if (!cell_) return inlet_->double_layer_flow(at, n);
+  const Vec3 across(0, at[1], at[2]);
+  return (at[0] * n - (n.dot(across) * Vec3::UnitX() + n[0] * across) / 2) / surface_.period;
+}
+
 Net Wall::flow_weights() const {
-  return weights([&](const Vec3& x) -> Vec3 { return inlet_.integral(Net(x.transpose())).row(0).transpose(); });
+  return from_space(weights([&](const surface::Point& at) -> Vec3 { return flow_of_forces(Net(at.x.transpose())).row(0).transpose(); }));
 }
 
 Net Wall::force_weights() const {
-  return weights([](const Vec3&) -> Vec3 { return Vec3::UnitX(); });
+  return from_space(weights([](const surface::Point&) -> Vec3 { return Vec3::UnitX(); }));
 }
 
 stokes::Evaluations Wall::evaluations() const {

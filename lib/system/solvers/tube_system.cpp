@@ -15,7 +15,7 @@ struct Parts {
   Rows velocity, wall_traction;
   Number &pressure_drop, &multiplier;
 
-  Parts(const BlockSystem& system, Number* numbers) : Parts(numbers, system.tube.inlet_on_particle().rows(), system.tube.wall().space.n_points) {}
+  Parts(const BlockSystem& system, Number* numbers) : Parts(numbers, system.tube.inlet_on_particle().rows(), static_cast<Eigen::Index>(system.tube.wall().sites.size())) {}
   Parts(Number* numbers, Eigen::Index particle, Eigen::Index wall)
       : velocity(numbers, particle, 3),
         wall_traction(numbers + 3 * particle, wall, 3),
@@ -31,7 +31,7 @@ void product(const BlockSystem& s, const In& x, Out r) {
   const Net v = x.velocity, traction = x.wall_traction / s.unit;
   const double drop = x.pressure_drop / s.unit;
   Net answer = tube.wall_on_particle(traction) + drop * tube.inlet_on_particle();
-  if (tube.copies() > 1) answer += tube.copies_on_particle({}, v);
+  if (tube.cell()) answer += tube.images_on_particle({}, v);
   r.velocity = s.viscous(v) - s.control_values(answer);
   r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.velocity_on_wall(v);
   r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of({}, v);
@@ -63,7 +63,7 @@ void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
 
 LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& preconditioner) const {
   LinearSystem system{std::move(velocity), {}, {}};
-  system.blocks.push_back({"wall traction", 3 * tube.wall().space.n_points});
+  system.blocks.push_back({"wall traction", 3 * static_cast<int>(tube.wall().sites.size())});
   system.blocks.push_back({"pressure drop", 1});
   system.blocks.push_back({"multiplier of the volume", 1});
   system.product = [this](const double* in, double* out) { product(*this, In(*this, in), Out(*this, out)); };
@@ -76,10 +76,10 @@ LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& prec
 }
 
 Eigen::VectorXd BlockSystem::right_hand_side(const Net& velocity, const Net& f) const {
-  Eigen::VectorXd all(3 * (velocity.rows() + tube.wall().space.n_points) + 2);
+  Eigen::VectorXd all(3 * (velocity.rows() + static_cast<Eigen::Index>(tube.wall().sites.size())) + 2);
   Out rows(*this, all.data());
   rows.velocity = velocity;
-  if (tube.copies() > 1) rows.velocity += control_values(tube.copies_on_particle(f));
+  if (tube.cell()) rows.velocity += control_values(tube.images_on_particle(f));
   rows.wall_traction = tube.load_on_wall(f);
   rows.pressure_drop = unit * tube.pressure_of(f);
   rows.multiplier = 0;

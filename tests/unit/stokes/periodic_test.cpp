@@ -91,6 +91,18 @@ TEST(PeriodicKernel, StokesletsOfOnePeriodDifferByWhatIsKnown) {
     EXPECT_LT((stokeslet_at(cell, {0.1, 0.2, 0.3}, steps, 1.3) - stokeslet_at(cell, {0.4, 1.0, 0.5}, steps, 1.3) - known).norm(), 1e-10);
 }
 
+/// Five periods away what is left of the others is exp(-2 pi 5), and (2.45) is exact.
+TEST(PeriodicKernel, TheConstantOfOnePeriodVanishesAtItsReference) {
+  for (const double period : {1., 0.7}) {
+    const PeriodicCell cell(period * Mat3::Identity(), 1, 1.9);
+    for (const int steps : {1, 3}) {
+      const Six far = stokeslet_at(cell, {0.2, 3, 4}, steps, 6);
+      EXPECT_NEAR(far[0], -4 / period * std::log(5 / 1.9), 1e-9);
+      EXPECT_NEAR(far[3] + far[5], -4 / period * std::log(5 / 1.9) + 4 / period, 1e-9);
+    }
+  }
+}
+
 TEST(PeriodicKernel, CellsOfTheSameLatticeAreEqual) {
   const Vec3 r(0.31, -0.22, 0.43);
   const Mat3 tilted = rows({1, 0, 0}, {0, 1, 0}, {1, 0, 1});

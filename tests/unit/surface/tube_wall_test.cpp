@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "base/errors.hpp"
 #include "spline/basis.hpp"
@@ -120,6 +121,62 @@ TEST(TubeWall, IsRefusedWhenItIsTooShort) {
     EXPECT_NE(std::string(error.what()).find("Tube/length must be at least 7 "), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("6.283"), std::string::npos) << error.what();
   }
+}
+
+/// The largest error of cos(2 pi x1/L + angle around), interpolated by densities of a wall that repeats, at points of all elements.
+double error_of_wave(int around, int along, double grading) {
+  TubeOptions options = circle(around, along);
+  options.grading = grading;
+  const double period = 2.5;
+  const TubeWall wall = periodic_tube_wall(outline(options), options, period, along);
+  const auto wave = [&](const Vec3& x) { return std::cos(2 * pi * x[0] / period + std::atan2(x[2], x[1])); };
+  const auto n = static_cast<Eigen::Index>(wall.sites.size());
+  Eigen::MatrixXd at_sites = Eigen::MatrixXd::Zero(n, wall.space.n_points);
+  Eigen::VectorXd right(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const spline::Site& site = wall.sites[static_cast<std::size_t>(i)].front();
+    const spline::Element& element = wall.space.elements[static_cast<std::size_t>(site.element)];
+    const Eigen::VectorXd basis = spline::basis(element, site.s, site.t, 0).value;
+    for (std::size_t a = 0; a < element.points.size(); ++a) at_sites(i, element.points[a]) += basis[static_cast<Eigen::Index>(a)];
+    right[i] = wave(place(wall, site));
+  }
+  const Eigen::VectorXd density = wall.open_from_periodic * (at_sites * wall.open_from_periodic).partialPivLu().solve(right);
+  double error = 0;
+  for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e)
+    for (const double s : {0., 0.5, 1.}) {
+      const spline::Element& element = wall.space.elements[static_cast<std::size_t>(e)];
+      const Eigen::VectorXd basis = spline::basis(element, s, 0.5, 0).value;
+      double value = 0;
+      for (std::size_t a = 0; a < element.points.size(); ++a) value += basis[static_cast<Eigen::Index>(a)] * density[element.points[a]];
+      error = std::max(error, std::abs(value - wave(place(wall, {e, s, 0.5}))));
+    }
+  return error;
+}
+
+TEST(PeriodicTubeWall, HasDensitiesThatRepeatToTheOrderOfTheSplines) {
+  for (const double grading : {1., 4.}) {
+    const double coarse = error_of_wave(10, 8, grading), fine = error_of_wave(20, 16, grading);
+    EXPECT_LT(coarse, 0.03) << grading;
+    EXPECT_GT(std::log2(coarse / fine), 3.5) << grading;  // 4; no more than that is lost across the seam
+  }
+}
+
+TEST(PeriodicTubeWall, HasNeitherSitesNorMiddlesOnTheSeam) {
+  const TubeOptions options = circle(10, 7);
+  const TubeWall wall = periodic_tube_wall(outline(options), options, 2.5, 7);
+  EXPECT_EQ(wall.sites.size(), 70u);
+  EXPECT_EQ(wall.middles.size(), 70u);
+  EXPECT_DOUBLE_EQ(wall.end - wall.start, 2.5);
+  const auto from_seam = [&](const spline::Site& site) {
+    const double x = place(wall, site)[0];
+    return std::min(x - wall.start, wall.end - x);
+  };
+  for (const auto& sites : wall.sites)
+    for (const spline::Site& site : sites) {
+      EXPECT_GT(from_seam(site), 0.05);
+      EXPECT_LT((place(wall, site) - place(wall, sites.front())).norm(), 1e-12);
+    }
+  for (const spline::Site& site : wall.middles) EXPECT_GT(from_seam(site), 0.05);
 }
 
 }  // namespace
