@@ -1,0 +1,78 @@
+"""Settings of Sphinx for the manual. inputs/manual/build calls it."""
+
+import pathlib
+import re
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
+BUILD = pathlib.Path(sys.argv[sys.argv.index("-d") + 1]).parent if "-d" in sys.argv else SOURCE / "build/manual"
+sys.path.insert(0, str(SOURCE / "postproc"))
+
+project = "tanktread"
+author = "the tanktread developers"
+copyright = author
+version = release = re.search(r"project\(tanktread VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "breathe"]
+source_suffix = [".md", ".rst"]
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+default_role = "literal"
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+breathe_projects = {"tanktread": str(BUILD / "xml")}
+breathe_default_project = "tanktread"
+# Two overloads that differ in a requires-clause are one declaration to Sphinx.
+suppress_warnings = ["duplicate_declaration.cpp"]
+
+html_theme = "furo"
+html_title = f"tanktread {release}"
+html_static_path = [str(HERE / "static")]
+html_css_files = ["manual.css"]
+html_copy_source = False
+html_show_sphinx = False
+pygments_style = "friendly"
+# MathJax of Debian, copied into the site: formulas need no network.
+MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
+mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
+mathjax2_config = {"showMathMenu": False, "messageStyle": "none"}
+MATHJAX_PARTS = ["MathJax.js", "config/TeX-AMS_SVG.js", "jax/element", "jax/input/TeX", "jax/output/SVG", "extensions"]
+
+
+def docstring(app, what, name, thing, options, lines):
+    """Turns a plain docstring into reStructuredText: single stars and trailing underscores are text, not markup."""
+    for number, line in enumerate(lines):
+        if not line.startswith("    "):
+            pieces = re.split(r"(`[^`]*`)", line)
+            pieces[::2] = [re.sub(r"([*|])", r"\\\1", re.sub(r"(\w)_(?=\W|$)", r"\1\\_", piece)) for piece in pieces[::2]]
+            lines[number] = "".join(pieces)
+    for number in range(len(lines) - 1, 0, -1):
+        if lines[number].startswith("    ") and not lines[number - 1].strip():
+            start = number
+            while start > 0 and (lines[start - 1].startswith("    ") or not lines[start - 1].strip()):
+                start -= 1
+            if start == 0 or not lines[start - 1].rstrip().endswith("::"):
+                if all(line.startswith("    ") or not line.strip() for line in lines[start:number + 1]) and start == number - 1:
+                    lines.insert(number, "::")
+                    lines.insert(number + 1, "")
+
+
+def copy_mathjax(app, error):
+    """Copies the parts of MathJax that the pages use into the site."""
+    import shutil
+
+    if error:
+        return
+    for part in MATHJAX_PARTS:
+        there = pathlib.Path(app.outdir) / "_static/mathjax" / part
+        there.parent.mkdir(parents=True, exist_ok=True)
+        if (MATHJAX / part).is_dir():
+            shutil.copytree(MATHJAX / part, there, dirs_exist_ok=True)
+        else:
+            shutil.copy(MATHJAX / part, there)
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", docstring)
+    app.connect("build-finished", copy_mathjax)
