@@ -74,7 +74,8 @@ class Manual:
 
     def link(self, mark, text, target, here, page):
         """Returns a link from a file of the repository as a link of the manual."""
-        if re.match(r"[a-z]+:", target) or target.startswith("#"):
+        drawn = self.source / pathlib.Path(page).parent / target in self.written
+        if drawn or re.match(r"[a-z]+:", target) or target.startswith("#"):
             return f"{mark}[{text}]({target})"
         path, _, fragment = target.partition("#")
         there = (ROOT / here).parent.joinpath(path).resolve()
