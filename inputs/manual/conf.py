@@ -19,6 +19,7 @@ source_suffix = [".md", ".rst"]
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
+myst_update_mathjax = False  # its settings are of MathJax 3; Debian has 2
 default_role = "literal"
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
@@ -30,17 +31,19 @@ logging.getLogger("sphinx.sphinx.domains.cpp").addFilter(
 
 exclude_patterns = ["files"]  # linked files that are not pages
 
-html_theme = "furo"
+html_theme = "sphinx_rtd_theme"
+html_theme_options = {"navigation_depth": 3, "prev_next_buttons_location": None}
 html_title = f"tanktread {release}"
 html_static_path = [str(HERE / "static")]
 html_css_files = ["manual.css"]
 html_copy_source = False
+html_show_search_summary = False  # a page that is opened from a disk may not read other pages
 html_show_sphinx = False
 pygments_style = "friendly"
 # MathJax of Debian, copied into the site: formulas need no network.
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
-mathjax2_config = {"showMathMenu": False, "messageStyle": "none"}
+mathjax2_config = {"showMathMenu": False, "messageStyle": "none", "tex2jax": {"processClass": "math"}}
 MATHJAX_PARTS = ["MathJax.js", "config/TeX-AMS_SVG.js", "jax/element", "jax/input/TeX", "jax/output/SVG", "extensions"]
 
 

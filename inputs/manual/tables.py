@@ -85,9 +85,9 @@ def curves(header, rows, options):
         k = column(header, name)
         for group in dict.fromkeys(groups):
             points = [(number(a), number(row[k], percent)) for a, row, g in zip(x, rows, groups) if g == group]
-            label = plain(name if not group else f"{options['by']} {group}" if len(options["y"].split(";")) == 1
-                          and number(group) is not None else f"{group}, {name}" if ";" in options["y"] else group)
-            yield label, sorted(p for p in points if None not in p)
+            named = f"{options['by']} {group}" if NUMBER.match(group) else group
+            label = name if not group else f"{named}, {name}" if ";" in options["y"] else named
+            yield plain(label), sorted(p for p in points if None not in p)
 
 
 def draw(lines, options, path):
