@@ -101,7 +101,9 @@ class Manual:
         for k, piece in enumerate(pieces):
             if piece.startswith("`"):
                 key = piece.strip("`").split("=")[0].split(": ")[0]
-                if "/" in key and key in self.keys and page != "decks/reference.md":
+                if key in self.pages and key.endswith(".yaml"):
+                    pieces[k] = f"[{piece}]({relative(page, self.pages[key])})"
+                elif "/" in key and key in self.keys and page != "decks/reference.md":
                     pieces[k] = f'<a href="{relative(page, "decks/reference.html")}#{self.keys[key]}">{piece}</a>'
             elif equations and not piece.startswith(("[", "!")):
                 pieces[k] = re.sub(r"\((\d\.\d+)\)", lambda found: self.equation(found, page), piece)
@@ -215,7 +217,7 @@ def api(manual):
     """Writes a page per namespace of the C++ library, and the list of them."""
     index = xml.parse(manual.xml / "index.xml").getroot()
     spaces = sorted(c.find("name").text for c in index if c.get("kind") == "namespace")
-    spaces = [name for name in spaces if name.startswith("tanktread")]
+    spaces = [name for name in spaces if name.startswith("tanktread") and "INSTRUCTIONS" not in name]  # of kernels
     for name in spaces:
         manual.write(f"api/cpp/{name.replace('::', '-')}.rst",
                      f"{name}\n{'=' * len(name)}\n\n.. doxygennamespace:: {name}\n   :content-only:\n   :members:\n")

@@ -9,7 +9,7 @@
     :log: xy           logarithmic axes
     ```
 Further options: :label: columns; :xlabel:, :ylabel: texts; :percent: yes, "1 %" is 0.01; :below: largest value drawn;
-:height: inches. A cell without a number is left out; the first number of a cell counts."""
+:height: inches; :points: yes, no lines. A cell without a number is left out; the first number of a cell counts."""
 
 import re
 
@@ -101,18 +101,19 @@ def draw(lines, options, path):
             points = [p for p in points if ("x" not in scale or p[0] > 0) and ("y" not in scale or p[1] > 0)]
             if points:
                 many += 1
-                axes.plot(*zip(*points), "osv^D<>"[k % 7] + "-" + ("", "-")[k > 9], label=label, markersize=4, linewidth=1)
+                axes.plot(*zip(*points), "osv^D<>"[k % 7] + ("" if "points" in options else "--" if k > 9 else "-"), label=label, markersize=4, linewidth=1)
         axes.set_xlabel(plain(options.get("xlabel", options.get("x", ""))))
-        axes.set_ylabel(plain(options.get("ylabel", options.get("y", ""))))
+        axes.set_ylabel(plain(options.get("ylabel", "" if ";" in options.get("y", ";") else options["y"])))
         if many > 1:
             axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1)) if many > 5 else axes.legend()
     else:
         labels = [column(header, name) for name in options.get("label", header[0]).split(";")]
         texts = [plain(", ".join(text)) for text in zip(*(filled(rows, k) for k in labels))]
         names = options["y"].split(";")
-        keep = [k for k, row in enumerate(rows) if any(number(row[column(header, n)]) is not None for n in names)]
-        figure, axes = plt.subplots(figsize=(7.5, float(options.get("height", max(2.2, 0.24 * len(keep) + 1)))))
         limit = float(options.get("below", "inf"))
+        keep = [k for k, row in enumerate(rows)
+                if any((number(row[column(header, n)]) or 0) < limit and number(row[column(header, n)]) is not None for n in names)]
+        figure, axes = plt.subplots(figsize=(7.5, float(options.get("height", max(2.2, 0.24 * len(keep) + 1)))))
         for m, name in enumerate(names):
             k = column(header, name)
             points = [(number(rows[r][k]), place) for place, r in enumerate(keep)]

@@ -15,7 +15,7 @@ NEEDED = {"sphinx": "python3-sphinx", "myst_parser": "python3-myst-parser", "bre
           "sphinx_rtd_theme": "python3-sphinx-rtd-theme"}
 
 
-class Page(html.parser.HTMLParser):
+class _Page(html.parser.HTMLParser):
     """Links, anchors and loaded files of a page."""
 
     def __init__(self, path):
@@ -64,7 +64,7 @@ def the_manual_is_a_site_without_dead_links():
     built = subprocess.run([SOURCE / "inputs/manual/build", "--no-install", "site"], capture_output=True, text=True)
     check(built.returncode == 0 and not built.stderr, built.stdout, built.stderr)
     site = pathlib.Path("site/html").resolve()
-    pages = {path: Page(path) for path in site.rglob("*.html") if "_static" not in path.parts}
+    pages = {path: _Page(path) for path in site.rglob("*.html") if "_static" not in path.parts}
     check(len(pages) > 60, len(pages), "pages")
     dead = [f"{path.relative_to(site)}: {link}" for path, page in pages.items() for link in page.links + page.loaded if _dead(pages, path, link)]
     check(not dead, len(dead), "dead links", *dead[:20])
