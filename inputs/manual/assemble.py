@@ -122,6 +122,7 @@ class Manual:
             mark = FENCE.match(line)
             if mark and (fence is None or line.strip() == fence):
                 fence = mark[1] if fence is None else None
+                line = re.sub(r"^( *`+)csv$", r"\1text", line)  # Pygments has no colours for it
             elif fence is None and line.startswith("    ") and not re.match(r" *(\d+\.|[-*]) ", line):
                 labels = re.findall(r"\((\d\.\d+)\)(?:  P-[\w., -]+)?$", line) if page == "theory/equations.md" else []
                 if labels:
