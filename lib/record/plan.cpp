@@ -149,7 +149,7 @@ std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
                      scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
   return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
-                   scene.solvers.assembled(tree) && !scene.domain.present ? "assembled" : "matrix-free", 3 * n_points);
+                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free", 3 * n_points);
 }
 
 std::string membrane_line(const Scene& scene) {
@@ -307,7 +307,7 @@ std::string far_sum_line(const Scene& scene, bool tree) {
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
-  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present ? 27 : 1);
+  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present && !scene.tube.present ? 27 : 1);
   const std::vector<Scene> alone = scene.alone();
   const bool several = alone.size() > 1;
   const int n = body.space.n_points;

@@ -437,10 +437,10 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
   const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
-  const bool assembled = double_layer_ && !cell_ && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
+  const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);
-  const bool single_assembled = viscous_ && !cell_ && parameters_.solvers.assembled(layer_.by_clusters());
+  const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
   if (single_assembled) layer_.assemble(own_targets(), single_rows_);
   const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // of own targets, for everybody

@@ -201,6 +201,7 @@ class Capsule : public Dynamics {
 
  private:
   friend class Evaluation;
+  bool repeats() const { return cell_ && !tube_; }  // the layers do; in a duct the tube's response has the images
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;

@@ -133,7 +133,7 @@ class Wall {
   void add_middles();
   Eigen::MatrixXd assembled();
   Net iterated(const Net& rhs) const;
-  bool has_middles() const { return surface_.channel || cell_; }
+  bool has_middles() const { return surface_.channel.get() != nullptr; }
   void find_pressure();
   double share_of_middle(int point) const;
   Eigen::VectorXd fundamental(const Net& net) const;
