@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -59,7 +60,6 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance, precision());
   cell_ = cell, repetition_ = how;
   near_images_ = cell.around({2, 2, 2});
-  if (!how.itself) std::erase(near_images_, Vec3::Zero());
   measure_.reset();
 }
 
@@ -176,7 +176,7 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 /// The far sum over all panels, and in its place better rules for those that are close to a target or that it lies on.
 void Layer::integrate(const Targets& targets, Net& u) {
   add_far(targets, u);
-  if (cell_ && !repetition_.itself) subtract_itself(targets, u);
+  if (cell_) subtract_itself(targets, u);
   if (cell_) add_rest(targets, u);
   if (images_) add_images(targets, u);
   {
@@ -186,6 +186,7 @@ void Layer::integrate(const Targets& targets, Net& u) {
       if (targets.kept) break;
       const Vec3 f0 = targets.f0.row(i);
       for (const Vec3& image : near_images_) {
+        if (i >= images_only_ && image.isZero(0)) continue;
         const Vec3 at = targets.at.row(i).transpose() - image;
         const std::span<SelfPair> own = targets.sites && image.isZero(0) ? surface_.own(i) : std::span<SelfPair>();
         for (const int e : surface_.near(at, own))
@@ -237,13 +238,16 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// Takes the surfaces themselves out of the far sum. Nodes are put into the cell one by one, so that none of the images there is the identity for all.
+/// Takes the surfaces themselves out of the far sum at the targets that see images only. Nodes are put into the cell one by one, so that none of the images there is the identity for all.
 void Layer::subtract_itself(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
-  const std::vector<Vec3> at = rows_of(targets.at, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
-  Net sums(targets.far_rows.size(), 3);
+  std::vector<int> rows;
+  std::ranges::copy_if(targets.far_rows, std::back_inserter(rows), [&](int i) { return i >= images_only_; });
+  if (rows.empty()) return;
+  const std::vector<Vec3> at = rows_of(targets.at, rows), f0 = rows_of(targets.f0, rows);
+  Net sums(rows.size(), 3);
   single() ? far_sums(forces(surface_.node), at, sums.data(), precision()) : far_sums(stresslets(surface_.node), at, f0, sums.data(), precision());
-  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.far_rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
   evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
 }
 
@@ -430,6 +434,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   Near kept{{0}, {}, {}};
   for (const int i : targets) {
     for (const Vec3& image : near_images_) {
+      if (i >= images_only_ && image.isZero(0)) continue;
       const Vec3 y = at.row(i).transpose() - image;
       for (const int e : surface_.near(y, {})) {
         const std::size_t first = kept.moments.size();

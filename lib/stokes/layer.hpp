@@ -2,6 +2,7 @@
 // Layer potentials of spline surfaces: what they do to the fluid on them and off them.
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,7 +36,6 @@ struct NearPoints {
 
 /// How images of surfaces that repeat count.
 struct Repetition {
-  bool itself = true;      ///< false: the images without the surfaces themselves
   bool assembled = false;  ///< assembled rows hold the images too, but for the smooth rest (PeriodicSum), which `assemble_rest` adds
   std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest coordinates of targets, in the cell's axes
 };
@@ -79,6 +79,9 @@ class Layer {
   ///
   /// and int T n is that of (2.3). Again for each cell of one that deforms. What is assembled leaves images out unless `how` says otherwise.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
+
+  /// Sets which of the points off the surfaces to come, rows from `first` on, see the images of a lattice without the surfaces themselves.
+  void see_images_only(int first) { images_only_ = first; }
 
   /// States that there is a plane wall, which all shapes to come are in front of: G and T are those that vanish on it, (2.35) and (2.36). Not on a
   /// lattice. What is assembled of near control points alone leaves the wall out.
@@ -226,6 +229,7 @@ class Layer {
   std::optional<TreeSum> tree_;                                    // where clusters are faster
   std::optional<PeriodicCell> cell_;                               // of a lattice of images
   Repetition repetition_;                                          // over it
+  int images_only_ = std::numeric_limits<int>::max();              // first of the targets that see images only
   std::optional<PeriodicSum> periodic_;                            // the sum over it
   std::vector<double> in_cell_[3];                                 // far nodes in the cell
   std::vector<Vec3> near_images_{Vec3::Zero()};                    // of panels that a target may be close to

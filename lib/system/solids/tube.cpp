@@ -44,7 +44,6 @@ stokes::Evaluations Tube::kernel_evaluations() const {
 void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }
 
 void Tube::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
-  if (particle_->images) particle_->images->set_reference(unstressed, present);
   particle_->single.set_reference(unstressed, std::move(present));
   particle_->measure = measure;
 }
@@ -78,6 +77,7 @@ double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places,
 }
 
 Net Tube::load_on_wall(const Net& f) {
+  if (cell()) return wall_->collocated(particle_->cause(f, {}, *wall_).at_wall);
   Net u(wall_->targets().rows(), 3);
   particle_->single.apply(f, wall_->targets(), wall_->own_targets(), u);
   return wall_->collocated(u) / -viscosity();
@@ -85,6 +85,7 @@ Net Tube::load_on_wall(const Net& f) {
 
 Net Tube::velocity_on_wall(const Net& v) {
   if (!particle_->dual) return Net::Zero(wall_->sites().rows(), 3);
+  if (cell()) return wall_->collocated(particle_->cause({}, v, *wall_).at_wall);
   const Net strength = particle_->strength(v), &targets = wall_->targets();
   Net u(targets.rows(), 3);
   particle_->dual->apply(strength, particle_->nearest_values(strength), targets, wall_->own_targets(), u, particle_->kept(particle_->dual_on_wall));
@@ -99,7 +100,14 @@ Net Tube::wall_on_particle(const Net& traction) {
 }
 
 Net Tube::images_on_particle(const Net& f, const Net& v) {
-  return particle_->ranks.filled(particle_->sites.rows(), [&](Net& u) { particle_->add_images(f, v, particle_->sites, particle_->own, u); });
+  return on_particle(particle_->cause(f, v, *wall_).at_sites);
+}
+
+/// Rows of this rank to all.
+Net Tube::on_particle(const Net& own) const {
+  return particle_->ranks.filled(own.rows(), [&](Net& u) {
+    for (const int i : particle_->own) u.row(i) = own.row(i);
+  });
 }
 
 Net Tube::wall_on_wall(const Net& traction) { return wall_->apply(traction) / viscosity(); }
@@ -114,15 +122,23 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
   const auto clock = phases_.time("wall");
   Response response;
   response.pressure_drop = pressure_of(f) + lacking;
-  Net on_wall = Net::Zero(wall_->sites().rows(), 3);
-  if (v.size() > 0 && particle_->dual) {
-    on_wall += velocity_on_wall(v);
-    response.pressure_drop += fixed() ? pressure_of_velocity(v, on_wall) : dot(particle_->pressure_of_velocity, v);
+  const bool moves = v.size() > 0 && particle_->dual, by_flow = moves && fixed();
+  if (moves && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
+  if (cell()) {
+    Particle::Cause cause = particle_->cause(f, v, *wall_);
+    if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? velocity_on_wall(v) : wall_->collocated(cause.at_wall));
+    response.wall_traction = solve_wall(wall_->collocated(cause.at_wall));
+    response.velocity = on_particle(std::move(cause.at_sites));
+    response.load = f, response.moves = v;
+  } else {
+    Net on_wall = Net::Zero(wall_->sites().rows(), 3);
+    if (moves) on_wall += velocity_on_wall(v);
+    if (by_flow) response.pressure_drop += pressure_of_velocity(v, on_wall);
+    if (f.size() > 0) on_wall += load_on_wall(f);
+    response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
   }
-  if (f.size() > 0) on_wall += load_on_wall(f);
-  response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
-  response.velocity = wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
-  if (cell()) response.velocity += images_on_particle(f, v), response.load = f, response.moves = v;
+  response.velocity = (response.velocity.size() > 0 ? response.velocity : Net(Net::Zero(particle_->sites.rows(), 3))) +
+                      wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
   if (const double slower = slowed(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
 }

@@ -162,6 +162,7 @@ class Tube {
   double empty_pressure_drop() const;
   double slowed(double pressure_drop) const;
   Net driven(const Net& at) const;
+  Net on_particle(const Net& own) const;
   double pressure_of_velocity(const Net& v, const Net& on_wall);
   void weigh_flow();
 

@@ -1,6 +1,7 @@
 // Independent routes to the pressure drop, and the distance to the wall.
 
 #include <algorithm>
+#include <limits>
 
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
@@ -11,6 +12,7 @@ namespace tanktread::coupling {
 
 namespace {
 
+constexpr int everything = std::numeric_limits<int>::max();  // of the targets see the surfaces themselves
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // of integrals over the wall beside large pressures: over the tolerance, and at most
 
 /// Points of a section between its centroid and its outline, as far as they are inside; `place` takes them into space.
@@ -101,6 +103,7 @@ Tube::Leak Tube::leak(const Net& f) {
   const Net u = wall_->ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
     Net of_wall(at.rows(), 3), of_load = of_wall;
     layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
+    particle_->single.see_images_only(everything);
     particle_->single.apply(f, at, own, of_load);
     for (const int i : own)
       velocity.row(i) = (response.pressure_drop * driven(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();

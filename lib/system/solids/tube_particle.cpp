@@ -38,21 +38,16 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
   if (cell) {
     across = wall.across();
     single.repeat(*cell, {.assembled = true, .across = across});
-    images.emplace(Layer::Kernel::single_layer, particle, stokes::Sites(), how.quadrature);
-    images->repeat(*cell, {.itself = false, .across = across});
   }
   set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
 }
 
 void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
   contrasts = of_points;
-  dual.reset(), dual_of_images.reset();
+  dual.reset();
   if (contrasts.isZero(0)) return;
   dual.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
-  if (!cell) return;
-  dual->repeat(*cell, {.assembled = true, .across = across});
-  dual_of_images.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
-  dual_of_images->repeat(*cell, {.itself = false, .across = across});
+  if (cell) dual->repeat(*cell, {.assembled = true, .across = across});
 }
 
 void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
@@ -63,12 +58,22 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   flow_of_strength_.resize(0, 3);
   if (!cell) inlet = wall.inlet().integral(sites) / parameters.viscosity;
   single.place(shape, measure);
-  if (images) images->place(shape, measure);
+  if (cell) {
+    const auto n = static_cast<int>(wall.targets().rows());
+    both.resize(n + sites.rows(), 3);
+    both << wall.targets(), sites;
+    own_of_both = wall.own_targets();
+    for (const int i : own) own_of_both.push_back(n + i);
+  }
   if (dual) {
     dual->place(shape);
-    if (dual_of_images) dual_of_images->place(shape);
     find_nearest(wall.targets());
-    dual_on_wall = dual->near(wall.targets(), wall.own_targets());
+    if (cell) {
+      dual->see_images_only(static_cast<int>(wall.targets().rows()));
+      dual_on_wall = dual->near(both, own_of_both);
+    } else {
+      dual_on_wall = dual->near(wall.targets(), wall.own_targets());
+    }
     wall_on_sites = wall.layer().near(sites, own);
   }
   weigh_pressure(flow, !wall.surface().channel);
@@ -78,11 +83,31 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
 void Tube::Particle::add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u) {
   Net part(at.rows(), 3);
   const auto add = [&](Layer& layer, const Net& density) {
+    layer.see_images_only(0);
     layer.apply(density, at, rows, part);
     for (const int i : rows) u.row(i) += part.row(i);
   };
-  if (f.size() > 0) add(*images, -f / parameters.viscosity);
-  if (v.size() > 0 && dual_of_images) add(*dual_of_images, strength(v));
+  if (f.size() > 0) add(single, -f / parameters.viscosity);
+  if (v.size() > 0 && dual) add(*dual, strength(v));
+}
+
+Tube::Particle::Cause Tube::Particle::cause(const Net& f, const Net& v, const Wall& wall) {
+  const auto n = wall.targets().rows();
+  Net u = Net::Zero(both.rows(), 3), part(both.rows(), 3);
+  if (f.size() > 0) {
+    single.see_images_only(static_cast<int>(n));
+    single.apply(f, both, own_of_both, part);
+    for (const int i : own_of_both) u.row(i) -= part.row(i) / parameters.viscosity;
+  }
+  if (v.size() > 0 && dual) {
+    const Net density = strength(v);
+    Net nearby = Net::Zero(both.rows(), 3);
+    nearby.topRows(n) = nearest_values(density);
+    dual->see_images_only(static_cast<int>(n));
+    dual->apply(density, nearby, both, own_of_both, part, kept(dual_on_wall));
+    for (const int i : own_of_both) u.row(i) += part.row(i);
+  }
+  return {u.topRows(n), u.bottomRows(sites.rows())};
 }
 
 const Net& Tube::Particle::flow_of_strength(const Wall& wall) {
@@ -181,9 +206,7 @@ void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
 
 stokes::Evaluations Tube::Particle::evaluations() const {
   stokes::Evaluations sum = single.evaluations();
-  for (const auto* layer : {&dual, &images, &dual_of_images})
-    if (*layer) sum += (*layer)->evaluations();
-  return sum;
+  return dual ? sum + dual->evaluations() : sum;
 }
 
 }  // namespace tanktread::coupling

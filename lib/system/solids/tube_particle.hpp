@@ -39,6 +39,13 @@ struct Tube::Particle {
   /// particle in a duct that repeats.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
+  /// Velocities that f and v, if there, cause in a duct that repeats: at the wall's targets by the particle and its images, and at the collocation
+  /// points by its images. Rows of this rank.
+  struct Cause {
+    Net at_wall, at_sites;
+  };
+  Cause cause(const Net& f, const Net& v, const Wall& wall);
+
   /// Weights of (1 - lambda) v: the flow rate of its double layer along the duct. Kept for the present shape.
   const Net& flow_of_strength(const Wall& wall);
 
@@ -54,7 +61,6 @@ struct Tube::Particle {
   membrane::DirectSolver from_sites;        ///< R^-1
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< where a lambda is not 1
-  std::optional<stokes::Layer> images, dual_of_images;  ///< the same without the particle itself, in a duct that repeats
   std::optional<stokes::PeriodicCell> cell;             ///< of a duct that repeats
   std::array<Vec3, 2> across;                           ///< extent of its wall
   Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
@@ -67,6 +73,8 @@ struct Tube::Particle {
   Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
   std::vector<int> nearest;                                             ///< to a collocation point of the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
+  Net both;                                                             ///< in a duct that repeats the wall's targets, then the sites
+  std::vector<int> own_of_both;                                         ///< rows of this rank
 
   struct Frozen {
     FrozenOperator single, dual, wall;
