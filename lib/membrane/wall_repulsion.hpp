@@ -43,7 +43,7 @@ class WallRepulsion : public Load {
 
   const spline::Space& space_;
   Repulsion repulsion_;
-  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // function values of an element, one row per Gauss point
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // function values, one row per Gauss point
   std::vector<Eigen::VectorXd> area_;                                                          // unstressed area of each Gauss point
   std::vector<Place> latest_;                                                                  // points at the linearisation
 };

@@ -11,7 +11,8 @@ WholeMembrane::WholeMembrane(const spline::Space& space, const Net& unstressed, 
   area.parts.emplace_back(1.0, Membrane(space, unstressed, SurfaceTension{1}, 4, {}));
   std::vector<int> all(space.elements.size());
   std::iota(all.begin(), all.end(), 0);
-  const double area0 = area(unstressed, area.gradient_at(unstressed, all)), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);  // N of this sphere, 8 pi R
+  // of_sphere: N of a sphere of area area0, 8 pi R
+  const double area0 = area(unstressed, area.gradient_at(unstressed, all)), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);
   area.stiffness = stiffness.area / area0, area.relaxed = area0;
   if (stiffness.leaves > 0) {
     for (const double sign : {-1.0, 1.0})  // (2 chi + c)^2/2 - (2 chi - c)^2/2 = 4 chi c, with c = 1/R
