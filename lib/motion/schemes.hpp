@@ -139,8 +139,8 @@ class CrankNicolson : public Scheme {
 ///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)               (4.4)
 ///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)
 ///
-/// b^ is of third order but not stable; e2 is its difference from b without the stiff part. With z = dt J, a step multiplies a mode by R(z) + (R^ -
-/// R)/(1 - d z)^2, whose modulus is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth
+/// b^ is of third order but not stable; e2 is its difference from b without the stiff part. A step multiplies a mode by R(z) + (R^ - R)/(1 - d z)^2
+/// with z = dt J, whose modulus is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth
 /// order, so its secants are not used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus
 /// the errors of the two stages (4.28).
 ///
