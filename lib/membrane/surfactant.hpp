@@ -24,7 +24,6 @@ namespace tanktread::membrane {
 ///
 /// Here u is the velocity of the control points and v that of the fluid; their normal components are equal. The coefficients are q_A = m_A/int N_A
 /// dG, with the integral over the surface `initial` on the same space, so q = 1 at the start of a run with that shape. Uses no MPI.
-/// surface `initial` on the same space, 1 at the start there. Serial.
 class Surfactant : public Field {
  public:
   /// `clean_tension`: sigma(0). `space` must outlive this object.
