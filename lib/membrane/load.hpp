@@ -15,7 +15,7 @@
 
 namespace tanktread::membrane {
 
-/// Surface of a particle, for which loads and fields are made. It outlives them.
+/// Surface of a particle, from which loads and fields are created. It must outlive them.
 struct ParticleSurface {
   const spline::Space& space;
   const Net& unstressed;  ///< control net, shape (N, 3), length
@@ -50,7 +50,7 @@ class Load {
   /// Adds to dE/dx the terms that depend on the complete sums.
   virtual void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& /*work*/) const {}
 
-  /// Returns whether the membrane stores the energy. A force from outside stores none.
+  /// Returns whether the membrane stores the energy. An external force stores none.
   virtual bool stores() const { return false; }
   /// Returns the energy that the membrane stores at x; `sums` are complete. Force x length.
   virtual double energy(const Net& /*x*/, std::span<const Net> /*sums*/) const { return 0; }

@@ -60,8 +60,8 @@ class Branch {
   /// Returns the equations at a value of the parameter and of the second one, which is 0 if there is none. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Transfers shapes to a finer mesh that fits the last of them better, and changes the family to that mesh. The last shape is steady at this
-  /// parameter. Returns false if there is no better mesh. Collective.
+  /// Transfers shapes to a mesh that fits the last of them better, and changes the family to that mesh. The last shape is steady at this parameter.
+  /// Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
   /// Starts at `parameter` with the steady shape reached from `x`. `second`: value of the second parameter if the first fold is continued.
@@ -115,7 +115,7 @@ class Branch {
   std::vector<Solved> last_;  // up to three points, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, and whether each is a fold
   std::vector<Fold> folds_;       // the two latest folds of the second parameter
-  double last_share_ = 1;         // distance between them as a fraction of a step in its values
+  double last_share_ = 1;         // distance between these folds, as a fraction of the interval between two values
   std::size_t values_ = 0;        // number of its values reached
   std::string failure_;
   double step_ = 0;

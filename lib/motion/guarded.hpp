@@ -8,7 +8,7 @@
 
 namespace tanktread::motion {
 
-/// Thrown by a velocity evaluation after a stop signal. It is not an exception class, so no scheme treats it as an error.
+/// Thrown by a velocity evaluation after a stop signal. It does not derive from std::exception, so no scheme treats it as an error.
 struct Stopped {};
 
 /// Wraps another motion for the integrators. If an evaluation at a trial shape fails on one rank or more (a solver does not converge, the surface is

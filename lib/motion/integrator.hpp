@@ -31,7 +31,7 @@ struct State {
   Net direction;                ///< direction in which the stiffness (4.7) was found; empty if it was not measured
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content
   coupling::Secants secants;    ///< secant pairs for the Jacobian, collected by the quasi-Newton iterations
-  Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if none were
+  Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if there are none
 };
 
 /// Keeps only what every scheme uses: position, slope, step and frozen operator. Used if the state was computed by another scheme.

@@ -42,7 +42,7 @@ class Attempts {
       : options_(options), state_(state), limit_(limit), proposed_(options.fixed_step.value_or(state.step)) {}
 
   /// Returns the size of the next attempt, at most `longest`. Throws RunFailure if the controller requests a step below `Time/minimum step`, unless
-  /// less than that is left before the limit.
+  /// this step reaches the limit.
   double next(double longest = 1e300);
 
   /// Returns whether an attempt with this error, divided by the tolerance, is accepted. Throws RunFailure if a step of fixed size has an error that
@@ -50,8 +50,8 @@ class Attempts {
   bool holds(double error, const char* kind) const;
 
   /// Rejects the attempt, whose error divided by the tolerance is `error` (0: unknown). The next attempt has `part` of its size. If two attempts were
-  /// rejected, the power of the step with which the error scales is estimated from their errors, and limits the next attempt further, to a tenth at
-  /// least. This power is below 1 while the shape relaxes after mesh refinement; it is taken as 1/2 or more. Gustafsson 1994.
+  /// rejected, their errors give the power of the step with which the error scales, at least 1/2. The next attempt is then no longer than this power
+  /// predicts, but at least a tenth of the rejected one. The power is below 1 while a shape relaxes after mesh refinement. Gustafsson 1994.
   void reject(double part, double error = 0);
 
   /// Ends the step at y. Sets position, time and next step of the state, `factor` times this step, and returns the report. A step shortened to meet
@@ -134,7 +134,7 @@ class CrankNicolson : public Scheme {
   std::unique_ptr<coupling::FixedPoint> solver_;  // null for the plain sub-iteration
 };
 
-/// TR-BDF2 (Hosea & Shampine 1996) with local extrapolation: one step, third order, L-stable for the exact Jacobian.
+/// TR-BDF2 (Hosea & Shampine 1996) with local extrapolation: a one-step method of third order, L-stable with the exact Jacobian.
 ///
 ///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)               (4.4)
 ///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)

@@ -37,7 +37,7 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  constexpr double rounding = 1e-6, between_meshes = 0.05;  // for a mesh that rotates on an axisymmetric drop, up to the mesh error
+  constexpr double rounding = 1e-6, between_meshes = 0.05;  // mesh error of an axisymmetric drop on a rotated mesh
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
   for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
