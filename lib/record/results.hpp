@@ -37,7 +37,7 @@ constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of its membrane's stress-free shape
 std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file of its copies
-/// returns the name for the file of an outline or of a channel's points: the original's without its folder
+/// Returns the name for the file of an outline or of a channel's points: the original's without its folder
 std::string kept_name(const std::string& file);
 
 /// Data of a finished run for its summary and its messages.

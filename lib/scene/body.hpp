@@ -25,8 +25,8 @@ struct FlowPlane {
   Mat3 axes = Mat3::Identity();
   bool holds_flow = true;  ///< false if the flow is not planar; D is then measured in the plane of the longest and the shortest axis of inertia
 
-  bool fixed() const { return axes.isIdentity(0); }                     ///< true for the plane x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< components along a, b x a, b
+  bool fixed() const { return axes.isIdentity(0); }                     ///< returns true for the plane x1 x3
+  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components along a, b x a, b
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };
@@ -45,7 +45,7 @@ struct Member;
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
-  /// space with the same control points and degenerate poles, if `space` has poles by the Bezier transform
+  /// Space with the same control points but degenerate poles; null unless `space` has poles by the Bezier transform and the mesh may adapt
   std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
   Net initial;     ///< control net of the shape at the start of the run
@@ -54,7 +54,7 @@ struct Body {
   FlowPlane plane;     ///< plane in which D and tank-treading are measured
   membrane::Law law;
   double radius = 1;   ///< R_C
-  /// reference volume V0 of the resting shape, or of the initial one if it keeps its own, on the first mesh (also after mesh changes)
+  /// Reference volume V0: that of the resting shape, or of the initial one if it keeps its own volume, on the first mesh (also after mesh changes)
   double volume = 0;
   double initial_area = 0;  ///< initial int c dG of the surfactant on the first mesh; 0 until it is computed
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C

@@ -47,7 +47,7 @@ struct CopiesOptions {
   std::optional<int> number;          ///< number of copies placed at random
   std::optional<double> volume_fraction;  ///< volume fraction, from which the number follows
   std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
-  /// radius of the ball that contains all copies; without box and ball they fill the cell of a lattice with three directions
+  /// Radius of the ball that contains all copies; without box and ball they fill the cell of a lattice with three directions
   std::optional<double> ball;
   double least_gap = 0.05;            ///< gap between circumscribed spheres, divided by the larger radius
   int seed = 1;

@@ -14,13 +14,13 @@ namespace tanktread {
 /// Exact solution for a sphere, spheroid or ellipsoid in a flow without strain. Force and traction depend only on the motion relative to the flow.
 struct ExactBody {
   stokes::Ellipsoid ellipsoid;
-  Mat3 axes;  ///< columns: the principal axes in space
+  Mat3 axes;  ///< principal axes in space, as columns
   Vec3 centre;
-  Vec3 velocity, angular_velocity;  ///< relative to the flow, in the principal axes
+  Vec3 velocity, angular_velocity;  ///< velocities relative to the flow, in components along the principal axes
   double viscosity;
 
-  Vec3 force() const;   ///< force on the body
-  Vec3 torque() const;  ///< torque on the body about its centre
+  Vec3 force() const;   ///< returns the force on the body
+  Vec3 torque() const;  ///< returns the torque on the body about its centre
 
   /// Return the pressure p = -t.n without its constant (t: traction on the body) and the unit normal, at the point of the exact surface in the
   /// direction of x from the centre.

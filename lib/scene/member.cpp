@@ -76,7 +76,7 @@ std::vector<Member> members(const Scene& scene) {
   }
   if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
     only.wall = wall(all.front().scene, only);
-    only.symmetry = surface::Symmetry(only.space.n_points);  // symmetry is not used in a straight tube
+    only.symmetry = surface::Symmetry(only.space.n_points);  // no symmetry is determined in a tube
   }
   return all;
 }
@@ -95,7 +95,7 @@ void arrange(std::vector<Member>& members) {
     member.block = blocks[p];
     if (members.size() == 1) continue;  // the coupled system makes its geometry and membrane itself
     Body& body = *member.body;
-    body.symmetry = surface::Symmetry(body.space.n_points);  // the symmetry of one particle is none of the whole scene
+    body.symmetry = surface::Symmetry(body.space.n_points);  // the symmetry of one particle is not one of the whole scene
     share_or_make(members, p);
   }
 }

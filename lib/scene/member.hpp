@@ -30,9 +30,11 @@ struct Member {
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
-  std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }   ///< name used in checkpoints and messages
-  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }                ///< name of its section, used in messages
-  std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }  ///< name of its columns in the results
+  /// Returns the name in checkpoints and messages
+  std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
+  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the name of its section, for messages
+  /// Returns the name of a column in the results
+  std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };
 
 /// Returns what drives a rigid body: its prescribed motion, or its force, weight included, and torque.
@@ -60,7 +62,7 @@ std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& memb
 /// Writes to a checkpoint, or reads from it, the data of the members in addition to the state: volumes, nets and adapted meshes. Throws
 /// std::out_of_range if the checkpoint lacks a part.
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
-bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if any mesh was read
+bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if the mesh of any member was read
 
 /// Returns the mesh whose edges the checkpoint holds, on the lattice of `mesh`. Throws UserError if the checkpoint's lattice is another one.
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix = {});

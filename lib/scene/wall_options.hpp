@@ -29,7 +29,7 @@ struct WallOptions {
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
 
-  std::optional<stokes::PlaneWall> plane() const;  ///< the wall, if there is one
+  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall, if there is one
 };
 
 }  // namespace tanktread

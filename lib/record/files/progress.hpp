@@ -46,7 +46,7 @@ class Progress {
 };
 
 /// Returns the line for a step, without line end, with a bar of `bar` characters. `seconds`: wall time since the run began (or was resumed) at
-/// simulated time `begin`. Example: "[###-----] 45 % t 3.375/7.5 step 24 9 iterations D 0.3987 12 s left".
+/// simulated time `begin`. Example: "[###-----]  45 %  t 3.375/7.5  step 24  9 iterations  D 0.3987  12 s left".
 std::string progress_line(const Moment& moment, double begin, double end, double seconds, int bar);
 
 /// Returns a duration as text: "0.8 s", "42 s", "3 min 08 s", "2 h 05 min".

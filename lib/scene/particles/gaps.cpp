@@ -17,7 +17,7 @@ namespace {
 
 constexpr double accuracy = 1e-7;  // absolute error of gaps, divided by R_C
 
-/// Returns the patches of a particle in the shape x. Equal members share one Bezier map, if it exists.
+/// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
   if (member.geometry) return {member.geometry->bezier(), x};
   return {surface::BezierMap(member.body->space), x};

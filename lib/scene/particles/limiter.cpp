@@ -81,7 +81,7 @@ Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   return found == held_.end() ? nullptr : &*found;
 }
 
-/// Returns the gap that a contact shall have: the limit. If the pair has another contact and this gap is slightly below the limit, returns a value
+/// Returns the required gap of a contact: the limit. If the pair has another contact and this gap is slightly below the limit, returns a value
 /// between the gap and the limit.
 double Limiter::target(const Approach& found) const {
   const bool first = std::ranges::none_of(held_, [&](const Held& one) { return of_same_pair(one.contact, found.contact); });

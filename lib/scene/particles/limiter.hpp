@@ -35,7 +35,7 @@ class Limiter {
   /// Contact, its force in multiples of `unit`, and the displacement that one unit causes in the step.
   struct Held {
     coupling::Contact contact;
-    double gap, target;  // gap, and the value that it shall have
+    double gap, target;  // gap, and its required value
     double before, force;
     Net work, response;
   };

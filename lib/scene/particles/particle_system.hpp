@@ -29,7 +29,7 @@ struct Resumed {
 
 /// Particles at one time, for a snapshot.
 struct SurfacePicture {
-  Net surface;  ///< control net
+  Net surface;  ///< control net of the surfaces
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
@@ -38,10 +38,10 @@ class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
-  virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< the coupled system; null for a free rigid body
-  virtual coupling::CoupledMotion* fields() { return nullptr; }                   ///< motion including the fields on surfaces; null without fields
+  virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< returns the coupled system; null for a free rigid body
+  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion with the fields on surfaces; null without fields
   virtual const Body& body() const = 0;
-  virtual Net start() const = 0;                                                 ///< State::x at time zero
+  virtual Net start() const = 0;                                                 ///< returns State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
   /// Discards the data of earlier solves that preconditioners `recycled` keep. Checkpoints do not hold these data; so a run discards them after each
@@ -49,16 +49,16 @@ class ParticleSystem {
   virtual void forget_recycled() {}
   /// Moves particles that a step of this size left too close, if the deck asks for it. Returns false if that fails.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
-  virtual coupling::Contacts contacts() const { return {}; }                      ///< current contacts
+  virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
   virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of these contacts, on the current mesh, from now on
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has another mesh now
   virtual void undo_adapt(const Net&) {}                                         ///< returns to the previous mesh, in this shape, for a last snapshot
-  virtual std::vector<Warning> remarks() { return {}; }                          ///< warnings to the user, who shall see each kind only once
+  virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
-  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< phase of each particle at the latest row
+  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;     ///< `progress`: time and work are set here
-  virtual const surface::BezierMap& bezier() const = 0;                          ///< Bezier extraction of body()
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;     ///< returns a row; time and work of `progress` are set here
+  virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };
 

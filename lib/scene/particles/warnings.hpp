@@ -17,7 +17,7 @@ namespace tanktread {
 /// Data of a finished step from which warnings are derived. Lengths and times are in the deck's units.
 struct StepFindings {
   double time = 0, step = 0;
-  double smallest_tension = 0, compressed_area = 0;  ///< as defined for the series
+  double smallest_tension = 0, compressed_area = 0;  ///< values of the series with these names
   double volume_error = 0;
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
   double element = 1;                           ///< mean element size: the square root of the area divided by the number of elements
@@ -36,7 +36,7 @@ struct Warning {
 
 class Warnings {
  public:
-  /// Memory that a resumed run needs.
+  /// Data with which a resumed run continues.
   struct Memory {
     double waves = 0;            ///< number of e-folds by which the shortest waves can have grown
     int limited = 0;             ///< number of latest consecutive steps as long as stability allows
