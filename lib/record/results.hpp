@@ -25,7 +25,7 @@ namespace tanktread {
 struct RunRequest {
   std::string output;           ///< directory of the results
   bool resume = false;          ///< resume from the newest checkpoint there
-  bool overwrite = false;       ///< delete the results of an earlier run there
+  bool overwrite = false;       ///< delete the results of an earlier run there first
   bool another_scheme = false;  ///< true if the time scheme differs from the checkpoint's; only shape, slope and step of its state are then kept
   bool quiet = false;           ///< no progress bar
   std::string deck_text;        ///< the effective deck, to be stored with the results
@@ -44,7 +44,7 @@ std::string kept_name(const std::string& file);
 struct Account {
   output::Entries<std::string> plan;
   output::Entries<long> counts;
-  std::string status = "done";  ///< or `steady`, `stopped: ...`, `failed: ...`, as summary.yaml has it
+  std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
   bool whole = true;            ///< true if the run reached its end, so that missed expectations fail it
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run

@@ -42,7 +42,7 @@ std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
 /// Data of a snapshot for the list of snapshots.
 struct Picture {
-  double time = 0;  ///< the number "picture time" of the checkpoint, or "time"
+  double time = 0;  ///< time of the snapshot: the number "picture time" of the checkpoint, or "time" if there is none
   std::string run;  ///< text "run" of the checkpoint, the identifier of the run
 };
 

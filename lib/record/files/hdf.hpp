@@ -35,7 +35,7 @@ std::string_view image(const Id& file);
 /// Opens an existing file for reading. Throws RunFailure if the system cannot open it as a file, std::runtime_error if it is not an HDF5 file.
 Id open(const std::filesystem::path& path);
 
-using Shape = std::vector<hsize_t>;  ///< empty: a scalar
+using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar
 
 /// Write or read datasets of a file, row-major. Missing groups of a name `group/name` are created. `read_doubles` sets `shape` to the shape of the
 /// dataset.

@@ -13,10 +13,10 @@ namespace tanktread::output {
 
 /// Data of a finished step.
 struct Moment {
-  double time = 0;  ///< simulated
+  double time = 0;  ///< simulated time
   int step = 0;
   int iterations = 0;      ///< nonlinear iterations of the step
-  double deformation = 0;  ///< taylor_inertia
+  double deformation = 0;  ///< Taylor parameter D (taylor_inertia)
 };
 
 /// Progress display. On a terminal it is a bar that is drawn over itself. Otherwise it is one plain line at most every 3 seconds, and only after

@@ -13,7 +13,7 @@ template <class Value>
 using Entries = std::vector<std::pair<std::string, Value>>;  ///< named values, in the order in which they are written
 
 struct Summary {
-  std::string status = "done";  ///< or `steady`, `stopped: <by what>`, `failed: <reason>`
+  std::string status = "done";  ///< `done`, `steady`, `stopped: <by what>` or `failed: <reason>`
   Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
   Entries<std::string> final_in_si;  ///< the same with their SI units, for values with a dimension, if the deck sets its units
   Entries<std::vector<double>> final_vectors;  ///< last values of vectors, as lists: drag, torque

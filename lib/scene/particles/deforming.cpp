@@ -225,8 +225,8 @@ class Deforming : public ParticleSystem {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
-  /// Returns the stresslet of the two forces of a contact placed at the centroids. The stresslet of each particle's own load is about its own
-  /// centroid and is not included.
+  /// Returns the stresslet of the two forces of a contact if they act at the centroids. The stresslet of each particle is about its own centroid and
+  /// does not contain this part.
   Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
     const auto centroid = [&](std::size_t k) {
       const Member& member = members_[contact.particle[k]];
@@ -337,7 +337,7 @@ class Deforming : public ParticleSystem {
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
   }
 
-  /// Moves the sites of the contacts of particle p to the same parametric points on another mesh.
+  /// Finds the sites of the contacts of particle p on another mesh, at the same parametric points.
   void carry_contacts(std::size_t p, const spline::Space& to) {
     if (contacts_.all.empty()) return;
     const spline::Locator locator(to);

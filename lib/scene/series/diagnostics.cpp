@@ -159,7 +159,7 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // whose own columns have the same names
+  const bool only = scene.particles.empty();  // the columns of a single particle have the same names
   if (!only || scene.particle.rigid()) add_energy(energy, to);
   if (only) return;
   add_stresslet(stresslet, to);
