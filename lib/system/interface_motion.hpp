@@ -50,7 +50,7 @@ class InterfaceMotion {
   /// Stores x, b = dV/dx, the normals and the tangent of E1 at x for `derivative`. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change du of u for a displacement delta that changes the fluid velocity by dv. b and the dependence of W on v are kept fixed. The
+  /// Returns the change du of u for a displacement delta that changes the fluid velocity by dv. b, and W as a function of v, are kept fixed. The
   /// normals are kept fixed too unless `velocity` was called last at x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 

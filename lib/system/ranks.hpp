@@ -51,7 +51,7 @@ class Ranks {
   /// Collective.
   void own(const std::vector<int>& rows, surface::Symmetry symmetry);
 
-  /// Divides the control points of a space among the ranks: returns the points whose rows this rank fills. Collective.
+  /// Divides the control points of a space among the ranks, and returns the points whose rows this rank computes. Collective.
   std::vector<int> divide_points(const spline::Space& space, const surface::Symmetry& symmetry);
   std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides the fundamental points into equal parts in their order,
                                                                         ///< regardless of neighbourhood
