@@ -42,7 +42,7 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
   }
 }
 
-// Four functions and six kernel entries at a time: 24 packs of sums in registers, where there are as many.
+// Four functions and six kernel entries at a time: 24 packs of sums in registers, if there are as many registers.
 template <class Real>
 void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
   using Several = typename RegisterOf<Real>::Type;
