@@ -25,7 +25,7 @@ struct Contact {
 /// All active contacts, and the time integral of their forces so far.
 struct Contacts {
   std::vector<Contact> all;
-  double impulse = 0;  ///< force x time
+  double impulse = 0;  ///< time integral of the forces, force x time
 
   double force() const;
   void add_columns(Columns& to) const;

@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 /// in rows of three, and the last row is padded with zeros. The coefficients of a field are multiplied by R_C sqrt(control points/coefficients) of
 /// their particle, so that the Euclidean inner product of states gives similar weight to fields and shape and does not depend on the unit of length.
 ///
-///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   the load of each field added to that of its particle                          (4.33)
+///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   with the load of each field added to the load of its particle                (4.33)
 ///
 /// The Jacobian of the fields is exact. GMRES solves for x and q together. The preconditioner contains the diagonal block of each field and, if the
 /// field follows the shape, also the lower triangular block. Calls are collective; every rank stores all fields.

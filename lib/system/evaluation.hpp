@@ -40,8 +40,8 @@ class Evaluation {
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();
 
-  /// Stresslet of particle p (6.7), S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG, force x length,
-  /// with the fluids' velocity v. Batchelor 1970; Pozrikidis 1992, section 5.1.
+  /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
+  /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG. Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(std::size_t p = 0);
 
   /// Returns v.C v of particle p, the power that the viscosity (3.10) of its membrane or interface dissipates.
@@ -59,7 +59,7 @@ class Evaluation {
   Net x_, known_;  // known_: velocity passed to the constructor
   std::shared_ptr<Evaluation> near_;
   bool solved_ = false;  // true if load, velocities, unknowns and rigid bodies are computed
-  Net velocity_, fluid_;  // fluid_: of no rows if no control point slides
+  Net velocity_, fluid_;  // fluid_: no rows if no control point slides
   Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w for rigid bodies
   Net work_, load_, viscous_work_;  // no rows until first used
   std::vector<Net> load_sums_;

@@ -144,7 +144,7 @@ Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   return 6 * over_8_pi * (m * n);
 }
 
-/// int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'
+/// Uses int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'.
 double Cap::own_flow() const {
   const Nodes n = nodes(6);
   double sum = 0;

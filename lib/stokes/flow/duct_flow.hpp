@@ -24,7 +24,7 @@ class DuctProfile {
 std::unique_ptr<DuctProfile> ellipse_profile(const surface::Vec2& semi_axes);
 std::unique_ptr<DuctProfile> rectangle_profile(const surface::Vec2& sides);
 
-/// Returns the profile selected by TubeOptions: a closed form if the section has one, otherwise the boundary-element profile.
+/// Returns the profile selected by TubeOptions: a closed form or the boundary-element profile.
 std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline& outline);
 
 /// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall                  (P-33)

@@ -6,7 +6,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// g[block (6 k + c) + l]
+// Computes the entries c of the kernel for node k and target l: g[block (6 k + c) + l].
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;

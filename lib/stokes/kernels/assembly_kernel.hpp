@@ -5,7 +5,7 @@
 
 namespace tanktread::stokes {
 
-constexpr int assembly_block = 16;  ///< targets that share one pass
+constexpr int assembly_block = 16;  ///< number of targets that are processed together in one pass
 constexpr int assembly_tile = 4;    ///< basis functions are padded to a multiple of this
 
 /// One panel with its far nodes: positions, weights (area included) or normals times area, basis values basis[n_nodes A + k] for A = 0 .. functions -

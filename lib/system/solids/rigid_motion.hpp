@@ -5,7 +5,7 @@
 
 namespace tanktread::coupling {
 
-/// v = U + Omega x (x - centre)
+/// Rigid motion v = U + Omega x (x - centre).
 struct RigidMotion {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
 };

@@ -33,7 +33,7 @@ struct OwnLacking {
 
 /// The limit lambda -> infinity of (2.22). In this limit v = V + w/(lambda - 1) on the body, V = U + Omega x r, and
 ///
-///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + what the others' v and w do                            (2.23)
+///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + contributions of v and w of the other particles        (2.23)
 ///
 /// w replaces v in the unknowns. The integral does not change if a rigid motion is added to w, so that the rigid motion <w> nearest to w is free to
 /// represent other unknowns. If force and torque on a body are given, V = <w> and df = -(a + b x r) with this force and torque on the fluid. If V is

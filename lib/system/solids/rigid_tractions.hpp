@@ -51,7 +51,7 @@ class RigidTractions {
 
   struct Body {
     RigidMotion motion;
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the fluid, about the centre
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) on the fluid
     Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, not corrected
   };
 

@@ -21,7 +21,7 @@ class RecycledProducts {
   /// Ends the current solve.
   void refresh();
 
-  /// out = Z Y^T in + P (in - Y Y^T in)
+  /// Computes out = Z Y^T in + P (in - Y Y^T in), with `other` as P.
   void apply(const Eigen::VectorXd& in, const Apply& other, Eigen::Map<Eigen::VectorXd> out) const;
 
   double scale() const { return scale_; }

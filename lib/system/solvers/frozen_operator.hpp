@@ -36,7 +36,7 @@ class FrozenOperator {
   mutable std::vector<float> f1_, f2_, f3_;
 };
 
-/// u += sum over n points of the symmetric block (six arrays of n entries, one after the other) times (f1, f2, f3).
+/// Adds to u the sum over n points of the symmetric block (six consecutive arrays of n entries) times (f1, f2, f3).
 void symmetric_block_row(int n, const std::uint16_t* entries, const float* f1, const float* f2, const float* f3, float* u);
 
 /// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p of

@@ -110,7 +110,7 @@ TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
   EXPECT_LT(moved.motion(1).velocity.norm() + moved.motion(1).angular_velocity.norm(), 1e-3);
 }
 
-/// ../shared: multipole solution of two spheres, distance of centres 3 (Jeffrey & Onishi's functions).
+/// Compared with the multipole solution for two spheres whose centres are 3 apart (functions of Jeffrey & Onishi).
 TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
   const Rigid pulled{true, {Vec3(1, 0, 0), Vec3::Zero()}}, held{true, {}};
   Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), held}}, 4, Mat3::Zero());
