@@ -44,9 +44,9 @@ void take_first(std::span<double> numbers);
 double of_first(double mine);
 bool of_first(bool mine);
 
-/// Lets all ranks end the program together: returns when every rank has arrived. If `code` is 2 or 3, an error that not all ranks share, this rank
-/// waits for half a minute at most, prints `message` unless it is the first rank, which has already printed it, and ends all ranks with `code`.
-/// Collective; must be the last call of main before the Session ends.
+/// Lets all ranks end the program together: returns when every rank has arrived. If `code` is 2 or 3 (an error) and other ranks, which do not share
+/// the error, have not arrived after half a minute, this rank prints `message` and ends all ranks with `code`. The first rank does not print, because
+/// it has already printed the message. Collective; must be the last call of main before the Session ends.
 void leave_together(int code, const std::string& message);
 
 }  // namespace tanktread::coupling

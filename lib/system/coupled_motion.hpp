@@ -16,8 +16,8 @@ namespace tanktread::coupling {
 ///
 ///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   with the load of each field added to the load of its particle                (4.33)
 ///
-/// The Jacobian of the fields is exact. GMRES solves for x and q together. The preconditioner contains the diagonal block of each field and, if the
-/// field follows the shape, also the lower triangular block. Calls are collective; every rank stores all fields.
+/// The Jacobian of the fields is exact. The Krylov solver solves for x and q together. The preconditioner contains the diagonal block of each field
+/// and, if the field follows the shape, also the lower triangular block. Calls are collective; every rank stores all fields.
 class CoupledMotion : public Dynamics {
  public:
   struct On {

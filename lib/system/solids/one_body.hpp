@@ -18,8 +18,8 @@
 namespace tanktread::coupling {
 
 /// Inverses of (2.23) for each isolated rigid body, in body-fixed axes, so that they remain valid when the body moves. Equal bodies share an inverse.
-/// A body of more than `most_points` control points has none. In double precision, because GMRES mistakes the rounding of single precision for a
-/// residual that does not decrease.
+/// A body of more than `most_points` control points has none. Stored in double precision, because GMRES mistakes the rounding of single precision
+/// for a residual that does not decrease.
 class OneBodyInverses {
  public:
   static constexpr int most_points = 2000;

@@ -79,7 +79,7 @@ class Resistance {
   Vec3 torque(const Net& f, const Vec3& centre) const;     ///< int (x - centre) x f dG
   Mat3 stresslet(const Net& f, const Vec3& centre) const;  ///< symmetric, traceless part of int f (x - centre) dG
 
-  /// Returns the control values c of n, by projection: the null vector of A, which no velocity determines.
+  /// Returns the control values c of n, by projection: the null vector of A, a density that produces no velocity.
   const Net& normal() const { return normal_; }
 
   stokes::Evaluations kernel_evaluations() const;  ///< total since construction

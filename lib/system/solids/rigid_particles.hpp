@@ -24,8 +24,8 @@ struct OwnLacking {
   std::array<Net, 6> loads;  ///< corrections for u = A f with the loads f = e_k and e_k x r, k = 0, 1, 2, r from the centre of the volume
   Eigen::MatrixXd density;   ///< correction for u = H w as a matrix acting on w, shape (3 N, 3 N); empty for more than `most_points` control points
 
-  /// 72 bytes per pair of control points. In double precision, because GMRES mistakes single-precision rounding for a residual that does not
-  /// decrease.
+  /// Takes 72 bytes per pair of control points. Stored in double precision, because GMRES mistakes single-precision rounding for a residual that does
+  /// not decrease.
   static constexpr int most_points = 2000;
 
   OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
