@@ -18,9 +18,9 @@ namespace tanktread::coupling {
 ///
 ///   v = (sum_q w_q N(q) N(q)^T)^-1 sum_q w_q N(q) u(q),   w_q the share of the unstressed area                            (4.21)
 ///
-/// The cubic spline that fits a smooth u best has the error h^4 B4(t)/24 times the fourth derivative of u on an element of length h, where B4 = t^4 -
-/// 2 t^3 + t^2 - 1/30 is a Bernoulli polynomial. Collocation at the knots has an error proportional to B4(t) + 1/30, whose mean is not 0 and which
-/// therefore affects the load of the next shape, the volume and every layer at a distance. The points q are the zeros of B4, two per parametric
+/// The cubic spline that fits a smooth u best has the error h^4 B4(t)/24 times the fourth derivative of u on an element of length h, with the
+/// Bernoulli polynomial B4 = t^4 - 2 t^3 + t^2 - 1/30. Collocation at the knots has an error proportional to B4(t) + 1/30, whose mean is not 0 and
+/// which therefore affects the load of the next shape, the volume and every layer at a distance. The points q are the zeros of B4, two per parametric
 /// direction, where the best fit has no error.
 class VelocityProjection {
  public:

@@ -28,9 +28,9 @@ struct Cluster : ChebyshevBox {
 /// A binary tree over points that come in groups (the far nodes of a panel, or single points). A group is never split. The boxes of flat clusters are
 /// aligned with the cluster, so that a patch of a surface needs only two or three nodes across.
 ///
-/// Interpolation of G (2.1) along the half-width a of a box with n nodes has an error of rho^(-n) at the distance z a from its centre, where rho = z
-/// + sqrt(z^2 - 1), cf. (2.9). The number n along the longest axis follows from the tolerance, reach = z a from n, and the numbers of nodes along the
-/// other axes from reach.
+/// Interpolation of G (2.1) along the half-width a of a box with n nodes has an error of rho^(-n) at the distance z a from its centre, where
+/// rho = z + sqrt(z^2 - 1), cf. (2.9). The number n along the longest axis follows from the tolerance, reach = z a from n, and the numbers of nodes
+/// along the other axes from reach.
 class Clusters {
  public:
   /// Leaves hold at most `leaf` points (or one group). Both halves of a cluster start at a multiple of `quantum` groups. Numbers of points and nodes
