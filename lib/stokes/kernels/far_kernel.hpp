@@ -33,9 +33,9 @@ enum class Precision { single, full };
 /// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
-/// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l], target[2
-/// far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding (2^-40
-/// of the target's distance from the origin), is skipped.
+/// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
+/// target[2 far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding
+/// (2^-40 of the target's distance from the origin), is skipped.
 void far_sum(const PointForces& forces, const double* target, double* u);
 
 /// Computes this sum for any number of targets; result u[3 k + c].
