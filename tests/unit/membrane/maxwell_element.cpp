@@ -25,7 +25,7 @@ TEST(MaxwellElement, HasNoStressInTheShapeThatItStartsWith) {
   EXPECT_LT(springs.rate({}).norm(), 1e-12 * springs.start(x).norm());
 }
 
-/// Whose law is that of small strains: E = int (G |dev e|^2 + K/2 (tr e)^2) dG, as every law's with the same moduli.
+/// At small strains its law has the energy E = int (G |dev e|^2 + K/2 (tr e)^2) dG, like every law with the same moduli.
 TEST(MaxwellElement, IsAnElasticMembraneBeforeItForgets) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
@@ -34,7 +34,7 @@ TEST(MaxwellElement, IsAnElasticMembraneBeforeItForgets) {
   springs.set_state(x, springs.start(s.net));
   const Membrane elastic(s.space, s.net, EvansSkalak{shear, c});
   const Net load = elastic.load(x);
-  EXPECT_LT((springs.load() - load).norm(), 3 * small * load.norm());  // what differs is of second order
+  EXPECT_LT((springs.load() - load).norm(), 3 * small * load.norm());  // the difference is of second order
   EXPECT_NEAR(springs.energy() / elastic.energy(x), 1, 3 * small);
 }
 
@@ -68,7 +68,7 @@ TEST(MaxwellElement, TurnsIntoHeatWhatItsSpringsLoseAtRest) {
   EXPECT_NEAR((at(-h) - at(h)) / (2 * h) / heat, 1, 1e-8);
 }
 
-/// J - 1 of a sphere that is blown up decays like exp(-t/T), and the energy is K/2 (J - 1)^2 of its area.
+/// If a sphere is inflated, J - 1 decays like exp(-t/T), and the energy is K/2 (J - 1)^2 times its area.
 TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
@@ -76,7 +76,7 @@ TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   Eigen::VectorXd q = springs.start(s.net);
   const double h = 0.01 * time_of_it, first = (springs.set_state(x, q), springs.energy());
   const auto rate = [&](const Eigen::VectorXd& at) { return springs.set_state(x, at), springs.rate({}); };
-  for (int step = 0; step < 100; ++step) {  // classical Runge and Kutta's: 1e-10
+  for (int step = 0; step < 100; ++step) {  // classical Runge-Kutta scheme, error 1e-10
     const Eigen::VectorXd k1 = rate(q), k2 = rate(q + h / 2 * k1), k3 = rate(q + h / 2 * k2), k4 = rate(q + h * k3);
     q += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   }
@@ -85,7 +85,7 @@ TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   EXPECT_NEAR(springs.energy() / first, std::exp(-2.), 1e-9);
 }
 
-/// (3.10) with eta_s and kappa_s, where the surface moves steadily for many T.
+/// If the surface moves steadily for many T, the stress is the viscous stress (3.10) with eta_s and kappa_s.
 TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
   const Sphere& s = sphere(3);
   const double fast = 1e-5;
@@ -106,7 +106,7 @@ TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
   EXPECT_NEAR(springs.dissipation() / expected.cwiseProduct(v).sum(), 1, 1e-3);
 }
 
-/// Load and rate of the images of x and q are the images of load and rate, where nothing of the state is symmetric.
+/// Load and rate of the images of x and q are the images of load and rate, even though the state has no symmetry.
 TEST(MaxwellElement, HasTheImagesOfItsSurface) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
@@ -134,7 +134,7 @@ TEST(MaxwellElement, HasTheImagesOfItsSurface) {
       return image;
     };
     springs.set_state(of_net(x), of_q(q));
-    EXPECT_LT((springs.load() - of_net(load)).norm(), 1e-9 * load.norm()) << g.signs.transpose();  // the fit of the sphere is symmetric to 1e-10
+    EXPECT_LT((springs.load() - of_net(load)).norm(), 1e-9 * load.norm()) << g.signs.transpose();  // the fitted sphere is symmetric to 1e-10
     EXPECT_LT((springs.rate({}) - of_q(rate)).norm(), 1e-9 * rate.norm()) << g.signs.transpose();
   }
 }
