@@ -108,36 +108,46 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
     centre.push_back(at.centre);
     factor.insert(factor.end(), {at.factor[0], at.factor[1]});
     lines[0].push_back(at.centre + low[0] * at.factor[0] * at.across), lines[1].push_back(at.centre + high[0] * at.factor[0] * at.across);
-    lines[2].push_back(at.centre + low[1] * at.factor[1] * Vec3::UnitZ()), lines[3].push_back(at.centre + high[1] * at.factor[1] * Vec3::UnitZ());
+    lines[2].push_back(at.centre + low[1] * at.factor[1] * Vec3::UnitZ()),
+        lines[3].push_back(at.centre + high[1] * at.factor[1] * Vec3::UnitZ());
   }
   Net axis(places_along, 3);
   for (int k = 0; k < places_along; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
   const Net v = flow.velocities(axis);
   std::vector<double> velocity(v.data(), v.data() + v.size());
-  for (int k = 0; k < sections; ++k) rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
+  for (int k = 0; k < sections; ++k)
+    rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
   const std::vector<double> rate = flow.flow_rates_at(rate_s);
-  const WallLine wall = along_wall(flow);
   const std::size_t n = s.size();
-  return {{"s", "length", "way along the centre line", s, {n}},
-          {"centre", "length", "places of the centre line", flat(centre), {n, 3}},
-          {"factor", "1", "of the section there, along x2 (before a bend) and x3", factor, {n, 2}},
-          {"wall", "length", "places of the wall beside the centre line: one side along x2 (before a bend), the other, then along x3",
-           [&] {
-             std::vector<double> all;
-             for (const auto& line : lines)
-               for (const double x : flat(line)) all.push_back(x);
-             return all;
-           }(),
-           {4, n, 3}},
-          {"velocity", "length/time", "of the empty channel on the centre line", velocity, {n, 3}},
-          {"section_s", "length", "where sections are", rate_s, {rate_s.size()}},
-          {"flow_rate", "length^3/time", "through these sections", rate, {rate.size()}},
-          {"wall_s", "length", "way along a line of the wall, where the outline begins", wall.s, {wall.s.size()}},
-          {"wall_shear_stress", "force/length^2", "size of the tangential traction of the empty channel there", wall.shear, {wall.s.size()}},
-          {"wall_pressure", "force/length^2", "of the empty channel there, 0 at the outlet", wall.pressure, {wall.s.size()}},
-          {"pressure_drop", "force/length^2", "between the ends of the empty channel", {flow.pressure_drop()}, {}},
-          {"extra_pressure_drop", "force/length^2", "the same over that of a straight tube of the inlet's section and as long",
-           {flow.extra_pressure_drop()}, {}}};
+  std::vector<output::Array> all{{"s", "length", "way along the centre line", s, {n}},
+                                 {"centre", "length", "places of the centre line", flat(centre), {n, 3}},
+                                 {"factor", "1", "of the section there, along x2 (before a bend) and x3", factor, {n, 2}},
+                                 {"wall",
+                                  "length",
+                                  "places of the wall beside the centre line: one side along x2 (before a bend), the other, then along x3",
+                                  [&] {
+                                    std::vector<double> all;
+                                    for (const auto& line : lines)
+                                      for (const double x : flat(line)) all.push_back(x);
+                                    return all;
+                                  }(),
+                                  {4, n, 3}},
+                                 {"velocity", "length/time", "of the empty channel on the centre line", velocity, {n, 3}},
+                                 {"section_s", "length", "where sections are", rate_s, {rate_s.size()}},
+                                 {"flow_rate", "length^3/time", "through these sections", rate, {rate.size()}},
+                                 {"pressure_drop", "force/length^2", "between the ends of the empty channel", {flow.pressure_drop()}, {}},
+                                 {"extra_pressure_drop",
+                                  "force/length^2",
+                                  "the same over that of a straight tube of the inlet's section and as long",
+                                  {flow.extra_pressure_drop()},
+                                  {}}};
+  if (channel.repeats()) return all;  // the density on its wall is not the traction of the fluid inside
+  const WallLine wall = along_wall(flow);
+  all.push_back({"wall_s", "length", "way along a line of the wall, where the outline begins", wall.s, {wall.s.size()}});
+  all.push_back(
+      {"wall_shear_stress", "force/length^2", "size of the tangential traction of the empty channel there", wall.shear, {wall.s.size()}});
+  all.push_back({"wall_pressure", "force/length^2", "of the empty channel there, 0 at the outlet", wall.pressure, {wall.s.size()}});
+  return all;
 }
 
 }  // namespace tanktread

@@ -262,6 +262,7 @@ void Scene::declare(deck::Section& root) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
   }
+  if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane wall that the fluid sticks to; none without this list");
   if ((wall.present || tube.present || domain.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
   if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");

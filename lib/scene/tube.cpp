@@ -30,7 +30,7 @@ void check_fits_channel(const Scene& scene, const Body& body, const surface::Tub
         first = std::min(first, at[0]), last = std::max(last, at[0]);
       }
   const double margin = 1.7 * wall.radius();
-  if (first < channel.start() + margin || last > channel.end() - margin)
+  if (!channel.repeats() && (first < channel.start() + margin || last > channel.end() - margin))
     throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to "
                               "Channel/start = %.4g and Channel/end = %.4g.",
                               first, last, margin, channel.start(), channel.end()));
@@ -119,8 +119,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
   const double length = x1.maxCoeff() - x1.minCoeff();
   surface::TubeOptions options = scene.tube;
-  if (scene.domain.present) {
-    const double period = scene.domain.side_lengths->front();
+  if (const double period = scene.tube.period; period > 0) {
     const int elements = surface::elements_per_period(options, outline.radius(), period, std::min(length, period) / 2);
     if (const double most = most_wall_points() / options.azimuthal_elements; elements > most)
       throw UserError(formatted("A period of %.4g asks for %d elements along the wall, but at most %.0f fit into memory: give a shorter one.", period,

@@ -82,6 +82,8 @@ void Channel::find_ends() {
   if (own_.half_length) take(-*own_.half_length - own_.corner_radius.value_or(0), *own_.half_length + own_.corner_radius.value_or(0));
   if (own_.bend_radius) take(own_.bend_start, own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180);
   start_ = own_.start.value_or(first_ - 4 * radius), end_ = own_.end.value_or(last_ + 4 * radius);
+  if (options_.period == 0) return;
+  start_ = (first_ + last_ - options_.period) / 2, end_ = start_ + options_.period;
 }
 
 void Channel::check() {
@@ -93,7 +95,9 @@ void Channel::check() {
                                 *own_.half_length, edge));
   }
   const double before = start_ + straight_end * outline(start_).radius(), after = end_ - straight_end * outline(end_).radius();
-  if (before > first_ || after < last_ || start_ >= end_)
+  if (options_.period > 0)
+    check_period();
+  else if (before > first_ || after < last_ || start_ >= end_)
     throw UserError(formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
                               "but the modelled piece goes from %.4g to %.4g.",
                               straight_end * radius, first_, last_, start_, end_));
@@ -114,6 +118,32 @@ void Channel::check() {
     throw UserError(formatted("Channel/bend radius must be more than half the channel's width, %.4g, and 5 %% of it, or its sections cross, but is "
                               "%.4g.",
                               widest, *own_.bend_radius));
+}
+
+void Channel::check_period() {
+  if (own_.start || own_.end) throw UserError("Channel/start and Channel/end are for a channel with two ends, but Domain makes it repeat along x1.");
+  if (own_.bend_radius) throw UserError("Channel/bend radius is for a channel with two ends: one that bends does not repeat along x1.");
+  if (last_ - first_ > options_.period * (1 + 1e-9))
+    throw UserError(formatted("The period of the channel, Domain/side lengths %.4g, must be at least as long as what changes in it, from s = %.4g to %.4g.",
+                              options_.period, first_, last_));
+  const Vec2 jumps = place(start_).factor - place(end_).factor;
+  if (jumps.cwiseAbs().maxCoeff() > 1e-6)
+    throw UserError(formatted("A channel that repeats must have the same section at both ends of its period, but its factors differ by %.3g.",
+                              jumps.cwiseAbs().maxCoeff()));
+}
+
+/// Returns s moved by periods into the modelled one.
+double Channel::in_period_along(double s) const {
+  return options_.period > 0 ? s - options_.period * std::floor((s - start_) / options_.period) : s;
+}
+
+/// Returns the place at u, which of a channel that repeats may be beyond its ends.
+Channel::Place Channel::in_period(double u) const {
+  if (options_.period == 0) return place(u);
+  const double low = parameter(start_), whole = parameter(end_) - low, periods = std::floor((u - low) / whole);
+  Place at = place(u - periods * whole);
+  at.s += periods * options_.period;
+  return at;
 }
 
 /// Returns the point at arc length u of a step's wall contour: straight, rounded edge, straight across, edge rounded the other way, straight.
@@ -164,8 +194,13 @@ Channel::Section Channel::section_of(const Place& at) const {
   return {Vec3(begin, r, 0) - r * across + rest * along, along, across, at.factor};
 }
 
-Channel::Section Channel::at(double u) const { return section_of(place(u)); }
-Channel::Section Channel::section(double s) const { return at(parameter(s)); }
+Channel::Section Channel::at(double u) const { return section_of(in_period(u)); }
+
+Channel::Section Channel::section(double s) const {
+  Place at = place(parameter(in_period_along(s)));
+  if (options_.period > 0) at.s = s;
+  return section_of(at);
+}
 
 Vec3 Channel::coordinates(const Vec3& x) const {
   double s = x[0], y = x[1];
@@ -181,13 +216,13 @@ Vec3 Channel::coordinates(const Vec3& x) const {
       s = begin + r * all + (x - after.centre).dot(after.along);
     }
   }
-  const Vec2 factor = place(parameter(s)).factor;
+  const Vec2 factor = place(parameter(in_period_along(s))).factor;
   return {s, y / factor[0], x[2] / factor[1]};
 }
 
 bool Channel::inside(const Vec3& x) const {
   const Vec3 at = coordinates(x);
-  return at[0] > start_ && at[0] < end_ && outline_.inside(at.tail<2>());
+  return (options_.period > 0 || (at[0] > start_ && at[0] < end_)) && outline_.inside(at.tail<2>());
 }
 
 Outline Channel::outline(double s) const { return scaled(outline_, section(s).factor); }

@@ -14,6 +14,8 @@ Outline scaled(const Outline& outline, const Vec2& factor);
 /// line runs along x1, where s = x1, and may bend once, by a circular arc in the plane x1 x2:
 ///
 ///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the outline of factor 1, N = dC/ds turned towards x2 by a right angle
+///
+/// One that repeats has no ends and no bend: f(s + L) = f(s), and start and end are those of one period around the middle of what changes.
 class Channel {
  public:
   /// Throws UserError, with numbers in the message, if the channel is folded, closed or has no straight ends.
@@ -30,6 +32,7 @@ class Channel {
   TubeOptions tube(double s) const;     ///< straight tube with the section at s
   double start() const { return start_; }
   double end() const { return end_; }
+  bool repeats() const { return options_.period > 0; }
   double smallest_radius() const { return smallest_; }  ///< half the smallest width
 
   /// Returns the coordinates s, y2, y3 of a position.
@@ -49,6 +52,9 @@ class Channel {
   };
   Place place(double u) const;
   Place step(double u) const;
+  Place in_period(double u) const;
+  double in_period_along(double s) const;
+  void check_period();
   Section section_of(const Place& place) const;
   double parameter(double s) const;
   double jump() const;

@@ -124,6 +124,7 @@ struct TubeOptions {
   std::optional<std::string> outline;        ///< path of the file of points
 
   std::optional<double> length;  ///< of the wall; 2 pi R_T, or more for a long particle, if not given
+  double period = 0;  ///< after which the duct repeats along x1, of Domain; 0: it does not
   std::optional<double> periodic_length;  ///< L: the particles repeat along x1, a train; none: they do not
   std::optional<int> images;              ///< M: copies modelled at either side; from the tolerance of integrals if not given
   int azimuthal_elements = 24;   ///< of the wall, around

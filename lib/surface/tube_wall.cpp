@@ -271,8 +271,14 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 }  // namespace
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
-  const std::vector<double> knots = channel->knots(channel->elements());
-  auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements);
+  std::vector<double> knots = channel->knots(channel->elements()), periodic;
+  if (channel->repeats()) {  // the seam is at a quarter of the last element
+    periodic.assign(knots.begin(), knots.end() - 1);
+    const double before = 0.75 * (knots.back() - periodic.back());
+    knots.insert(knots.begin(), knots.front() - before);
+    knots.back() -= before;
+  }
+  auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements, periodic);
   wall.space.description = "channel, " + wall.space.description;
   const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // the spline's area is that of the section
   for (Vec2& point : ring) point *= wider;
@@ -291,7 +297,7 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << (centre[i] + ring[k][0] * across[i]).transpose(), ring[k][1] * upward[i][0];
   wall.outline = scaled(channel->outline(channel->start()).spline(azimuthal_elements), Vec2::Constant(wider));
-  wall.start = channel->start(), wall.end = channel->end();
+  if (!channel->repeats()) wall.start = channel->start(), wall.end = channel->end();
   wall.channel = std::move(channel);
   return wall;
 }

@@ -1,5 +1,6 @@
 #include "system/solids/channel_flow.hpp"
 
+#include <cmath>
 #include <numeric>
 
 #include "surface/geometry.hpp"
@@ -20,6 +21,7 @@ ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, 
       options_(options),
       quadrature_(quadrature),
       wall_solver_(wall_solver) {
+  if (channel_->repeats()) return;
   ends_.push_back(section(channel_->start(), 1));
   ends_.push_back(section(channel_->end(), -1));
 }
@@ -50,7 +52,14 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   return wall_;
 }
 
-Net ChannelFlow::ends(const Net& x) const { return ends_[0].velocities(x) + ends_[1].velocities(x); }
+/// Returns the velocity that drives the flow in addition to the wall: the profiles at the ends, or in a channel that repeats Poiseuille's flow of a unit
+/// pressure gradient in a circular tube, for any section.
+Net ChannelFlow::ends(const Net& x) const {
+  if (!channel_->repeats()) return ends_[0].velocities(x) + ends_[1].velocities(x);
+  Net v = Net::Zero(x.rows(), 3);
+  v.col(0) = (std::pow(outline().radius(), 2) - x.rightCols<2>().rowwise().squaredNorm().array()) / (4 * viscosity());
+  return v;
+}
 
 const ChannelFlow::Solved& ChannelFlow::solved() const {
   if (solved_) return *solved_;
@@ -66,9 +75,15 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   const stokes::DuctEnd::Points points = section(middle, 1).points();
   const Vec3 along = channel_->section(middle).along;
   const auto rate = [&](const Net& v) { return points.area.dot(v * along); };
-  const double given = rate(velocities(points.x, without, 0, true)), pumped = rate(velocities(points.x, with, 1, false));
-  solved.pressure_drop = (flow_rate() - given) / pumped;
-  solved.traction = without + solved.pressure_drop * with;
+  const double given = rate(velocities(points.x, without, 0, 1));
+  if (channel_->repeats()) {
+    solved.driving = flow_rate() / given;
+    solved.pressure_drop = solved.driving * wall->surface().period;
+    solved.traction = solved.driving * without;
+  } else {
+    solved.pressure_drop = (flow_rate() - given) / rate(velocities(points.x, with, 1, 0));
+    solved.traction = without + solved.pressure_drop * with;
+  }
   solved_ = std::make_shared<const Solved>(std::move(solved));
   return *solved_;
 }
@@ -79,18 +94,21 @@ quadrature::Options ChannelFlow::sharper() const {
   return options;
 }
 
-/// Returns the velocity due to wall and pressure drop, and due to the ends if `with_ends`. If there are many points, ranks share them.
-Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, bool with_ends) const {
+/// Returns the velocity due to wall and pressure drop, and `driving` times the velocity of `ends`. If there are many points, ranks share them.
+Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
   if (!layer_) {
     layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), sharper());
+    if (wall->cell()) layer_->repeat(*wall->cell());
     layer_->place(surface_->net);
   }
+  const Net density = wall->on_space(traction);
   const auto evaluate = [&](std::span<const int> own, Net& v) {
     const Net at = x(own, Eigen::all);
-    layer_->apply(traction, x, own, v);
-    Net rest = pressure_drop / viscosity() * wall->inlet().integral(at);
-    if (with_ends) rest += ends(at);
+    layer_->apply(density, x, own, v);
+    Net rest = Net::Zero(at.rows(), 3);
+    if (!wall->cell()) rest = pressure_drop / viscosity() * wall->inlet().integral(at);
+    if (driving != 0) rest += driving * ends(at);
     v(own, Eigen::all) = rest - v(own, Eigen::all) / viscosity();
   };
   if (x.rows() >= few) return wall->ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
@@ -103,7 +121,7 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
 
 Net ChannelFlow::at(const Net& x) const {
   const Solved& known = solved();
-  return velocities(x, known.traction, known.pressure_drop, true);
+  return velocities(x, known.traction, known.pressure_drop, known.driving);
 }
 
 Net ChannelFlow::velocities(const Net& x) const {

@@ -23,6 +23,9 @@ namespace tanktread::coupling {
 /// f is the traction on the wall, dp the pressure drop between the ends, c (1/mu) times the inlet integral (2.13), and P the terms of (2.29). The
 /// wall operator is constructed by all ranks when a velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities
 /// refer to the inlet.
+///
+/// In a channel that repeats, Poiseuille's flow of the pressure gradient dp/L in a circular tube stands for c dp and P. Then f is the difference of the
+/// tractions of the fluid inside and of the fluid outside, in which the velocity vanishes on the wall too.
 class ChannelFlow : public stokes::DuctFlow {
  public:
   /// `wall_solver`: as for Wall.
@@ -54,13 +57,13 @@ class ChannelFlow : public stokes::DuctFlow {
 
  private:
   struct Solved {
-    double pressure_drop = 0;
+    double pressure_drop = 0, driving = 1;  // factor of `ends`
     Net traction;
   };
   const Solved& solved() const;
   Net ends(const Net& x) const;
   quadrature::Options sharper() const;
-  Net velocities(const Net& x, const Net& traction, double pressure_drop, bool with_ends) const;
+  Net velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const;
   Net at(const Net& x) const;
   stokes::DuctEnd section(double s, int inward) const;
 

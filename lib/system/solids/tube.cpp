@@ -56,6 +56,7 @@ Net Tube::in_wall_frame(Net x) const {
 void Tube::place(const Net& x, std::optional<double> centroid) {
   const auto clock = phases_.time("wall");
   if (!centroid && !fixed()) centroid = particle_->geometry.measures(x).centroid[0];
+  if (!centroid && cell()) centroid = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
   particle_->place(x, centroid.value_or(0), *flow_, *wall_, empty_pressure_drop());
 }
 

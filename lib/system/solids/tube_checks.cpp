@@ -147,7 +147,12 @@ bool Tube::inside(const Net& x, std::span<const int> rows) const {
 double Tube::gap() const {
   const surface::Patches patches(particle_->geometry.bezier(), particle_->shape);
   if (fixed()) {
-    const double nearest = surface::closest_points(surface::ElementBoxes(patches), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may reach across the seam
+      const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
+      if (beyond == 0 || wall().period > 0)
+        nearest = std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
+    }
     return inside(particle_->sites, everybody(particle_->sites.rows())) ? nearest : -nearest;
   }
   return surface::clearance(patches, wall_->surface().outline).gap;
