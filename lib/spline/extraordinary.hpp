@@ -22,8 +22,8 @@ Eigen::MatrixXd averaged_bicubic();
 
 /// Returns the bi-quartic Bezier points of face 0, row 5 v + u. Shape (25, 19). Rows sum to 1.
 ///
-/// c0 .. c3 are the control points of the cubic along a spoke. They, except c1, and all points that the outer neighbours need for C1 keep their
-/// values. c1 and the four inner points of each face change such that across the spoke t -> c(t)
+/// c0 .. c3 are the control points of the cubic along a spoke. c0, c2, c3 and all points that the outer neighbours need for C1 keep their values.
+/// c1 and the four inner points of each face change such that across the spoke t -> c(t)
 ///
 ///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///

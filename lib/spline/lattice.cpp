@@ -10,7 +10,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Computes the slots, cells and backward slots of every vertex from the corners of the cells. Slot 0 of a vertex begins its cell of lowest index.
+/// Computes the slots, cells and backward slots of every vertex from the corners of the cells. The cell between slots 0 and 1 of a
+/// vertex is its cell of lowest index.
 void connect(Lattice& l) {
   const int n = int(l.position.size());
   l.neighbour.assign(n, {-1, -1, -1, -1});
