@@ -242,7 +242,7 @@ class SteadyRun {
       std::optional<motion::ReturnMap> of_parity;
       if (options.parity) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // runs in time conserve the volume
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // runs keep the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
@@ -347,8 +347,8 @@ class SteadyRun {
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
-  coupling::Work work_;          // work of systems that were dropped
-  stokes::Evaluations kernel_;   // kernel evaluations of systems that were dropped
+  coupling::Work work_;         // work of systems that were dropped
+  stokes::Evaluations kernel_;  // kernel evaluations of systems that were dropped
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;
   std::string failure_;

@@ -61,7 +61,7 @@ class Document {
 /// Reads and merges a deck, key by key. Each of `files` (XML if its name ends with .xml, otherwise YAML) overrides `stored` and the files before it.
 /// `settings` (`Section/key=value`) override the files. `stored` is YAML text from a checkpoint and may be empty. Throws UserError.
 ///
-/// An expectation fails the run only if the deck is the one it was stated for. If a later file, or the settings together, change a key that results
+/// An expectation is binding only for the deck that states it. If a later file, or the settings together, change a key that results
 /// depend on and do not set a key of Expect/<name> again, `not binding` of the expectation names the changed keys. Results depend on all keys except
 /// those of Output and Expect, and except Time/final time if the expectation's `at` is not after it.
 /// If `excuse` is not empty, it is set as `not binding` of all expectations.

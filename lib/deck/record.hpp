@@ -24,14 +24,14 @@ struct List {
   std::string name;
   std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
-  const Teuchos::ParameterList* given = nullptr;   ///< section that the user gave, or `merged` if it is set; null if not given
-  const Teuchos::ParameterList* itself = nullptr;  ///< section that the user gave, without keys from `like` and `defaults`; only set by `each`
-  std::shared_ptr<Teuchos::ParameterList> merged;  ///< section that the user gave, with keys from `like` and `defaults`; null without sharing
+  const Teuchos::ParameterList* given = nullptr;   ///< section from the user, or `merged` if it is set; null if not given
+  const Teuchos::ParameterList* itself = nullptr;  ///< section from the user, without keys from `like` and `defaults`
+  std::shared_ptr<Teuchos::ParameterList> merged;  ///< section from the user, with keys from `like` and `defaults`
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
-  std::vector<std::string> mistakes;   ///< one sentence per refused value; the key keeps its default
-  bool alike = false;                  ///< whether inner sections share keys by `like` and `defaults`
-  std::vector<std::string> mentioned;  ///< names that are allowed here but not declared
+  std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
+  bool alike = false;                               ///< whether inner sections share keys by `like` and `defaults`
+  std::vector<std::string> mentioned;               ///< names that are allowed here but not declared
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null for a section of this program
 
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }

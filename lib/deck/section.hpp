@@ -96,7 +96,7 @@ class Section {
   bool given(std::string_view name) const;
   /// Removes a key that this section takes from `like` or `defaults` (see `each`). A key that the section sets itself stays.
   void leave_out(std::string_view name);
-  bool documenting() const;  ///< returns whether the manual is being made; if so, every section must be declared
+  bool documenting() const;                            ///< returns whether the manual is being made; if so, every section must be declared
   std::string path(std::string_view name = {}) const;  ///< returns the path of a key, or of this section, for messages
 
   struct State;

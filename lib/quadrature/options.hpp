@@ -12,7 +12,7 @@ struct Options {
   std::string rule = "adaptive";  ///< `adaptive`: by tolerance; `fixed`: `points` x `points` Gauss with Lachat-Watson, as in the paper;
                                   ///< `desingularised`: only the same Gauss points, with the singularity subtracted by identities
   int points = 8;                 ///< Gauss points per direction of the rules `fixed` and `desingularised`
-  std::string far_sum = "auto";   ///< `dense`: sums over all far nodes for each target; `tree`: over clusters of nodes; `auto`: the faster one
+  std::string far_sum = "auto";   ///< `dense`: sums over all far nodes; `tree`: sums over clusters of nodes; `auto`: the faster one
 
   std::string far_precision = "auto";  ///< precision of the terms of far sums: `single`, `double`; `auto`: single if `tolerance` >= 1e-3
 

@@ -10,7 +10,7 @@ namespace tanktread::spline {
 /// A checkpoint stores `edges` and `spacing`. To restore the mesh, assign them to the mesh that cube() or polar() returns for the same arguments.
 struct TMesh {
   std::shared_ptr<const Lattice> lattice;
-  std::vector<std::uint8_t> edges;  ///< edges at each lattice vertex: bit k is set if the mesh has the unit edge in slot k; stored at both ends
+  std::vector<std::uint8_t> edges;  ///< bits at each lattice vertex: bit k is set if the unit edge in slot k exists; stored at both ends
   std::vector<int> spacing;         ///< spacing h at each extraordinary point: within 3 h of it the mesh is the uniform h lattice
 
   bool edge(int v, int k) const { return edges[v] >> k & 1; }
