@@ -92,7 +92,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     tube_->set_reference(unstressed, measure(), measured_on_present(particles()));
-    if (!tractions_ && (particles().size() > 1 || !rigid_.empty())) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
+    if (!tractions_) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
   }
   for (const Particle& particle : particles())
     volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
