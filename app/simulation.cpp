@@ -161,6 +161,7 @@ class Run {
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
     pictured_.reset();
+    if (scene_.tube.images) warn({"images", "Tube/images has no effect: a tube that repeats has all images."});
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
     ++totals_.step;

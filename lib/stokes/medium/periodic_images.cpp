@@ -219,7 +219,7 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   add(end + 1, 1 / 48.), add(end - 1, -1 / 48.);
 }
 
-/// The constant of (2.45), less the limits of the images that are near.
+/// The constant of (2.43), less the limits of the images that are near.
 void PeriodicKernel::add_constant(double* values) const {
   if (kind_ == Kind::stresslet || cell_.reference() == 0) return;
   const double h = cell_.vectors().col(0).norm();

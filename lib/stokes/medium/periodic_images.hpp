@@ -12,7 +12,7 @@ namespace tanktread::stokes {
 class PeriodicCell {
  public:
   /// The first n columns of `vectors` are the lattice's, linearly independent. `reference`: of one period the distance across at which the axial
-  /// velocity of a row of unit forces changes its sign (2.45), which fixes the constant of the Stokeslet; 0: the constant is left open.
+  /// velocity of a row of unit forces changes its sign (2.43), which fixes the constant of the Stokeslet; 0: the constant is left open.
   PeriodicCell(const Mat3& vectors, int n, double reference = 0);
 
   int n() const { return n_; }
@@ -59,7 +59,7 @@ class PeriodicCell {
 /// fixed by the reference distance l of the cell, so that far from the row with rho the distance across
 ///
 ///   G^P = sum_n G(r + n h e) - sum_{n != 0} (I + e e)/|n h| + (2/h) (ln(l/2h) + gamma + 1/2) (I + e e),
-///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.45)
+///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.43)
 class PeriodicKernel {
  public:
   enum class Kind { stokeslet, stresslet };

@@ -115,11 +115,11 @@ class Wall {
   Net force_weights() const;
 
   /// Flow rate along the duct, times mu, of a unit force along each axis at these points: c of the inlet (2.13); of a wall that repeats, for forces
-  /// whose sum vanishes, -rho^2/(4 L) e1 with rho the distance from the axis x1                                                    (2.46)
+  /// whose sum vanishes, -rho^2/(4 L) e1 with rho the distance from the axis x1                                                    (2.44)
   Net flow_of_forces(const Net& at) const;
 
   /// Flow rate of a unit strength of the double layer along each axis, at a point with normal n: of an open wall through the inlet; of one that
-  /// repeats (x1 n - ((n.rho) e1 + n1 rho)/2)/L, for strengths without flux                                                         (2.47)
+  /// repeats (x1 n - ((n.rho) e1 + n1 rho)/2)/L, for strengths without flux                                                         (2.45)
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
   /// Of the surface of a channel, for distances.

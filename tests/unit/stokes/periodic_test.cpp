@@ -91,7 +91,7 @@ TEST(PeriodicKernel, StokesletsOfOnePeriodDifferByWhatIsKnown) {
     EXPECT_LT((stokeslet_at(cell, {0.1, 0.2, 0.3}, steps, 1.3) - stokeslet_at(cell, {0.4, 1.0, 0.5}, steps, 1.3) - known).norm(), 1e-10);
 }
 
-/// Five periods away what is left of the others is exp(-2 pi 5), and (2.45) is exact.
+/// Five periods away what is left of the others is exp(-2 pi 5), and (2.43) is exact.
 TEST(PeriodicKernel, TheConstantOfOnePeriodVanishesAtItsReference) {
   for (const double period : {1., 0.7}) {
     const PeriodicCell cell(period * Mat3::Identity(), 1, 1.9);
