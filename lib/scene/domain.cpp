@@ -18,8 +18,8 @@ void DomainOptions::declare(deck::Section& section) {
               "directions in which the scene repeats; of three the mean velocity over the cell, particles included, is that of the flow, and a net "
               "force is balanced by a uniform pressure gradient");
   section.key("side lengths", side_lengths, deck::any(), "length",
-              "lengths of a box along x1, x2, x3, of which those of directions that do not repeat have no meaning; with Tube or Channel the period along "
-              "x1 only");
+              "lengths of a box along x1, x2, x3, of which those of directions that do not repeat have no meaning; with Tube or Channel the period "
+              "along x1 only");
   section.key("lattice vectors", lattice_vectors, deck::any(), "length",
               "of any other cell at time zero: nine numbers, the vector of x1, that of x2, that of x3. The flow carries them along");
 }
@@ -32,7 +32,8 @@ Mat3 DomainOptions::vectors() const {
   int n = 0;
   for (int d = 0; d < 3; ++d) {
     if (periodic.find(static_cast<char>('1' + d)) == std::string::npos) continue;
-    vectors.col(n++) = side_lengths ? Vec3((*side_lengths)[static_cast<std::size_t>(d)] * Vec3::Unit(d)) : Vec3(lattice_vectors.value().row(d).transpose());
+    const auto along = static_cast<std::size_t>(d);
+    vectors.col(n++) = side_lengths ? Vec3((*side_lengths)[along] * Vec3::Unit(d)) : Vec3(lattice_vectors.value().row(d).transpose());
   }
   return vectors;
 }

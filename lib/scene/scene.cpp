@@ -72,7 +72,8 @@ double points(const Scene& scene) {
 }
 
 double wall_points(const Scene& scene) {
-  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
+  const int of_tube = scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
+  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 

@@ -163,7 +163,8 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(checks.flux, {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", {}, tube});
   to.add(checks.force, {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: "
          "should vanish (2.14)", {}, tube});
-  if (to.when(!scene.domain.present)) to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
+  if (to.when(!scene.domain.present))
+    to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
   to.add(checks.pressure_by_flux, {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance "
          "vanishes", {}, tube});
   to.add(checks.pressure_by_force, {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance", {},
@@ -184,8 +185,8 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // nearer to an end the disturbance has not died out
   if (wall.length() < needed)
-    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at an "
-                               "end, Tube/length = %.4g is too short",
+    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
+                               "an end, Tube/length = %.4g is too short",
                                x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
 }
 

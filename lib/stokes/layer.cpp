@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -14,20 +13,10 @@
 namespace tanktread::stokes {
 namespace {
 
-/// What the rest of a lattice may err by, over the tolerance: loads are in equilibrium, like those of clusters.
-constexpr double share_of_rest = 0.1;
-
 /// Rules are chosen for int G f dG; the double layer, steeper by one order, errs up to five times as much under them (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
   return options;
-}
-
-std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
-  std::vector<Vec3> result;
-  result.reserve(rows.size());
-  for (const int i : rows) result.push_back(net.row(i).transpose());
-  return result;
 }
 
 }  // namespace
@@ -53,16 +42,6 @@ void Layer::set_reference(const Net& unstressed, std::vector<bool> present) {
   surface_.self_field.forget_weights(), measure_.reset();
 }
 
-void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
-  constexpr int least_images = 27;
-  if (cell_ && *cell_ == cell) return;
-  if (!cell_) surface_.repeat();
-  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance, precision());
-  cell_ = cell, repetition_ = how;
-  near_images_ = cell.around({2, 2, 2});
-  measure_.reset();
-}
-
 void Layer::share(int part, int parts, std::vector<int> everybody) {
   if (!tree_ || parts == 1) return;
   everybody_ = std::move(everybody);
@@ -82,39 +61,8 @@ void Layer::place(const Net& x, Measure measure) {
   for (int e = 0; single() && e < surface_.panels.size(); ++e)
     if (!on_reference(e)) node_weights(surface_.panels, e, surface_.bezier, weight_);
   if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
-  if (cell_) place_in_cell();
+  if (lattice_.cell) place_in_cell();
   if (images_) images_->place(surface_.node);
-}
-
-void Layer::place_in_cell() {
-  std::array<Vec3, 2> extent = repetition_.across;
-  for (int e = 0; e < surface_.panels.size(); ++e) {
-    const int n = surface_.panels[e].table->n_bernstein;
-    const double* x = &surface_.bezier[surface_.panels[e].first_bezier];
-    for (int b = 0; b < n; ++b) {
-      const Vec3 s = cell_->coordinates({x[b], x[n + b], x[2 * n + b]});
-      extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
-    }
-  }
-  if (!periodic_ || !(periodic_->cell() == *cell_) || !periodic_->suits(extent)) {
-    const auto kind = single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
-    periodic_.emplace(kind, *cell_, share_of_rest * surface_.options.tolerance, extent);
-    if (tree_) tree_->repeat(periodic_->images());
-  }
-  rest_at_.clear();
-  for (auto& component : in_cell_) component.resize(static_cast<std::size_t>(n_nodes()));
-  for (std::size_t k = 0; k < in_cell_[0].size(); ++k) {
-    const Vec3 x = periodic_->wrapped({surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]});
-    for (int c = 0; c < 3; ++c) in_cell_[c][k] = x[c];
-  }
-}
-
-/// Where far sums see the targets from.
-std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int> rows) const {
-  std::vector<Vec3> at = rows_of(targets.at, rows);
-  if (cell_)
-    for (Vec3& x : at) x = periodic_->wrapped(x);
-  return at;
 }
 
 /// By the factors of the panels.
@@ -176,8 +124,8 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 /// The far sum over all panels, and in its place better rules for those that are close to a target or that it lies on.
 void Layer::integrate(const Targets& targets, Net& u) {
   add_far(targets, u);
-  if (cell_) subtract_itself(targets, u);
-  if (cell_) add_rest(targets, u);
+  if (lattice_.cell) subtract_itself(targets, u);
+  if (lattice_.cell) add_rest(targets, u);
   if (images_) add_images(targets, u);
   {
     const auto clock = phases_.time("near");
@@ -185,8 +133,8 @@ void Layer::integrate(const Targets& targets, Net& u) {
     for (const int i : targets.rows) {
       if (targets.kept) break;
       const Vec3 f0 = targets.f0.row(i);
-      for (const Vec3& image : near_images_) {
-        if (i >= images_only_ && image.isZero(0)) continue;
+      for (const Vec3& image : lattice_.near) {
+        if (i >= lattice_.images_only && image.isZero(0)) continue;
         const Vec3 at = targets.at.row(i).transpose() - image;
         const std::span<SelfPair> own = targets.sites && image.isZero(0) ? surface_.own(i) : std::span<SelfPair>();
         for (const int e : surface_.near(at, own))
@@ -226,7 +174,7 @@ void Layer::add_far(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
   if (tree_) return add_by_clusters(targets, u);
   const std::vector<Vec3> places = far_targets(targets, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
-  const std::vector<Vec3> images = cell_ ? periodic_->images() : std::vector<Vec3>{Vec3::Zero()};
+  const std::vector<Vec3> images = lattice_.cell ? lattice_.sum->images() : std::vector<Vec3>{Vec3::Zero()};
   Net sums(targets.far_rows.size(), 3), all = Net::Zero(sums.rows(), 3);
   for (const Vec3& image : images) {
     std::vector<Vec3> at = places;
@@ -238,76 +186,6 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// Takes the surfaces themselves out of the far sum at the targets that see images only. Nodes are put into the cell one by one, so that none of the images there is the identity for all.
-void Layer::subtract_itself(const Targets& targets, Net& u) {
-  const auto clock = phases_.time("far");
-  std::vector<int> rows;
-  std::ranges::copy_if(targets.far_rows, std::back_inserter(rows), [&](int i) { return i >= images_only_; });
-  if (rows.empty()) return;
-  const std::vector<Vec3> at = rows_of(targets.at, rows), f0 = rows_of(targets.f0, rows);
-  Net sums(rows.size(), 3);
-  single() ? far_sums(forces(surface_.node), at, sums.data(), precision()) : far_sums(stresslets(surface_.node), at, f0, sums.data(), precision());
-  for (std::size_t k = 0; k < at.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
-  evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
-}
-
-/// What images beyond those in the far sum do, and of a double layer the pressure of (2.28).
-void Layer::add_rest(const Targets& targets, Net& u) {
-  const auto clock = phases_.time("rest of the lattice");
-  const std::vector<Vec3> at = far_targets(targets, targets.rows);
-  Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
-  if (single()) {
-    add_rest(density_, 3, at, sums);
-  } else {
-    const Vec3 mean = mean_density();
-    if (at != rest_at_) place_rest(at);
-    take_moments(mean);
-    add_rest(moment_, 6, at, sums);
-    if (cell_->n() == 3) sums.rowwise() += pressure_along().transpose();
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
-      sums.row(static_cast<Eigen::Index>(k)) -= (rest_stress_[k] * (value - mean)).transpose();
-    }
-  }
-  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
-}
-
-void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums) {
-  Charges charges{n_nodes(), in_cell_[0].data(), in_cell_[1].data(), in_cell_[2].data(), {}};
-  for (std::size_t c = 0; c < n; ++c) charges.q[c] = carried[c].data();
-  periodic_->add_rest(charges, at, sums.data());
-}
-
-/// What it takes of constant densities at these targets, a column each: images of a surface are partly in the far sum, partly in the rest, so that
-/// over it neither vanishes by itself.
-void Layer::place_rest(const std::vector<Vec3>& at) {
-  rest_at_ = at;
-  rest_stress_.assign(at.size(), Mat3::Zero());
-  for (int c = 0; c < 3; ++c) {
-    take_constant_moments(c);
-    Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
-    add_rest(moment_, 6, at, sums);
-    if (cell_->n() == 3) sums.rowwise() += pressure_along().transpose();
-    for (std::size_t k = 0; k < at.size(); ++k) rest_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
-  }
-}
-
-/// -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG of the moments taken, x_p the mean node.
-Vec3 Layer::pressure_along() const {
-  const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
-  const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };
-  std::vector<Vec3> middle(static_cast<std::size_t>(surface_.near_field.n_surfaces()), Vec3::Zero());
-  std::vector<int> nodes(middle.size(), 0);
-  for (int e = 0; e < surface_.panels.size(); ++e)
-    for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) middle[number(e)] += place(surface_.panels[e].first_node + k), ++nodes[number(e)];
-  for (std::size_t p = 0; p < middle.size(); ++p) middle[p] /= nodes[p];
-  Vec3 sum = Vec3::Zero();
-  for (int e = 0; e < surface_.panels.size(); ++e)
-    for (int k = surface_.panels[e].first_node; k < surface_.panels[e].first_node + surface_.panels[e].table->n_nodes; ++k)
-      sum += (moment_[0][k] + moment_[1][k] + moment_[2][k]) * (place(k) - middle[number(e)]);
-  return -1 / (over_8_pi * cell_->volume()) * sum;
-}
-
 /// The tree of this shape and these targets, and of a double layer sum_q T_ijk n_k at them: Krylov solvers ask for one shape many times. Row
 /// k + g n of its sums is that of image g of target k of n.
 void Layer::place_tree(const Targets& targets) {
@@ -315,10 +193,10 @@ void Layer::place_tree(const Targets& targets) {
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
   tree_at_ = std::move(at);
   tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
-  if (cell_) {
+  if (lattice_.cell) {
     std::vector<int> singles(static_cast<std::size_t>(n_nodes()) + 1);
     std::iota(singles.begin(), singles.end(), 0);
-    tree_->place(in_cell_[0].data(), in_cell_[1].data(), in_cell_[2].data(), singles, tree_at_);
+    tree_->place(lattice_.node[0].data(), lattice_.node[1].data(), lattice_.node[2].data(), singles, tree_at_);
   } else {
     surface_.place(*tree_, tree_at_);
   }
@@ -433,8 +311,8 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   const auto clock = phases_.time("near");
   Near kept{{0}, {}, {}};
   for (const int i : targets) {
-    for (const Vec3& image : near_images_) {
-      if (i >= images_only_ && image.isZero(0)) continue;
+    for (const Vec3& image : lattice_.near) {
+      if (i >= lattice_.images_only && image.isZero(0)) continue;
       const Vec3 y = at.row(i).transpose() - image;
       for (const int e : surface_.near(y, {})) {
         const std::size_t first = kept.moments.size();

@@ -34,6 +34,13 @@ struct NearPoints {
   std::vector<int> point;
 };
 
+/// Rows of a net as vectors.
+inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
+  std::vector<Vec3> all;
+  for (const int i : rows) all.push_back(net.row(i).transpose());
+  return all;
+}
+
 /// How images of surfaces that repeat count.
 struct Repetition {
   bool assembled = false;  ///< assembled rows hold the images too, but for the smooth rest (PeriodicSum), which `assemble_rest` adds
@@ -81,7 +88,7 @@ class Layer {
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
   /// Sets which of the points off the surfaces to come, rows from `first` on, see the images of a lattice without the surfaces themselves.
-  void see_images_only(int first) { images_only_ = first; }
+  void see_images_only(int first) { lattice_.images_only = first; }
 
   /// States that there is a plane wall, which all shapes to come are in front of: G and T are those that vanish on it, (2.35) and (2.36). Not on a
   /// lattice. What is assembled of near control points alone leaves the wall out.
@@ -161,6 +168,18 @@ class Layer {
   template <class Real>
   class RowSums;
 
+  /// Images of the surfaces; without a cell there are none.
+  struct Lattice {
+    std::optional<PeriodicCell> cell;
+    Repetition how;
+    int images_only = std::numeric_limits<int>::max();  // first of the targets that see images only
+    std::optional<PeriodicSum> sum;
+    std::vector<double> node[3];                // far nodes, moved into the cell
+    std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors to panels that a target may be close to
+    std::vector<Vec3> rest_at;                  // targets in the cell
+    std::vector<Mat3> rest_stress;              // response of the rest of the lattice to constant densities there
+  };
+
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // Bezier points; weights of the far nodes, areas included
@@ -181,7 +200,7 @@ class Layer {
   void add_far(const Targets& targets, Net& u);
   void place_in_cell();
   std::vector<Vec3> far_targets(const Targets& targets, std::span<const int> rows) const;
-  const std::vector<double> (&far_places() const)[3] { return cell_ ? in_cell_ : surface_.node; }
+  const std::vector<double> (&far_places() const)[3] { return lattice_.cell ? lattice_.node : surface_.node; }
   void add_rest(const Targets& targets, Net& u);
   void add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums);
   void place_rest(const std::vector<Vec3>& at);
@@ -227,14 +246,7 @@ class Layer {
   std::vector<double> weight_;                                     // of the far nodes, areas included
   std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times the weight in a single layer; normal times area and k
   std::optional<TreeSum> tree_;                                    // where clusters are faster
-  std::optional<PeriodicCell> cell_;                               // of a lattice of images
-  Repetition repetition_;                                          // over it
-  int images_only_ = std::numeric_limits<int>::max();              // first of the targets that see images only
-  std::optional<PeriodicSum> periodic_;                            // the sum over it
-  std::vector<double> in_cell_[3];                                 // far nodes in the cell
-  std::vector<Vec3> near_images_{Vec3::Zero()};                    // of panels that a target may be close to
-  std::vector<Vec3> rest_at_;                                      // targets in the cell
-  std::vector<Mat3> rest_stress_;                                  // what the rest of a lattice takes from values there
+  Lattice lattice_;
   std::optional<ImageSum> images_;                                 // in a plane wall
   std::vector<Mat3> image_stress_;                                 // what they take from values at the targets
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows that far sums are shared of; empty: they are not

@@ -104,13 +104,13 @@ class Layer::RowSums {
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
-    const bool repeats = layer_.repetition_.assembled;
+    const bool repeats = layer_.lattice_.how.assembled;
     for (int l = 0; l < static_cast<int>(targets.size()); ++l) repeats ? add_close_images(targets[l], l) : add_close_panels(targets[l], l);
-    for (const Vec3& image : repeats ? layer_.periodic_->images() : std::vector<Vec3>{Vec3::Zero()}) {
+    for (const Vec3& image : repeats ? layer_.lattice_.sum->images() : std::vector<Vec3>{Vec3::Zero()}) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
         const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
-        const Vec3 seen = repeats ? Vec3(layer_.periodic_->wrapped(x0) - image) : x0;
+        const Vec3 seen = repeats ? Vec3(layer_.lattice_.sum->wrapped(x0) - image) : x0;
         for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = seen[c];
       }
       for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
@@ -134,7 +134,7 @@ class Layer::RowSums {
   /// The same on a lattice, where all nodes are in the far sum, each with the images that are near in the cell.
   void add_close_images(int target, int l) {
     LayerSurface& surface = layer_.surface_;
-    for (const Vec3& image : layer_.near_images_) {
+    for (const Vec3& image : layer_.lattice_.near) {
       const Vec3 x0 = place_of(target) - image;
       const std::span<SelfPair> own = !at_ && image.isZero(0) ? surface.own(target) : std::span<SelfPair>();
       for (const int e : surface.near(x0, own))
@@ -148,7 +148,7 @@ class Layer::RowSums {
     const Panels& panels = layer_.surface_.panels;
     const auto k = static_cast<std::size_t>(basis.index[e]);
     moments_.resize(static_cast<std::size_t>(6) * panels[e].table->n_bernstein);
-    if (layer_.repetition_.assembled) {
+    if (layer_.lattice_.how.assembled) {
       layer_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
     } else {
       skip_[k] |= 1u << l;
@@ -160,7 +160,7 @@ class Layer::RowSums {
 
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
     const int first = layer_.surface_.panels[basis.panels[k]].first_node;
-    PanelNodes<Real> nodes = basis.nodes(layer_.surface_, layer_.repetition_.assembled ? layer_.far_places() : layer_.surface_.node, k);
+    PanelNodes<Real> nodes = basis.nodes(layer_.surface_, layer_.lattice_.how.assembled ? layer_.far_places() : layer_.surface_.node, k);
     if (layer_.single())
       nodes.weight = &layer_.weight_[first];
     else
@@ -218,20 +218,20 @@ void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
 
 void Layer::assemble_rest(std::span<const int> sites, Rows<double>& a) {
-  assert(single() && cell_);
+  assert(single() && lattice_.cell);
   const auto clock = phases_.time("assembly");
   std::vector<Vec3> at, nodes;
-  for (const int i : sites) at.push_back(periodic_->wrapped(surface_.site(i)));
-  for (std::size_t k = 0; k < in_cell_[0].size(); ++k) nodes.emplace_back(in_cell_[0][k], in_cell_[1][k], in_cell_[2][k]);
-  const Eigen::MatrixXd to = periodic_->lagrange(at);
-  Eigen::MatrixXd from = periodic_->lagrange(nodes), basis(from.cols(), surface_.n_points);  // int L_a N_B dG
+  for (const int i : sites) at.push_back(lattice_.sum->wrapped(surface_.site(i)));
+  for (std::size_t k = 0; k < lattice_.node[0].size(); ++k) nodes.emplace_back(lattice_.node[0][k], lattice_.node[1][k], lattice_.node[2][k]);
+  const Eigen::MatrixXd to = lattice_.sum->lagrange(at);
+  Eigen::MatrixXd from = lattice_.sum->lagrange(nodes), basis(from.cols(), surface_.n_points);  // int L_a N_B dG
   for (Eigen::Index a = 0; a < from.cols(); ++a) {
     from.col(a).array() *= Eigen::Map<const Eigen::ArrayXd>(weight_.data(), n_nodes());
     basis.row(a) = moments({from.col(a).data(), from.col(a).data() + from.rows()}).transpose();
   }
   for (int c = 0; c < 6; ++c) {
     const auto [i, j] = upper[c];
-    const Eigen::MatrixXd part = over_8_pi * (to * (periodic_->between_nodes(c) * basis));
+    const Eigen::MatrixXd part = over_8_pi * (to * (lattice_.sum->between_nodes(c) * basis));
     for (Eigen::Index k = 0; k < part.rows(); ++k)
       for (Eigen::Index b = 0; b < part.cols(); ++b) {
         a(3 * k + i, 3 * b + j) += part(k, b);

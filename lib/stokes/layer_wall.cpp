@@ -29,7 +29,7 @@ std::vector<double> turned(const PlaneWall& wall, const double* bezier, int n_b,
 }  // namespace
 
 void Layer::set_wall(const PlaneWall& wall) {
-  assert(!cell_ && !shared() && "a wall is told before far sums are shared");
+  assert(!lattice_.cell && !shared() && "a wall is told before far sums are shared");
   const auto kind = single() ? ImageSum::Kind::forces : ImageSum::Kind::stresslets;
   images_.emplace(kind, wall, tree_ ? std::optional(share_of_clusters * surface_.options.tolerance) : std::nullopt);
   surface_.repeat();

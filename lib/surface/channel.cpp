@@ -124,7 +124,8 @@ void Channel::check_period() {
   if (own_.start || own_.end) throw UserError("Channel/start and Channel/end are for a channel with two ends, but Domain makes it repeat along x1.");
   if (own_.bend_radius) throw UserError("Channel/bend radius is for a channel with two ends: one that bends does not repeat along x1.");
   if (last_ - first_ > options_.period * (1 + 1e-9))
-    throw UserError(formatted("The period of the channel, Domain/side lengths %.4g, must be at least as long as what changes in it, from s = %.4g to %.4g.",
+    throw UserError(formatted("The period of the channel, Domain/side lengths %.4g, must be at least as long as what changes in it, from s = %.4g to "
+                              "%.4g.",
                               options_.period, first_, last_));
   const Vec2 jumps = place(start_).factor - place(end_).factor;
   if (jumps.cwiseAbs().maxCoeff() > 1e-6)

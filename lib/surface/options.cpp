@@ -265,7 +265,8 @@ void TubeOptions::check() const {
     if (!given && section == owner) throw UserError(word + " `" + owner + "` needs " + list() + "/" + key + ".");
   };
   if (channel) channel->check();
-  if (images && period == 0) throw UserError(list() + "/images belongs to a tube that repeats, but neither " + list() + "/periodic length nor Domain is given.");
+  if (images && period == 0)
+    throw UserError(list() + "/images belongs to a tube that repeats, but neither " + list() + "/periodic length nor Domain is given.");
   belongs("radius", radius.has_value(), "circle");
   belongs("semi-axes", semi_axes.has_value(), "ellipse");
   belongs("sides", sides.has_value(), "rectangle");

@@ -26,33 +26,6 @@ void Capsule::at(double time, double start) {
   if (other_flow || other_cell) latest_.reset();
 }
 
-/// dH/dt = L H. Whether the cell is another one then. In a duct it stays.
-bool Capsule::deform_cell(double time) {
-  if (tube_) {
-    cell_ = tube_->cell();
-    return false;
-  }
-  const stokes::PeriodicCell now(exponential(time * flow_.gradient(Vec3::Zero())) * parameters_.cell->vectors(), parameters_.cell->n());
-  if (cell_ && *cell_ == now) return false;
-  cell_ = now;
-  layer_.repeat(now);
-  if (double_layer_) double_layer_->repeat(now);
-  if (tractions_) tractions_->repeat(now);
-  return true;
-}
-
-std::vector<Vec3> Capsule::put_into_cell(Net& x) {
-  std::vector<Vec3> shifts;
-  const Vec3 middle = cell_origin(x);
-  if (tube_ && !tube_->fixed()) along_ = middle[0];
-  for (const Particle& particle : particles()) {
-    auto rows = particle.block.rows(x);
-    shifts.push_back(cell_->shift(rows.colwise().mean().transpose() - middle));
-    rows.rowwise() -= shifts.back().transpose();
-  }
-  return shifts;
-}
-
 /// Control values of an affine v_inf: exact, for the basis sums to one.
 Net Capsule::ambient(const Net& x) const {
   Net v(x.rows(), 3);
@@ -224,38 +197,6 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
   if (!latest_ || !same(x, latest_->x())) return std::make_shared<Evaluation>(*this, x, velocity, evaluated_about(x, distance) ? latest_ : nullptr);
   if (velocity.size() > 0) latest_->known_ = velocity;
   return latest_;
-}
-
-void Capsule::place(const Net& x) {
-  if (same(x, placed_) && along_ == placed_along_) return;
-  tube_->place(x, along_);
-  placed_ = x, placed_along_ = along_;
-}
-
-/// The middle of the cell: of a straight wall, which goes along, the mean of all particles, however far apart.
-Vec3 Capsule::cell_origin(const Net& x) const {
-  if (!tube_) return Vec3::Zero();
-  if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
-  return x.col(0).mean() * Vec3::UnitX();
-}
-
-/// On a lattice where the means of the particles are in the cell.
-Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!cell_ || !e.x().allFinite()) return solve(e, e.x(), guess);
-  Net x = e.x();
-  const std::vector<Vec3> shifts = put_into_cell(x);
-  rigid_.enter(shifts, tube_ ? Mat3::Zero() : Mat3(flow_.gradient(Vec3::Zero())));
-  Net slower = guess;
-  const auto faster_by = [&](std::size_t p) { return faster_beyond(shifts[p]); };
-  for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();
-  Net v = solve(e, std::move(x), slower);
-  for (std::size_t p = 0; p < shifts.size(); ++p) {
-    const Vec3 faster = faster_by(p);
-    for (Net* net : {&v, &e.fluid_})
-      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
-    rigid_.carry(p, shifts[p], faster);
-  }
-  return v;
 }
 
 /// (4.2), station by station: the load of membranes (membrane_load) and of bodies, what it drives through the layers and the ambient flow

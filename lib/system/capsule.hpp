@@ -181,8 +181,8 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< at the time told last
 
-  /// Moves every particle into the cell by a lattice vector, and returns these vectors. The cell is around the origin, or in a straight tube, whose wall
-  /// goes along, around the mean of the particles.
+  /// Moves every particle into the cell by a lattice vector, and returns these vectors. The cell is around the origin, or in a straight tube, whose
+  /// wall moves along, around the mean of the particles.
   std::vector<Vec3> put_into_cell(Net& x);
 
   /// How much faster the flow is a lattice vector further; a duct's flow repeats.
@@ -201,6 +201,12 @@ class Capsule : public Dynamics {
 
  private:
   friend class Evaluation;
+
+  /// Particles placed in the tube, and the origin along x1 of the frame of a straight wall that repeats, now and when they were placed.
+  struct TubePlace {
+    Net net;
+    std::optional<double> origin, origin_of_net;
+  };
   bool repeats() const { return cell_ && !tube_; }  // the layers do; in a duct the tube's response has the images
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
@@ -301,8 +307,7 @@ class Capsule : public Dynamics {
   Work work_;
   std::shared_ptr<Evaluation> latest_;
   std::array<Net, 2> forces_;  // their work, of contacts and of fields on what deforms; empty nets: none
-  Net placed_;     // the tube's particle
-  std::optional<double> along_, placed_along_;  // origin of the frame of a straight wall that repeats; of the particle placed
+  TubePlace tube_place_;
 };
 
 }  // namespace tanktread::coupling

@@ -52,8 +52,8 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   return wall_;
 }
 
-/// Returns the velocity that drives the flow in addition to the wall: the profiles at the ends, or in a channel that repeats Poiseuille's flow of a unit
-/// pressure gradient in a circular tube, for any section.
+/// Returns the velocity that drives the flow in addition to the wall: the profiles at the ends, or in a channel that repeats Poiseuille's flow of a
+/// unit pressure gradient in a circular tube, for any section.
 Net ChannelFlow::ends(const Net& x) const {
   if (!channel_->repeats()) return ends_[0].velocities(x) + ends_[1].velocities(x);
   Net v = Net::Zero(x.rows(), 3);

@@ -24,8 +24,8 @@ namespace tanktread::coupling {
 /// wall operator is constructed by all ranks when a velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities
 /// refer to the inlet.
 ///
-/// In a channel that repeats, Poiseuille's flow of the pressure gradient dp/L in a circular tube stands for c dp and P. Then f is the difference of the
-/// tractions of the fluid inside and of the fluid outside, in which the velocity vanishes on the wall too.
+/// In a channel that repeats, Poiseuille's flow of the pressure gradient dp/L in a circular tube stands for c dp and P. Then f is the difference of
+/// the tractions of the fluid inside and of the fluid outside, in which the velocity vanishes on the wall too.
 class ChannelFlow : public stokes::DuctFlow {
  public:
   /// `wall_solver`: as for Wall.

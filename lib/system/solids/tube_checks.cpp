@@ -151,7 +151,8 @@ double Tube::gap() const {
     for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may reach across the seam
       const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
       if (beyond == 0 || wall().period > 0)
-        nearest = std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
+        nearest =
+            std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
     }
     return inside(particle_->sites, everybody(particle_->sites.rows())) ? nearest : -nearest;
   }

@@ -31,13 +31,12 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
       geometry(particle),
       collocation(collocation_matrix(particle)),
       from_sites(how.direct),
-      single(Layer::Kernel::single_layer, particle, {}, how.quadrature),
-      cell(wall.cell()) {
+      single(Layer::Kernel::single_layer, particle, {}, how.quadrature) {
   own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
   from_sites.factor(collocation);
-  if (cell) {
-    across = wall.across();
-    single.repeat(*cell, {.assembled = true, .across = across});
+  if (wall.cell()) {
+    period.emplace(Period{*wall.cell(), wall.across(), {}, {}});
+    single.repeat(period->cell, {.assembled = true, .across = period->across});
   }
   set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
 }
@@ -47,7 +46,7 @@ void Tube::Particle::set_contrasts(const Eigen::VectorXd& of_points) {
   dual.reset();
   if (contrasts.isZero(0)) return;
   dual.emplace(Layer::Kernel::double_layer, space, stokes::Sites(), parameters.quadrature);
-  if (cell) dual->repeat(*cell, {.assembled = true, .across = across});
+  if (period) dual->repeat(period->cell, {.assembled = true, .across = period->across});
 }
 
 void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
@@ -56,28 +55,28 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   shape.col(0).array() -= centroid;
   sites = collocation * shape;
   flow_of_strength_.resize(0, 3);
-  if (!cell) inlet = wall.inlet().integral(sites) / parameters.viscosity;
+  if (!period) inlet = wall.inlet().integral(sites) / parameters.viscosity;
   single.place(shape, measure);
-  if (cell) {
+  if (period) {
     const auto n = static_cast<int>(wall.targets().rows());
-    both.resize(n + sites.rows(), 3);
-    both << wall.targets(), sites;
-    own_of_both = wall.own_targets();
-    for (const int i : own) own_of_both.push_back(n + i);
+    period->targets.resize(n + sites.rows(), 3);
+    period->targets << wall.targets(), sites;
+    period->own = wall.own_targets();
+    for (const int i : own) period->own.push_back(n + i);
   }
   if (dual) {
     dual->place(shape);
     find_nearest(wall.targets());
-    if (cell) {
+    if (period) {
       dual->see_images_only(static_cast<int>(wall.targets().rows()));
-      dual_on_wall = dual->near(both, own_of_both);
+      dual_on_wall = dual->near(period->targets, period->own);
     } else {
       dual_on_wall = dual->near(wall.targets(), wall.own_targets());
     }
     wall_on_sites = wall.layer().near(sites, own);
   }
   weigh_pressure(flow, !wall.surface().channel);
-  if (cell) inlet = ambient / pressure_drop;
+  if (period) inlet = ambient / pressure_drop;
 }
 
 void Tube::Particle::add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u) {
@@ -93,6 +92,7 @@ void Tube::Particle::add_images(const Net& f, const Net& v, const Net& at, std::
 
 Tube::Particle::Cause Tube::Particle::cause(const Net& f, const Net& v, const Wall& wall) {
   const auto n = wall.targets().rows();
+  const auto& [cell, across, both, own_of_both] = *period;
   Net u = Net::Zero(both.rows(), 3), part(both.rows(), 3);
   if (f.size() > 0) {
     single.see_images_only(static_cast<int>(n));
@@ -165,8 +165,8 @@ void Tube::Particle::find_nearest(const Net& targets) {
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     Eigen::Index at = 0;
     Net apart = sites.rowwise() - targets.row(static_cast<Eigen::Index>(i));
-    if (cell)
-      for (Eigen::Index k = 0; k < apart.rows(); ++k) apart.row(k) -= cell->shift(apart.row(k).transpose()).transpose();
+    if (period)
+      for (Eigen::Index k = 0; k < apart.rows(); ++k) apart.row(k) -= period->cell.shift(apart.row(k).transpose()).transpose();
     apart.rowwise().squaredNorm().minCoeff(&at);
     nearest[i] = static_cast<int>(at);
   }

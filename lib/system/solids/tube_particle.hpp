@@ -18,6 +18,14 @@
 namespace tanktread::coupling {
 
 struct Tube::Particle {
+  /// Data of a duct that repeats.
+  struct Period {
+    stokes::PeriodicCell cell;
+    std::array<Vec3, 2> across;  ///< extent of the wall, in the axes of the cell
+    Net targets;                 ///< targets of the wall, then the collocation points of the particle
+    std::vector<int> own;        ///< rank-owned rows of `targets`
+  };
+
   Particle(const spline::Space& space, const TubeParameters& parameters, const Wall& wall);
 
   void set_contrasts(const Eigen::VectorXd& of_points);
@@ -61,8 +69,7 @@ struct Tube::Particle {
   membrane::DirectSolver from_sites;        ///< R^-1
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< where a lambda is not 1
-  std::optional<stokes::PeriodicCell> cell;             ///< of a duct that repeats
-  std::array<Vec3, 2> across;                           ///< extent of its wall
+  std::optional<Period> period;       ///< of a duct that repeats
   Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
 
   Net shape;                                                            ///< in the wall's frame
@@ -73,8 +80,6 @@ struct Tube::Particle {
   Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
   std::vector<int> nearest;                                             ///< to a collocation point of the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
-  Net both;                                                             ///< in a duct that repeats the wall's targets, then the sites
-  std::vector<int> own_of_both;                                         ///< rows of this rank
 
   struct Frozen {
     FrozenOperator single, dual, wall;

@@ -15,7 +15,8 @@ struct Parts {
   Rows velocity, wall_traction;
   Number &pressure_drop, &multiplier;
 
-  Parts(const BlockSystem& system, Number* numbers) : Parts(numbers, system.tube.inlet_on_particle().rows(), static_cast<Eigen::Index>(system.tube.wall().sites.size())) {}
+  Parts(const BlockSystem& system, Number* numbers)
+      : Parts(numbers, system.tube.inlet_on_particle().rows(), static_cast<Eigen::Index>(system.tube.wall().sites.size())) {}
   Parts(Number* numbers, Eigen::Index particle, Eigen::Index wall)
       : velocity(numbers, particle, 3),
         wall_traction(numbers + 3 * particle, wall, 3),

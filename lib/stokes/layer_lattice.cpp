@@ -1,0 +1,129 @@
+// Images of a layer's surfaces on a lattice.
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "stokes/layer.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// Error of the rest of a lattice divided by the tolerance: loads are in equilibrium, like those of clusters.
+constexpr double share_of_rest = 0.1;
+
+}  // namespace
+
+void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
+  constexpr int least_images = 27;
+  if (lattice_.cell && *lattice_.cell == cell) return;
+  if (!lattice_.cell) surface_.repeat();
+  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(surface_.options.tolerance, precision());
+  lattice_.cell = cell, lattice_.how = how;
+  lattice_.near = cell.around({2, 2, 2});
+  measure_.reset();
+}
+
+void Layer::place_in_cell() {
+  std::array<Vec3, 2> extent = lattice_.how.across;
+  for (int e = 0; e < surface_.panels.size(); ++e) {
+    const int n = surface_.panels[e].table->n_bernstein;
+    const double* x = &surface_.bezier[surface_.panels[e].first_bezier];
+    for (int b = 0; b < n; ++b) {
+      const Vec3 s = lattice_.cell->coordinates({x[b], x[n + b], x[2 * n + b]});
+      extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
+    }
+  }
+  if (!lattice_.sum || !(lattice_.sum->cell() == *lattice_.cell) || !lattice_.sum->suits(extent)) {
+    const auto kind = single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
+    lattice_.sum.emplace(kind, *lattice_.cell, share_of_rest * surface_.options.tolerance, extent);
+    if (tree_) tree_->repeat(lattice_.sum->images());
+  }
+  lattice_.rest_at.clear();
+  for (auto& component : lattice_.node) component.resize(static_cast<std::size_t>(n_nodes()));
+  for (std::size_t k = 0; k < lattice_.node[0].size(); ++k) {
+    const Vec3 x = lattice_.sum->wrapped({surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]});
+    for (int c = 0; c < 3; ++c) lattice_.node[c][k] = x[c];
+  }
+}
+
+/// Returns the positions at which the far sums see the targets.
+std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int> rows) const {
+  std::vector<Vec3> at = rows_of(targets.at, rows);
+  if (lattice_.cell)
+    for (Vec3& x : at) x = lattice_.sum->wrapped(x);
+  return at;
+}
+
+/// Subtracts the surfaces themselves from the far sum at the targets that see images only. Nodes are moved into the cell one by one, so that no image
+/// of the far sum is the surface itself for all of them.
+void Layer::subtract_itself(const Targets& targets, Net& u) {
+  const auto clock = phases_.time("far");
+  std::vector<int> rows;
+  std::ranges::copy_if(targets.far_rows, std::back_inserter(rows), [&](int i) { return i >= lattice_.images_only; });
+  if (rows.empty()) return;
+  const std::vector<Vec3> at = rows_of(targets.at, rows), f0 = rows_of(targets.f0, rows);
+  Net sums(rows.size(), 3);
+  single() ? far_sums(forces(surface_.node), at, sums.data(), precision()) : far_sums(stresslets(surface_.node), at, f0, sums.data(), precision());
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
+  evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
+}
+
+/// Adds the images beyond those in the far sum, and for a double layer the pressure of (2.28).
+void Layer::add_rest(const Targets& targets, Net& u) {
+  const auto clock = phases_.time("rest of the lattice");
+  const std::vector<Vec3> at = far_targets(targets, targets.rows);
+  Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
+  if (single()) {
+    add_rest(density_, 3, at, sums);
+  } else {
+    const Vec3 mean = mean_density();
+    if (at != lattice_.rest_at) place_rest(at);
+    take_moments(mean);
+    add_rest(moment_, 6, at, sums);
+    if (lattice_.cell->n() == 3) sums.rowwise() += pressure_along().transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
+      sums.row(static_cast<Eigen::Index>(k)) -= (lattice_.rest_stress[k] * (value - mean)).transpose();
+    }
+  }
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
+}
+
+void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums) {
+  Charges charges{n_nodes(), lattice_.node[0].data(), lattice_.node[1].data(), lattice_.node[2].data(), {}};
+  for (std::size_t c = 0; c < n; ++c) charges.q[c] = carried[c].data();
+  lattice_.sum->add_rest(charges, at, sums.data());
+}
+
+/// Computes the response of the rest to constant densities at these targets, one column per component. Images of a surface are partly in the far sum
+/// and partly in the rest, so that neither vanishes by itself for a constant.
+void Layer::place_rest(const std::vector<Vec3>& at) {
+  lattice_.rest_at = at;
+  lattice_.rest_stress.assign(at.size(), Mat3::Zero());
+  for (int c = 0; c < 3; ++c) {
+    take_constant_moments(c);
+    Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
+    add_rest(moment_, 6, at, sums);
+    if (lattice_.cell->n() == 3) sums.rowwise() += pressure_along().transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) lattice_.rest_stress[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
+  }
+}
+
+/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the present moments, x_p the mean of the nodes of surface p.
+Vec3 Layer::pressure_along() const {
+  const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
+  const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };
+  std::vector<Vec3> middle(static_cast<std::size_t>(surface_.near_field.n_surfaces()), Vec3::Zero());
+  std::vector<int> nodes(middle.size(), 0);
+  for (int e = 0; e < surface_.panels.size(); ++e)
+    for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) middle[number(e)] += place(surface_.panels[e].first_node + k), ++nodes[number(e)];
+  for (std::size_t p = 0; p < middle.size(); ++p) middle[p] /= nodes[p];
+  Vec3 sum = Vec3::Zero();
+  for (int e = 0; e < surface_.panels.size(); ++e)
+    for (int k = surface_.panels[e].first_node; k < surface_.panels[e].first_node + surface_.panels[e].table->n_nodes; ++k)
+      sum += (moment_[0][k] + moment_[1][k] + moment_[2][k]) * (place(k) - middle[number(e)]);
+  return -1 / (over_8_pi * lattice_.cell->volume()) * sum;
+}
+
+}  // namespace tanktread::stokes
