@@ -11,6 +11,7 @@
 #include "base/types.hpp"
 #include "membrane/load.hpp"
 #include "spline/space.hpp"
+#include "surface/metrics.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::membrane {
@@ -66,6 +67,10 @@ class Field {
   /// Returns the values of the columns with which the field is registered, and what snapshots show of it, at the state set last.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
+
+  /// Returns a function that gives the values of the field at a site of its space, scaled to order 1, at the state set last. The mesh is refined until
+  /// their interpolation error (1.5) is small. Empty: refinement does not consider the field.
+  virtual surface::FieldsAt values_at() const { return {}; }
 
   /// Returns which coefficient the image of each one is, and the sign by which it is multiplied. Empty: it is not known, and the field is not made
   /// symmetric; modes (4.16) are then those of the whole surface.

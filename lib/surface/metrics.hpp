@@ -27,6 +27,7 @@ struct ElementMetrics {
 
 /// A field on the surface, at a site of the space. Empty: not in use, its variation is 0.
 using FieldAt = std::function<Vec3(const spline::Site&)>;
+using FieldsAt = std::function<Eigen::VectorXd(const spline::Site&)>;
 
 struct MetricFields {
   FieldAt traction, velocity;
@@ -47,15 +48,21 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 /// Along one direction of an element: its length, and estimates of the distance between cubics on elements of this length and what they stand for,
 ///
 ///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per present area                       (1.5)
+///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
 /// with D4 the fourth difference of values one element apart, the mean over both edges of the element in this direction: 1/384 is the constant of
 /// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the present one, and its normal
 /// to that one's times the square root of the stretch in area: how X itself varies over the mesh, at extraordinary points above all, costs
-/// nothing where the particle has kept its shape. Where all is smooth, cutting an element divides either by 16; next to an extraordinary point
+/// nothing where the particle has kept its shape. G is the gradient of q along the surface, for the same reason: a q that varies like x has no
+/// error. Where all is smooth, cutting an element divides either by 16; next to an extraordinary point
 /// by about 8.
 struct Errors {
   double surface = 0;  ///< e(x), length
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
+  double fields = 0;   ///< of the fields on the surface, which are scaled to order 1; 0 without any
+
+  Errors operator+(const Errors& other) const { return {surface + other.surface, load + other.load, fields + other.fields}; }
+  Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
 };
 struct Resolution {
   double length = 0;  ///< of the edges, their mean
@@ -66,6 +73,6 @@ struct Resolution {
 /// Of elements(mesh), in its order, along s and t. A line of places ends at an extraordinary point or a pole; where fewer than five are left, the
 /// estimate is 0. A side that is a pole does not count.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
-                                                  const FieldAt& load);
+                                                  const FieldAt& load, const FieldsAt& fields = {});
 
 }  // namespace tanktread::surface

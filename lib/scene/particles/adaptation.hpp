@@ -26,10 +26,10 @@ struct Adapted {
 
 /// Cuts what the indicator marks, or takes back what it allows to be longer. Every field of the state goes along: both surfaces, the scheme's
 /// slopes, the geometry of the frozen operator, whose rows of other particles than `block` stay. `load`: control values of this particle's load at
-/// state.x, per area of the unstressed surface if `per_unstressed_area`. `films`: the width beside each element of body.nested(), or none. The same
-/// on every rank.
+/// state.x, per area of the unstressed surface if `per_unstressed_area`. `films`: the width beside each element of body.nested(), or none. `fields`:
+/// values of the fields on the surface, scaled to order 1. The same on every rank.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area, std::span<const double> films);
+                bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
 /// Returns warnings about what a change of the mesh at this time lacks.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);

@@ -50,6 +50,9 @@ class SurfaceFields {
   /// Passes the state to capsule and fields; to the fields only if the capsule was evaluated within `distance` of it.
   void set_state(const Net& y, double distance = 0);
 
+  /// Returns the values of all fields of particle p, at the state set last, to which refinement looks; empty if there are none.
+  surface::FieldsAt values_at(std::size_t p) const;
+
   /// Adds what the fields of particle p contribute to its row, and the columns of its fields and loads, at the state set last; `y` is that state.
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of all fields' loads if the material moves by v.
