@@ -68,7 +68,7 @@ void check_vacant(const RunRequest& request);
 /// by all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
 ///
 /// From the first second of a run on, a snapshot and the record up to it are on the disk itself before `run.hdf.series` names the snapshot, and all
-/// that a run has written is when it ends.
+/// that a run has written is when it ends. In the first second the file is not written.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);

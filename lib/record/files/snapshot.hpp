@@ -31,7 +31,7 @@ void write_snapshot(const std::filesystem::path& path, const Checkpoint& checkpo
                     std::span<const Field> fields, Durable durable = Durable::no);
 
 /// `run.hdf.series`, with which ParaView opens all snapshots of a run behind one time slider:
-/// {"file-series-version":"1.0","files":[{"name":"snapshot_000000.hdf","time":0.0}, ...]}, written whole after every snapshot.
+/// {"file-series-version":"1.0","files":[{"name":"snapshot_000000.hdf","time":0.0}, ...]}.
 class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
@@ -39,8 +39,8 @@ class SnapshotSeries {
   /// The list that a resumed run goes on with: snapshots up to `step` that can be read and are of `run` (Picture).
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
-  /// Adds the snapshot of a step, which stands in the directory already, and rewrites the list.
-  void add(int step, double time);
+  void add(int step, double time);  ///< the snapshot of a step, which stands in the directory already
+  void write() const;               ///< rewrites the file
 
  private:
   struct Entry {
